@@ -2,7 +2,8 @@
 
 use crate::error::MeshError;
 use crate::metric::{Corner, Metric};
-use crate::parallel::map_parts;
+use crate::parallel::pace::now;
+use crate::parallel::paced;
 use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates;
@@ -85,6 +86,15 @@ impl Quality {
         points: &[[f64; 2]],
         topology: &Topology<'_>,
     ) -> Result<Self, MeshError> {
+        now(Self::with_pauses(surface, points, topology))
+    }
+
+    /// Does the work of [`Self::on`], with pauses.
+    pub(crate) async fn with_pauses(
+        surface: Surface,
+        points: &[[f64; 2]],
+        topology: &Topology<'_>,
+    ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         let triangles = topology.triangles();
         // Areas are absolute, as signed areas may cancel if large triangles are inverted.
@@ -92,11 +102,12 @@ impl Quality {
             let [x, y] = surface.lengths_in(points, t);
             0.5 * predicates::orientation(points, t).abs() * x * y
         };
-        let areas =
-            map_parts(triangles.chunks(1024), |_, chunk| chunk.iter().map(area).sum::<f64>());
-        let mean_area = areas.iter().sum::<f64>() / triangles.len() as f64;
+        let areas = paced::map_parts(triangles.chunks(1024), |_, chunk| {
+            chunk.iter().map(area).sum::<f64>()
+        });
+        let mean_area = areas.await.iter().sum::<f64>() / triangles.len() as f64;
 
-        let tallies = map_parts(triangles.chunks(1024), |chunk, part| {
+        let tallies = paced::map_parts(triangles.chunks(1024), |chunk, part| {
             let add = |tally: Tally, (t, corners): (usize, &[u32; 3])| {
                 let movable = topology.can_move(chunk * 1024 + t);
                 let lengths = surface.lengths_in(points, corners);
@@ -104,7 +115,7 @@ impl Quality {
             };
             part.iter().enumerate().fold(Tally::EMPTY, add)
         });
-        let total = tallies.iter().fold(Tally::EMPTY, Tally::and);
+        let total = tallies.await.iter().fold(Tally::EMPTY, Tally::and);
 
         let angle = |cotangent: f64| 1f64.atan2(cotangent).to_degrees();
         let mean =

@@ -6,18 +6,19 @@ use crate::error::SmoothError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
 use crate::options::Options;
+use crate::parallel::paced;
 use crate::run::{Checkpoint, PeriodState, RunFingerprint};
 
 /// Returns the description of a run that its checkpoints carry: a hash of the mesh, of the target maps of its vertices
 /// and of `more` data that the run depends on, and the options as lines of text.
-pub(crate) fn about(
+pub(crate) async fn about(
     mesh: &Mesh,
     targets: Option<&[[f32; 3]]>,
     more: &[u64],
     options: &Options,
 ) -> RunFingerprint {
     RunFingerprint {
-        mesh: hash(mesh, targets, more),
+        mesh: hash(mesh, targets, more).await,
         options: options.lines(),
         goal: None,
         opened: None,
@@ -66,17 +67,26 @@ pub(crate) fn foreign() -> SmoothError {
 }
 
 /// Returns the hash of all data of a mesh that a run depends on: FNV-1a over words of 64 bits.
-fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
-    let counts = [mesh.points.len(), mesh.triangles.len(), mesh.fixed.len()];
-    let points = mesh.points.as_flattened().iter().map(|x| x.to_bits());
-    let indices = mesh.triangles.as_flattened().iter().chain(&mesh.fixed).map(|&i| u64::from(i));
-    let targets = targets.unwrap_or_default().as_flattened().iter().map(|x| x.to_bits().into());
-    let words = counts.into_iter().map(|n| n as u64).chain(points).chain(indices).chain(targets);
-    let words = words.chain(more.iter().copied());
-    words.fold(0xcbf2_9ce4_8422_2325, |hash, word| {
+async fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |word: u64| {
         let mixed = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
-        mixed ^ (mixed >> 32)
-    })
+        hash = mixed ^ (mixed >> 32);
+    };
+    let counts = [mesh.points.len(), mesh.triangles.len(), mesh.fixed.len()];
+    counts.into_iter().for_each(|count| add(count as u64));
+    each(mesh.points.as_flattened(), |x| add(x.to_bits())).await;
+    each(mesh.triangles.as_flattened(), |&i| add(i.into())).await;
+    each(&mesh.fixed, |&i| add(i.into())).await;
+    each(targets.unwrap_or_default().as_flattened(), |x| add(x.to_bits().into())).await;
+    more.iter().for_each(|&word| add(word));
+    hash
+}
+
+/// Calls `add` with every item, in order.
+async fn each<T: Sync>(items: &[T], mut add: impl FnMut(&T) + Send) {
+    const CHUNK: usize = 1 << 16;
+    paced::in_order(items.len(), CHUNK, |range| items[range].iter().for_each(&mut add)).await;
 }
 
 #[cfg(test)]

@@ -7,12 +7,12 @@ use std::borrow::Cow;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::objective::{Along, broken, mean_excess, mean_excess_along, mean_model};
-use crate::cpu::secants::{Secants, dot};
+use crate::cpu::secants::{Levels, Secants, dot};
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::{Metric, Smoothing, TargetMap};
-use crate::parallel::{collect, for_each_chunk};
+use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{
     CPU, EXCLUSION_PASSES, Engine, EngineState, History, Objectives, Plan, Proposal, SweepParams,
@@ -64,16 +64,16 @@ impl CpuEngine {
         }
     }
 
-    fn sweep_now(&mut self, step: &SweepParams) {
+    async fn sweep_now(&mut self, step: &SweepParams) {
         let Self { problem, positions, held, moved, .. } = self;
-        sweep::sweep(problem, positions, held, moved, step);
+        sweep::sweep(problem, positions, held, moved, step).await;
     }
 
     /// Evaluates the tracked objectives. Copies the positions if the objective of the base metric is the lowest so far.
-    fn objectives_now(&mut self) -> Objectives {
+    async fn objectives_now(&mut self) -> Objectives {
         let mut values = Objectives::empty();
         for &metric in &self.tracked {
-            let excess = mean_excess(metric, &self.problem, &self.positions);
+            let excess = mean_excess(metric, &self.problem, &self.positions).await;
             values.set(metric, metric.ideal_squared() + excess);
         }
         if let Some((best, least)) = &mut self.best
@@ -88,20 +88,20 @@ impl CpuEngine {
 
     /// Evaluates the objective at step length 0, its slope along the correction, and, if the slope is negative, the
     /// objective at `length`.
-    fn proposal(&self, length: f64) -> Proposal {
+    async fn proposal(&self, length: f64) -> Proposal {
         let Self { base, step, problem, positions, gradient, direction, .. } = self;
-        let slope = dot(gradient, direction) / problem.triangles().len() as f64;
-        let here = mean_model(*base, step.smoothing(), problem, positions);
-        let there = if slope < 0.0 { self.try_length(length) } else { None };
+        let slope = dot(gradient, direction).await / problem.triangles().len() as f64;
+        let here = mean_model(*base, step.smoothing(), problem, positions).await;
+        let there = if slope < 0.0 { self.try_length(length).await } else { None };
         Proposal { here, slope, there }
     }
 
     /// Zeroes the correction and the gradient at the vertices of triangles that a move by `length` times the correction
     /// would invert, or push over the shape guard.
-    fn leave_out_broken(&mut self, length: f64) {
+    async fn leave_out_broken(&mut self, length: f64) {
         let Self { problem, positions, gradient, direction, .. } = self;
         let along = Along { positions, direction, length };
-        let broken = broken(problem, &along, self.step.shape_guard);
+        let broken = broken(problem, &along, self.step.shape_guard).await;
         for ((direction, gradient), broken) in direction.iter_mut().zip(gradient).zip(broken) {
             if broken {
                 (*direction, *gradient) = (Vec2::ZERO, Vec2::ZERO);
@@ -110,16 +110,16 @@ impl CpuEngine {
     }
 
     /// Returns the mean excess after a move by `length` times the correction; see [`Engine::excess_along`].
-    fn try_length(&self, length: f64) -> Option<f64> {
+    async fn try_length(&self, length: f64) -> Option<f64> {
         let Self { positions, direction, .. } = self;
         let along = Along { positions, direction, length };
-        mean_excess_along(&self.step, &self.problem, &along)
+        mean_excess_along(&self.step, &self.problem, &along).await
     }
 }
 
 /// Computes the correction by the coarser levels from the gradient at the free vertices. The gradient must be zero at
 /// `held` vertices; the correction is zero there too.
-fn correction(
+async fn correction(
     hierarchy: Option<&Hierarchy>,
     problem: &Problem,
     held: &[bool],
@@ -127,15 +127,28 @@ fn correction(
 ) -> Vec<Vec2> {
     let mut correction = match hierarchy {
         Some(hierarchy) if problem.is_stretched() => {
-            let transformed =
-                vcycle::correction(hierarchy, problem, &as_transformed(problem, gradient));
-            as_transformed(problem, &transformed)
+            let transformed = as_transformed(problem, gradient).await;
+            let transformed = vcycle::correction(hierarchy, problem, &transformed).await;
+            as_transformed(problem, &transformed).await
         }
-        Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient),
+        Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient).await,
         None => vec![Vec2::ZERO; gradient.len()],
     };
     set_to_zero(&mut correction, held);
     correction
+}
+
+/// The levels, mesh and held vertices by which an engine corrects.
+struct Corrector<'a> {
+    hierarchy: Option<&'a Hierarchy>,
+    problem: &'a Problem,
+    held: &'a [bool],
+}
+
+impl Levels for Corrector<'_> {
+    async fn correction(&self, vector: &[Vec2]) -> Vec<Vec2> {
+        correction(self.hierarchy, self.problem, self.held, vector).await
+    }
 }
 
 /// Zeroes the vectors of free vertices that are held.
@@ -147,23 +160,24 @@ fn set_to_zero(vectors: &mut [Vec2], held: &[bool]) {
 
 /// Returns vectors at the free vertices, transformed by the inverse shapes of the maps. The coarser levels work
 /// in these coordinates: in a layer of stretched triangles, neighbors are then as near across the layer as along it.
-fn as_transformed(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
+async fn as_transformed(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
     let maps = problem.maps().unwrap_or_default();
-    collect(vectors.len(), |v| {
+    paced::collect(vectors.len(), |v| {
         let map = TargetMap(maps[v].map(f64::from));
         let transformed = map.inverse().shape().apply(vectors[v].as_dvec2().to_array());
         DVec2::from(transformed).as_vec2()
     })
+    .await
 }
 
 impl Engine for CpuEngine {
     async fn sweep(&mut self, step: &SweepParams) -> Result<(), GpuError> {
-        self.sweep_now(step);
+        self.sweep_now(step).await;
         Ok(())
     }
 
     async fn objectives(&mut self) -> Result<Objectives, GpuError> {
-        Ok(self.objectives_now())
+        Ok(self.objectives_now().await)
     }
 
     async fn sweeps(
@@ -172,14 +186,14 @@ impl Engine for CpuEngine {
         history: &mut History,
     ) -> Result<(), GpuError> {
         if history.is_empty() {
-            history.record(self.objectives_now());
+            history.record(self.objectives_now().await);
         }
         for step in steps {
             if history.stop().is_some() {
                 break;
             }
-            self.sweep_now(step);
-            history.record(self.objectives_now());
+            self.sweep_now(step).await;
+            history.record(self.objectives_now().await);
         }
         Ok(())
     }
@@ -209,20 +223,21 @@ impl Engine for CpuEngine {
     }
 
     async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        Ok(self.best.as_ref().map_or(&self.positions, |(best, _)| best).clone())
+        let best = self.best.as_ref().map_or(&self.positions, |(best, _)| best);
+        Ok(paced::copied(best).await)
     }
 
     fn take_hierarchy(&mut self) -> Option<Hierarchy> {
         self.hierarchy.take()
     }
 
-    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+    async fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         self.hierarchy = Some(hierarchy);
         Ok(())
     }
 
     async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
-        Ok(sweep::stiffness_roots(self.base, &self.problem, &self.positions, smoothing))
+        Ok(sweep::stiffness_roots(self.base, &self.problem, &self.positions, smoothing).await)
     }
 
     async fn sweep_and_propose(
@@ -231,21 +246,21 @@ impl Engine for CpuEngine {
         length: f64,
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
-        self.sweep_now(step);
+        self.sweep_now(step).await;
         (self.step.sharpness, self.step.penalty_guard) = (step.sharpness, step.penalty_guard);
         let Self { base, problem, positions, held, gradient, secants, .. } = self;
-        sweep::gradient(*base, problem, positions, step.smoothing(), gradient);
+        sweep::gradient(*base, problem, positions, step.smoothing(), gradient).await;
         set_to_zero(gradient, held);
         // The new direction is allocated while the correction is computed, so the previous one is freed first.
         self.direction = Vec::new();
-        let levels = |vector: &[Vec2]| correction(self.hierarchy.as_ref(), problem, held, vector);
+        let levels = Corrector { hierarchy: self.hierarchy.as_ref(), problem, held };
         self.direction = if accelerated {
-            secants.get_or_insert_default().direction(positions, gradient, levels)
+            secants.get_or_insert_default().direction(positions, gradient, &levels).await
         } else {
             *secants = None;
-            levels(gradient)
+            levels.correction(gradient).await
         };
-        Ok(self.proposal(length))
+        Ok(self.proposal(length).await)
     }
 
     fn forget(&mut self) {
@@ -254,28 +269,29 @@ impl Engine for CpuEngine {
 
     async fn exclude_broken(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
         if anew {
-            self.leave_out_broken(length);
+            self.leave_out_broken(length).await;
             let Self { hierarchy, problem, held, gradient, .. } = self;
-            self.direction = correction(hierarchy.as_ref(), problem, held, gradient);
+            self.direction = correction(hierarchy.as_ref(), problem, held, gradient).await;
         }
         for _ in 0..EXCLUSION_PASSES {
-            self.leave_out_broken(length);
+            self.leave_out_broken(length).await;
         }
-        Ok(self.proposal(length))
+        Ok(self.proposal(length).await)
     }
 
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
-        Ok(self.try_length(length))
+        Ok(self.try_length(length).await)
     }
 
     async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
         let Self { positions, direction, .. } = self;
         let free = direction.len();
-        for_each_chunk(&mut positions[..free], CHUNK, |first, positions| {
+        paced::for_each_chunk(&mut positions[..free], CHUNK, |first, positions| {
             for (position, along) in positions.iter_mut().zip(&direction[first..]) {
                 *position += along.as_dvec2() * length;
             }
-        });
+        })
+        .await;
         Ok(())
     }
 
@@ -296,7 +312,7 @@ impl Engine for CpuEngine {
         Ok(state)
     }
 
-    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
+    async fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
         let fits = |points: &Vec<DVec2>| {
             points.len() == self.positions.len() && points.iter().all(|p| p.is_finite())
         };
@@ -308,9 +324,9 @@ impl Engine for CpuEngine {
         state.restore_local_maps(&mut self.problem);
         if let Some((kept, least)) = &mut self.best {
             kept.clone_from(best);
-            *least = self.base.ideal_squared() + mean_excess(self.base, &self.problem, kept);
+            *least = self.base.ideal_squared() + mean_excess(self.base, &self.problem, kept).await;
         }
-        self.hierarchy = Hierarchy::of_build_log(&self.problem, &state.roots);
+        self.hierarchy = Hierarchy::of_build_log(&self.problem, &state.roots).await;
         self.secants = Secants::saved_in(state, self.problem.free_count());
         Ok(self.hierarchy.is_some() || state.roots.is_empty())
     }

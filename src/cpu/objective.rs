@@ -5,7 +5,7 @@ use glam::{DVec2, Vec2};
 
 use crate::layout::Problem;
 use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
-use crate::parallel::{collect, map_parts};
+use crate::parallel::paced;
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, vertex_maps, with_lanes};
 use crate::patch::{is_kept, is_no_worse, is_positive, is_within};
 use crate::run::SweepParams;
@@ -15,22 +15,22 @@ const CHUNK: usize = 1024;
 
 /// Returns the mean of q² - ideal² over all triangles, summed in an order that does not depend on the number of
 /// threads.
-pub(crate) fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
-    mean(metric, None, problem, positions)
+pub(crate) async fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
+    mean(metric, None, problem, positions).await
 }
 
 /// Returns the mean over all triangles of the function that a step minimizes: q² - ideal², or its smooth model.
-pub(crate) fn mean_model(
+pub(crate) async fn mean_model(
     metric: Metric,
     smoothing: Smoothing,
     problem: &Problem,
     positions: &[DVec2],
 ) -> f64 {
-    mean(metric, Some(smoothing).filter(|_| !metric.is_smooth()), problem, positions)
+    mean(metric, Some(smoothing).filter(|_| !metric.is_smooth()), problem, positions).await
 }
 
 /// Returns the mean of q² - ideal² over all triangles, or of its smooth model if `smoothing` is given.
-fn mean(
+async fn mean(
     metric: Metric,
     smoothing: Option<Smoothing>,
     problem: &Problem,
@@ -41,7 +41,7 @@ fn mean(
             excess::<_, MAPPED>(simd, formulas, smoothing, problem, positions, chunk)
         })
     };
-    let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
+    let sums = paced::map_parts(problem.triangles().chunks(CHUNK), sum).await;
     sums.iter().sum::<f64>() / problem.triangles().len() as f64
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct Along<'a> {
 /// Returns the mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model.
 /// `None` if the move breaks a triangle: inverts or flattens it, or makes its inverse mean ratio both worse than before
 /// and larger than the shape guard of the step.
-pub(crate) fn mean_excess_along(
+pub(crate) async fn mean_excess_along(
     step: &SweepParams,
     problem: &Problem,
     along: &Along<'_>,
@@ -66,15 +66,15 @@ pub(crate) fn mean_excess_along(
             excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
         })
     };
-    let sums = map_parts(problem.triangles().chunks(CHUNK), sum);
+    let sums = paced::map_parts(problem.triangles().chunks(CHUNK), sum).await;
     let sum: Option<f64> = sums.into_iter().sum();
     sum.map(|sum| sum / problem.triangles().len() as f64)
 }
 
 /// Returns for each free vertex whether the move breaks a triangle around it: inverts or flattens it, or makes its
 /// inverse mean ratio both worse than before and larger than `guard`.
-pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
-    collect(along.direction.len(), |v| {
+pub(crate) async fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
+    paced::collect(along.direction.len(), |v| {
         let ring = problem.ring_of(v as u32);
         let mut before = ring[ring.len() - 1];
         ring.iter().any(|&neighbor| {
@@ -83,6 +83,7 @@ pub(crate) fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bo
             !along.keeps(problem, &triangle, guard)
         })
     })
+    .await
 }
 
 /// Returns the sum of q² - ideal², or of its smooth model, over `triangles` at moved positions. `None` if the move
@@ -228,6 +229,7 @@ mod tests {
     use crate::layout::prepare;
     use crate::mesh::Mesh;
     use crate::options::Options;
+    use crate::parallel::pace::now;
     use crate::run::Plan;
 
     #[test]
@@ -244,11 +246,11 @@ mod tests {
             let step = SweepParams { sharpness: 6, shape_guard: 30.0, ..plan.base_step(1.0) };
             let along = |direction: Vec2, length: f64| {
                 let direction = &[direction];
-                mean_excess_along(&step, &problem, &Along { positions, direction, length })
+                now(mean_excess_along(&step, &problem, &Along { positions, direction, length }))
             };
             let mut moved = positions.to_vec();
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
-            let there = mean_model(metric, step.smoothing(), &problem, &moved);
+            let there = now(mean_model(metric, step.smoothing(), &problem, &moved));
             assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
             // Moves the vertex out of the hexagon through each side, then along a direction that is NaN.
             for k in 0..6 {

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, Vec2};
 
-use crate::parallel::{for_each_chunk, map_parts};
+use crate::parallel::paced;
 use crate::run::EngineState;
 use crate::run::secant::Products;
 
@@ -13,6 +13,12 @@ const CHUNK: usize = 1 << 12;
 const VECTORS: [&str; 5] = ["step", "older step", "change", "older change", "start, low"];
 const PRODUCTS: &str = "products of secants";
 const IS_OPEN: &str = "secant is open";
+
+/// The coarser levels of a correction.
+pub(crate) trait Levels: Sync {
+    /// Returns the correction -M⁻¹ v of the levels for a vector v.
+    fn correction(&self, vector: &[Vec2]) -> impl Future<Output = Vec<Vec2>> + Send;
+}
 
 /// Two secant pairs at the free vertices, the newer pair first, in single precision.
 ///
@@ -31,39 +37,44 @@ pub(crate) struct Secants {
 impl Secants {
     /// Returns the search direction for a gradient, and opens the next pair. An open pair is closed first. `levels`
     /// returns the correction -M⁻¹ v of the coarser levels for any vector v.
-    pub(crate) fn direction(
+    pub(crate) async fn direction<L: Levels>(
         &mut self,
         positions: &[DVec2],
         gradient: &[Vec2],
-        levels: impl Fn(&[Vec2]) -> Vec<Vec2>,
+        levels: &L,
     ) -> Vec<Vec2> {
         let direction = if self.is_open {
-            self.close(positions, gradient);
+            self.close(positions, gradient).await;
             let before = self.products.before();
             let [newer, older] = before.map(|factor| factor as f32);
             let [new, old] = &self.changes;
-            let mut bent = gradient.to_vec();
-            for_each_chunk(&mut bent, CHUNK, |first, bent| {
+            let mut bent = paced::copied(gradient).await;
+            paced::for_each_chunk(&mut bent, CHUNK, |first, bent| {
                 for (v, bent) in (first..).zip(bent) {
                     *bent -= new[v] * newer + at(old, v) * older;
                 }
-            });
-            let mut direction = levels(&bent);
+            })
+            .await;
+            let mut direction = levels.correction(&bent).await;
             drop(bent);
             // `levels` returns -M⁻¹ v, hence the minus sign.
-            let corrected = self.changes.each_ref().map(|change| -dot(change, &direction));
+            let mut corrected = [0.0; 2];
+            for (corrected, change) in corrected.iter_mut().zip(&self.changes) {
+                *corrected = -dot(change, &direction).await;
+            }
             let [newer, older] = self.products.after(before, corrected).map(|factor| factor as f32);
             let [new, old] = &self.steps;
-            for_each_chunk(&mut direction, CHUNK, |first, direction| {
+            paced::for_each_chunk(&mut direction, CHUNK, |first, direction| {
                 for (v, direction) in (first..).zip(direction) {
                     *direction -= new[v] * newer + at(old, v) * older;
                 }
-            });
+            })
+            .await;
             direction
         } else {
-            levels(gradient)
+            levels.correction(gradient).await
         };
-        self.open(positions, gradient);
+        self.open(positions, gradient).await;
         direction
     }
 
@@ -102,10 +113,10 @@ impl Secants {
         })
     }
 
-    fn close(&mut self, positions: &[DVec2], gradient: &[Vec2]) {
+    async fn close(&mut self, positions: &[DVec2], gradient: &[Vec2]) {
         let Self { steps: [step, old], changes: [change, _], low, products, .. } = self;
         let chunks = step.chunks_mut(CHUNK).zip(change.chunks_mut(CHUNK));
-        let sums = map_parts(chunks, |chunk, (step, change)| {
+        let sums = paced::map_parts(chunks, |chunk, (step, change)| {
             let mut sums = [0.0; 4];
             for ((step, change), v) in step.iter_mut().zip(change).zip(chunk * CHUNK..) {
                 let start = step.as_dvec2() + low[v].as_dvec2();
@@ -117,14 +128,15 @@ impl Secants {
                 sums = std::array::from_fn(|i| sums[i] + terms[i]);
             }
             sums
-        });
+        })
+        .await;
         // Sums are added in order, so that the result does not depend on the number of threads.
         let [sg, sy, older_g, older_y] =
             sums.iter().fold([0.0; 4], |total, sums| std::array::from_fn(|i| total[i] + sums[i]));
         *products = Products::new([sg, older_g], [sy, products.curvature[0]], older_y);
     }
 
-    fn open(&mut self, positions: &[DVec2], gradient: &[Vec2]) {
+    async fn open(&mut self, positions: &[DVec2], gradient: &[Vec2]) {
         let Self { steps, changes, low, is_open, .. } = self;
         if *is_open {
             steps.swap(0, 1);
@@ -136,7 +148,7 @@ impl Secants {
             values.resize(gradient.len(), Vec2::ZERO);
         }
         let parts = step.chunks_mut(CHUNK).zip(change.chunks_mut(CHUNK)).zip(low.chunks_mut(CHUNK));
-        map_parts(parts, |chunk, ((step, change), low)| {
+        paced::for_each_part(parts, |chunk, ((step, change), low)| {
             for (((step, change), low), v) in
                 step.iter_mut().zip(change).zip(low).zip(chunk * CHUNK..)
             {
@@ -144,7 +156,8 @@ impl Secants {
                 *low = (positions[v] - step.as_dvec2()).as_vec2();
                 *change = -gradient[v];
             }
-        });
+        })
+        .await;
     }
 }
 
@@ -155,16 +168,26 @@ fn at(values: &[Vec2], v: usize) -> Vec2 {
 }
 
 /// Returns the inner product, summed in an order that does not depend on the number of threads. 0 if `a` is empty.
-pub(crate) fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
+pub(crate) async fn dot(a: &[Vec2], b: &[Vec2]) -> f64 {
     let of_part = |_, (a, b): (&[Vec2], &[Vec2])| -> f64 {
         a.iter().zip(b).map(|(a, b)| a.as_dvec2().dot(b.as_dvec2())).sum()
     };
-    map_parts(a.chunks(CHUNK).zip(b.chunks(CHUNK)), of_part).iter().sum()
+    paced::map_parts(a.chunks(CHUNK).zip(b.chunks(CHUNK)), of_part).await.iter().sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parallel::pace::now;
+
+    /// Levels with 0.5 times the identity for M⁻¹.
+    struct Halved;
+
+    impl Levels for Halved {
+        async fn correction(&self, vector: &[Vec2]) -> Vec<Vec2> {
+            vector.iter().map(|v| *v * -0.5).collect()
+        }
+    }
 
     /// Minimizes a quadratic function with a diagonal Hessian of condition number 100, with 0.5 times the identity for
     /// M⁻¹. Pairs lower f by ten orders of magnitude in 40 corrections; steps along the gradient alone converge far
@@ -182,9 +205,8 @@ mod tests {
         for _ in 0..40 {
             let gradient: Vec<Vec2> =
                 positions.iter().enumerate().map(|(v, p)| (*p * stiffness(v)).as_vec2()).collect();
-            let direction =
-                secants.direction(&positions, &gradient, |v| v.iter().map(|v| *v * -0.5).collect());
-            let slope = dot(&direction, &gradient);
+            let direction = now(secants.direction(&positions, &gradient, &Halved));
+            let slope = now(dot(&direction, &gradient));
             assert!(slope <= 0.0, "{slope}");
             // The line search along the direction is exact.
             let bend: f64 = direction

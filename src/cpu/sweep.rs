@@ -7,7 +7,8 @@ use crate::cpu::newton;
 use crate::layout::Problem;
 use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
-use crate::parallel::for_each_chunk;
+use crate::parallel::pace::pause;
+use crate::parallel::paced;
 use crate::patch::lanes::{LANES, Lanes, points, with_lanes};
 use crate::patch::{MetricObjective, Objective, Rings, Scratch};
 use crate::run::SweepParams;
@@ -53,7 +54,7 @@ enum VertexQuantity {
 
 /// Visits every free vertex once, color by color. Vertices for which `held` is true stay; an empty `held` holds no
 /// vertex. `moved` is scratch memory.
-pub(crate) fn sweep(
+pub(crate) async fn sweep(
     problem: &Problem,
     positions: &mut [DVec2],
     held: &[bool],
@@ -65,9 +66,10 @@ pub(crate) fn sweep(
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of equal color are not neighbors, so no visit reads a position that another visit of the color
         // changes.
-        visit(problem, positions, first, step, VertexQuantity::Gradient, moved);
+        visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await;
         let held = held.get(first..first + color.len()).unwrap_or_default();
-        for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
+        let moved = &*moved;
+        paced::for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
             let moved = &moved[at..][..to.len()];
             if held.is_empty() {
                 to.copy_from_slice(moved);
@@ -78,36 +80,37 @@ pub(crate) fn sweep(
                     *to = *moved;
                 }
             }
-        });
+        })
+        .await;
     }
 }
 
 /// Writes the gradient of Σ q² at each free vertex to `found`. Single precision suffices for a search direction.
-pub(crate) fn gradient(
+pub(crate) async fn gradient(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
     smoothing: Smoothing,
     found: &mut Vec<Vec2>,
 ) {
-    find(VertexQuantity::Gradient, metric, problem, positions, smoothing, found);
+    find(VertexQuantity::Gradient, metric, problem, positions, smoothing, found).await;
 }
 
 /// Returns the square root of the stiffness at each free vertex. The stiffness is the mean absolute eigenvalue of the
 /// Hessian of Σ q² with respect to the vertex, divided by the number of its neighbors. The Hessian is taken in
 /// coordinates transformed by the shape of the map at the vertex.
-pub(crate) fn stiffness_roots(
+pub(crate) async fn stiffness_roots(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
     smoothing: Smoothing,
 ) -> Vec<f32> {
     let mut found = Vec::new();
-    find(VertexQuantity::StiffnessRoot, metric, problem, positions, smoothing, &mut found);
-    found.into_iter().map(|root| root.x).collect()
+    find(VertexQuantity::StiffnessRoot, metric, problem, positions, smoothing, &mut found).await;
+    paced::collect(found.len(), |v| found[v].x).await
 }
 
-fn find(
+async fn find(
     sought: VertexQuantity,
     metric: Metric,
     problem: &Problem,
@@ -129,7 +132,7 @@ fn find(
     // The loop goes color by color, as within a color, vertices of equal degree are consecutive.
     for color in problem.colors() {
         let found = &mut found[color.start as usize..color.end as usize];
-        visit(problem, positions, color.start as usize, &step, sought, found);
+        visit(problem, positions, color.start as usize, &step, sought, found).await;
     }
 }
 
@@ -139,7 +142,7 @@ const HELD_BACK: f64 = 1e-3;
 
 /// Returns the number of free vertices that the shape guard of `step` holds back. Vertices whose `held` is true are not
 /// counted.
-pub(crate) fn held_back(
+pub(crate) async fn held_back(
     problem: &Problem,
     positions: &[DVec2],
     held: &[bool],
@@ -152,7 +155,7 @@ pub(crate) fn held_back(
         let first = color.start as usize;
         for (moved, step) in [(&mut guarded, step), (&mut unguarded, &free)] {
             moved.resize(color.len(), DVec2::ZERO);
-            visit(problem, positions, first, step, VertexQuantity::Gradient, moved);
+            visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await;
         }
         let is_held = |&(v, (kept, wanted)): &(u32, (&DVec2, &DVec2))| {
             let edge = positions[problem.ring_of(v)[0] as usize] - positions[v as usize];
@@ -160,12 +163,13 @@ pub(crate) fn held_back(
             is_free && kept.distance(*wanted) > HELD_BACK * edge.length()
         };
         count += color.clone().zip(guarded.iter().zip(&unguarded)).filter(is_held).count();
+        pause().await;
     }
     count
 }
 
 /// Visits the vertices from `first` on, in parallel, and writes a result for each to `found`.
-fn visit<T: VisitOutput>(
+async fn visit<T: VisitOutput>(
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
@@ -173,12 +177,13 @@ fn visit<T: VisitOutput>(
     sought: VertexQuantity,
     found: &mut [T],
 ) {
-    for_each_chunk(found, CHUNK, |at, found| {
+    paced::for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
         with_lanes!(problem.maps(), step.metric, simd, formulas, MAPPED => {
             visit_all::<_, _, MAPPED>(simd, formulas, problem, positions, first, step, sought, found);
         });
-    });
+    })
+    .await;
 }
 
 /// Visits the vertices from `first` on, and writes their new positions, or the quantity `sought`, to `found`.

@@ -1,9 +1,11 @@
 //! The V-cycle that computes corrections from coarser levels, on the CPU.
 
+use std::pin::Pin;
+
 use glam::Vec2;
 
 use crate::layout::Problem;
-use crate::parallel::for_each_chunk;
+use crate::parallel::paced;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
 
 /// Number of rows that one task computes. Levels with fewer rows are left to a single thread, as distributing their
@@ -12,7 +14,11 @@ const GRAIN: usize = 4096;
 
 /// Returns the correction -P M⁻¹ Pᵀ g for the gradient g of Σ q² at the free vertices. P is the prolongation from the
 /// aggregates of the free vertices, M⁻¹ a V-cycle over the coarse levels. The correction is a direction of descent.
-pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[Vec2]) -> Vec<Vec2> {
+pub(crate) async fn correction(
+    hierarchy: &Hierarchy,
+    problem: &Problem,
+    gradient: &[Vec2],
+) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
     let start = problem.ring_start();
     let ring = |v: usize| {
@@ -26,98 +32,115 @@ pub(crate) fn correction(hierarchy: &Hierarchy, problem: &Problem, gradient: &[V
     };
     let diagonal = hierarchy.inverse_diagonal();
     let restricted = {
-        let scaled = rows(gradient.len(), |v| gradient[v] * (diagonal[v] * root[v]));
+        let scaled = rows(gradient.len(), |v| gradient[v] * (diagonal[v] * root[v])).await;
         let smoothed = rows(gradient.len(), |v| {
             gradient[v] * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
-        });
+        })
+        .await;
         let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
         rows(first.operator.rows(), |aggregate| {
             let members = &members[starts[aggregate] as usize..starts[aggregate + 1] as usize];
             -members.iter().map(|&v| smoothed[v as usize]).sum::<Vec2>()
         })
+        .await
     };
-    let coarse = solve(hierarchy.levels(), &restricted);
+    let coarse = solve(hierarchy.levels(), &restricted).await;
     let own = |v: usize| match hierarchy.aggregate_of()[v] {
         NONE => Vec2::ZERO,
         aggregate => coarse[aggregate as usize],
     };
-    let handed = rows(gradient.len(), |v| own(v) * root[v]);
+    let handed = rows(gradient.len(), |v| own(v) * root[v]).await;
     rows(gradient.len(), |v| {
         own(v) * (1.0 - SMOOTHING) + around(v, &handed) * (SMOOTHING * diagonal[v])
     })
+    .await
 }
 
 /// Runs one V-cycle over the coarse levels, starting from zero.
-fn solve(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
+fn solve<'l>(
+    levels: &'l [Level],
+    right: &'l [Vec2],
+) -> Pin<Box<dyn Future<Output = Vec<Vec2>> + Send + 'l>> {
+    Box::pin(solved(levels, right))
+}
+
+/// Does the work of [`solve`], whose box makes the recursion finite in size.
+async fn solved(levels: &[Level], right: &[Vec2]) -> Vec<Vec2> {
     let Some((level, below)) = levels.split_first() else { return Vec::new() };
     let n = right.len();
     match &level.coarser {
         Coarser::Direct(inverse) => {
             let row = |i: usize| inverse[i * n..(i + 1) * n].iter().zip(right);
-            rows(n, |i| row(i).map(|(&a, &b)| b * a).sum())
+            rows(n, |i| row(i).map(|(&a, &b)| b * a).sum()).await
         }
-        Coarser::Nothing => smooth(level, None, right),
+        Coarser::Nothing => smooth(level, None, right).await,
         Coarser::Level { prolongation, restriction } => {
-            let mut x = smooth(level, None, right);
-            let residual = residual(level, &x, right);
-            let restricted = rows(restriction.rows(), |i| times(restriction, i, &residual));
-            let coarse = solve(below, &restricted);
-            for_each_chunk(&mut x, GRAIN, |first, x| {
+            let mut x = smooth(level, None, right).await;
+            let residual = residual(level, &x, right).await;
+            let restricted = rows(restriction.rows(), |i| times(restriction, i, &residual)).await;
+            let coarse = solve(below, &restricted).await;
+            paced::for_each_chunk(&mut x, GRAIN, |first, x| {
                 for (x, i) in x.iter_mut().zip(first..) {
                     *x += times(prolongation, i, &coarse);
                 }
-            });
-            smooth(level, Some(x), right)
+            })
+            .await;
+            smooth(level, Some(x), right).await
         }
     }
 }
 
-fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
-    rows(right.len(), |i| right[i] - times(&level.operator, i, x))
+async fn residual(level: &Level, x: &[Vec2], right: &[Vec2]) -> Vec<Vec2> {
+    rows(right.len(), |i| right[i] - times(&level.operator, i, x)).await
 }
 
 /// Takes two steps of the Chebyshev iteration, starting from `x`, or from zero if `x` is `None`.
-fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
+async fn smooth(level: &Level, x: Option<Vec<Vec2>>, right: &[Vec2]) -> Vec<Vec2> {
     let [first, again, now] = CHEBYSHEV;
-    let add = |x: &mut [Vec2], d: &[Vec2]| {
-        for_each_chunk(x, GRAIN, |first, x| {
-            for (x, &d) in x.iter_mut().zip(&d[first..]) {
-                *x += d;
-            }
-        });
-    };
     let scale = &level.inverse_diagonal;
     let step = |i: usize, residual: Vec2| residual * (first * scale[i]);
     let (mut x, d) = match x {
         Some(mut x) => {
-            let d = rows(x.len(), |i| step(i, right[i] - times(&level.operator, i, &x)));
-            add(&mut x, &d);
+            let d = rows(x.len(), |i| step(i, right[i] - times(&level.operator, i, &x))).await;
+            add(&mut x, &d).await;
             (x, d)
         }
         None => {
-            let d = rows(right.len(), |i| step(i, right[i]));
+            let d = rows(right.len(), |i| step(i, right[i])).await;
             (d.clone(), d)
         }
     };
     let d = rows(x.len(), |i| {
         let residual = right[i] - times(&level.operator, i, &x);
         d[i] * again + residual * (now * scale[i])
-    });
-    add(&mut x, &d);
+    })
+    .await;
+    add(&mut x, &d).await;
     x
+}
+
+/// Adds `d` to `x`.
+async fn add(x: &mut [Vec2], d: &[Vec2]) {
+    paced::for_each_chunk(x, GRAIN, |first, x| {
+        for (x, &d) in x.iter_mut().zip(&d[first..]) {
+            *x += d;
+        }
+    })
+    .await;
 }
 
 fn times(matrix: &Sparse, row: usize, x: &[Vec2]) -> Vec2 {
     matrix.row(row).map(|(column, value)| x[column] * value).sum()
 }
 
-fn rows(count: usize, row: impl Fn(usize) -> Vec2 + Sync) -> Vec<Vec2> {
+async fn rows(count: usize, row: impl Fn(usize) -> Vec2 + Sync + Send) -> Vec<Vec2> {
     let mut rows = vec![Vec2::ZERO; count];
-    for_each_chunk(&mut rows, GRAIN, |first, rows| {
+    paced::for_each_chunk(&mut rows, GRAIN, |first, rows| {
         for (to, i) in rows.iter_mut().zip(first..) {
             *to = row(i);
         }
-    });
+    })
+    .await;
     rows
 }
 
@@ -128,6 +151,7 @@ mod tests {
     use crate::layout::prepare;
     use crate::mesh::Mesh;
     use crate::metric::{Metric, Smoothing};
+    use crate::parallel::pace::now;
     use glam::DVec2;
 
     /// Returns a square of right triangles of two sizes, large enough for three coarse levels.
@@ -142,10 +166,9 @@ mod tests {
     }
 
     fn hierarchy(problem: &Problem) -> Hierarchy {
-        Hierarchy::new(
-            problem,
-            stiffness_roots(Metric::Imr, problem, problem.positions(), Smoothing::of(0)),
-        )
+        let positions = problem.positions();
+        let roots = now(stiffness_roots(Metric::Imr, problem, positions, Smoothing::of(0)));
+        now(Hierarchy::new(problem, roots))
     }
 
     /// Returns a hierarchy built for the mesh with stretched positions, then fitted to the positions of the mesh.
@@ -154,8 +177,10 @@ mod tests {
         let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let stretched = |p: &DVec2| *p * (1.0 + 1.5 * *p * *p / (extent * extent));
         let stretched: Vec<DVec2> = positions.iter().map(stretched).collect();
-        let roots = |positions| stiffness_roots(Metric::Imr, problem, positions, Smoothing::of(0));
-        Hierarchy::new(problem, roots(&stretched)).fitted_to(problem, roots(positions))
+        let roots =
+            |positions| now(stiffness_roots(Metric::Imr, problem, positions, Smoothing::of(0)));
+        let built = now(Hierarchy::new(problem, roots(&stretched)));
+        now(built.fitted_to(problem, roots(positions)))
     }
 
     /// Returns pseudorandom vectors.
@@ -186,8 +211,10 @@ mod tests {
         for (seed, hierarchy) in [0.37, 1.1, 2.9].into_iter().zip(hierarchies.iter().cycle()) {
             let (a, b) =
                 (noise(problem.free_count(), seed), noise(problem.free_count(), seed + 0.2));
-            let (to_a, to_b) =
-                (correction(hierarchy, &problem, &a), correction(hierarchy, &problem, &b));
+            let (to_a, to_b) = (
+                now(correction(hierarchy, &problem, &a)),
+                now(correction(hierarchy, &problem, &b)),
+            );
             assert!(dot(&a, &to_a) < 0.0 && dot(&b, &to_b) < 0.0);
             let (across, back) = (dot(&a, &to_b), dot(&b, &to_a));
             let scale = (dot(&a, &to_a) * dot(&b, &to_b)).sqrt();
@@ -220,7 +247,7 @@ mod tests {
         };
         let free = problem.free_count();
         let gradient: Vec<Vec2> = (0..free).map(|v| laplacian(v).as_vec2()).collect();
-        let step = correction(hierarchy, problem, &gradient);
+        let step = now(correction(hierarchy, problem, &gradient));
         // Step length that leaves least of the wave.
         let squared: f64 = step.iter().map(|s| f64::from(s.length_squared())).sum();
         let along: f64 = wave.iter().zip(&step).map(|(w, s)| w.dot(s.as_dvec2())).sum();
@@ -251,7 +278,7 @@ mod tests {
         for (_, g) in gradient.iter_mut().enumerate().filter(|(v, _)| !on_the_left(*v)) {
             *g = Vec2::ZERO;
         }
-        let correction = correction(&hierarchy, &problem, &gradient);
+        let correction = now(correction(&hierarchy, &problem, &gradient));
         assert!(dot(&gradient, &correction) < 0.0);
         for (v, step) in correction.iter().enumerate().filter(|(v, _)| !held[*v]) {
             assert_eq!(on_the_left(v), *step != Vec2::ZERO, "vertex {v} at {}", positions[v]);

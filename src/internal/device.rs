@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::gpu::{Gpu, GpuEngine, GpuError, Waiting};
 use crate::layout::Problem;
+use crate::parallel::pace::now;
 use crate::run::{Plan, Stepwise, StepwiseRun};
 
 pub use crate::gpu::{BindLayout, Kernel};
@@ -19,6 +20,6 @@ pub fn run_on_gpu<'a>(
     plan: Plan,
 ) -> Result<impl Stepwise + 'a, GpuError> {
     let steps = plan.steps();
-    let engine = GpuEngine::new(gpu, problem, positions, plan.clone(), steps, Waiting::Block)?;
+    let engine = now(GpuEngine::new(gpu, problem, positions, plan.clone(), steps, Waiting::Block))?;
     Ok(StepwiseRun::new(engine, plan))
 }

@@ -8,7 +8,7 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::parallel::collect;
+use crate::parallel::paced;
 use crate::targets::{Tensor, shape_logarithm_of};
 
 /// Ratio of lengths along and across the triangles of a vertex from which the vertex counts as strongly stretched. On
@@ -44,13 +44,13 @@ impl Problem {
 
     /// Sets the local maps of the free vertices, for vertices at `positions`. A local map transforms the triangles
     /// around its vertex so that their mean shape is equilateral, and keeps areas.
-    pub(crate) fn set_local_maps_at(&mut self, positions: &[DVec2]) {
+    pub(crate) async fn set_local_maps_at(&mut self, positions: &[DVec2]) {
         let free = self.free_count();
         let map = |v: usize| match v < free {
             true => shape_at(self, positions, v).0.map(|x| x as f32),
             false => [1.0, 0.0, 1.0],
         };
-        let maps = collect(positions.len(), map);
+        let maps = paced::collect(positions.len(), map).await;
         self.set_local_maps(maps);
     }
 }

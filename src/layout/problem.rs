@@ -13,7 +13,8 @@ use crate::layout::{Coloring, UNCOLORED};
 use crate::mesh::Mesh;
 use crate::metric::{Corner, TargetMap};
 use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
-use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges};
+use crate::parallel::pace::now;
+use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges, paced};
 use crate::targets::Tensor;
 use crate::topology::Topology;
 
@@ -301,21 +302,22 @@ impl Problem {
     }
 
     /// Returns the normalized positions of points given in the order and unit of the mesh. Reuses the memory of `room`.
-    pub(crate) fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
+    pub(crate) async fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
         room.resize(self.layout.vertices.len(), DVec2::ZERO);
-        for_each_chunk(&mut room, CHUNK, |first, positions| {
+        paced::for_each_chunk(&mut room, CHUNK, |first, positions| {
             for (position, &v) in positions.iter_mut().zip(&self.layout.vertices[first..]) {
                 *position =
                     (DVec2::from(points[v as usize]) - self.layout.center) * self.layout.scale;
             }
-        });
+        })
+        .await;
         room
     }
 
     /// Returns the triangles for which the inverse mean ratio or its square overflows, computed in double precision
     /// from any of the three corners. Metrics with a barrier cannot judge them: they are too flat, or too small beside
     /// other triangles.
-    pub(crate) fn beyond_precision(&self, positions: &[DVec2]) -> Vec<u32> {
+    pub(crate) async fn beyond_precision(&self, positions: &[DVec2]) -> Vec<u32> {
         let position = |v: u32| positions[v as usize];
         let is_beyond = |&[p, q, r]: &[u32; 3]| {
             [[p, q, r], [q, r, p], [r, p, q]].iter().any(|turned| {
@@ -323,11 +325,12 @@ impl Problem {
                 !(ratio * ratio).is_finite()
             })
         };
-        let found = map_parts(self.layout.triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
-            let beyond = part.iter().zip(chunk * CHUNK..).filter(|(t, _)| is_beyond(t));
-            beyond.map(|(_, t)| t as u32).collect()
-        });
-        found.concat()
+        let found =
+            paced::map_parts(self.layout.triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
+                let beyond = part.iter().zip(chunk * CHUNK..).filter(|(t, _)| is_beyond(t));
+                beyond.map(|(_, t)| t as u32).collect()
+            });
+        found.await.concat()
     }
 
     /// Returns the indices in the mesh, in ascending order, of the listed triangles. `given` are all triangles of the
@@ -350,13 +353,22 @@ impl Problem {
     /// Converts normalized positions to the order and unit of the mesh. Fixed vertices and vertices that have not moved
     /// keep the bits of their positions in the mesh.
     pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
-        let mut points = mesh.points.clone();
-        let free = self.layout.vertices[..self.free_count()].iter();
-        for ((&v, &now), &was) in free.zip(positions).zip(&self.layout.positions) {
-            if now != was {
-                points[v as usize] = (self.layout.center + now / self.layout.scale).to_array();
+        now(self.in_unit_of(mesh, positions))
+    }
+
+    /// Does the work of [`Self::denormalize`], with pauses.
+    pub(crate) async fn in_unit_of(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
+        let mut points = paced::copied(&mesh.points).await;
+        paced::in_order(self.free_count(), CHUNK, |vertices| {
+            for i in vertices {
+                let (now, was) = (positions[i], self.layout.positions[i]);
+                if now != was {
+                    let point = self.layout.center + now / self.layout.scale;
+                    points[self.layout.vertices[i] as usize] = point.to_array();
+                }
             }
-        }
+        })
+        .await;
         points
     }
 }

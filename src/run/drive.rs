@@ -113,7 +113,7 @@ impl<E: Engine> Session<E> {
     }
 
     /// Returns to a saved state. [`DriveError::Foreign`] if the state does not fit the run.
-    pub(crate) fn restore(&mut self, saved: Saved) -> Result<(), DriveError> {
+    pub(crate) async fn restore(&mut self, saved: Saved) -> Result<(), DriveError> {
         let Saved { log, remaining, corrections, engine: state } = saved;
         self.history = History::resumed(&self.plan, &log, remaining);
         let fits = match (&mut self.strategy, corrections) {
@@ -124,7 +124,7 @@ impl<E: Engine> Session<E> {
             _ => false,
         };
         let is_finite = !log.is_empty() && self.history.first_not_finite(0).is_none();
-        match fits && is_finite && self.engine.restore(&state)? {
+        match fits && is_finite && self.engine.restore(&state).await? {
             true => Ok(()),
             false => Err(DriveError::Foreign),
         }

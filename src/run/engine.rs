@@ -55,7 +55,10 @@ pub(crate) trait Engine: Send {
     fn take_hierarchy(&mut self) -> Option<Hierarchy>;
 
     /// Gives the coarser levels to the engine. Fails with [`GpuError::Limit`] if the device has no room for the levels.
-    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError>;
+    fn set_hierarchy(
+        &mut self,
+        hierarchy: Hierarchy,
+    ) -> impl Future<Output = Result<(), GpuError>> + Send;
 
     /// Returns, for each free vertex, the root r = √((|λ₁| + |λ₂|) / 2 / degree), with λ the eigenvalues of the Hessian
     /// of Σ q² over the patch by the base metric. `smoothing` makes EDGE smooth. The levels are built from edge weights
@@ -105,7 +108,10 @@ pub(crate) trait Engine: Send {
     /// Restores a saved state, before the first sweep or between two sweeps. Returns false if the state is from another
     /// mesh, or from an engine that this engine cannot continue. If the state is not whole, the engine has no coarser
     /// levels afterward.
-    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError>;
+    fn restore(
+        &mut self,
+        state: &EngineState,
+    ) -> impl Future<Output = Result<bool, GpuError>> + Send;
 }
 
 /// Number of passes that exclude vertices from a correction. On meshes of 2,000 vertices, some triangles were still

@@ -23,8 +23,6 @@ mod stop;
 mod sweep_params;
 mod sweeps;
 
-mod yielding;
-
 pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::RunFingerprint;
 pub use checkpoint_policy::CheckpointPolicy;

@@ -12,13 +12,13 @@ use glam::DVec2;
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::Corner;
-use crate::parallel::map_parts;
+use crate::parallel::pace::pause;
+use crate::parallel::paced;
 use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
 use crate::run::sweeps;
-use crate::run::yielding::yield_now;
 
 /// Largest inverse mean ratio of a mesh for a device: a tenth of the ratio at which rounding may invert a triangle.
 const TOO_FLAT: f64 = 1e5;
@@ -55,7 +55,7 @@ pub(crate) enum Obstacle {
 }
 
 /// Returns the worst obstacle among all triangles.
-pub(crate) fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle {
+pub(crate) async fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle {
     let of = |t: &[u32; 3]| {
         let [p, q, r] = t.map(|v| positions[v as usize]);
         let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
@@ -75,13 +75,12 @@ pub(crate) fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle {
         }
     };
     let worst = |_, chunk: &[[u32; 3]]| chunk.iter().map(of).max().unwrap_or(Obstacle::None);
-    let worst = map_parts(problem.triangles().chunks(4096), worst).into_iter().max();
+    let worst = paced::map_parts(problem.triangles().chunks(4096), worst).await.into_iter().max();
     worst.unwrap_or(Obstacle::None)
 }
 
 /// Sweeps by an engine in double precision until no triangle is too flat or too small, in whole periods of the plan's
-/// scheme. Returns `None` if such triangles are left after the last sweep, or if the run ends before. Yields after each
-/// period.
+/// scheme. Returns `None` if such triangles are left after the last sweep, or if the run ends before.
 pub(crate) async fn open(
     problem: &Problem,
     mut engine: impl Engine,
@@ -94,12 +93,12 @@ pub(crate) async fn open(
         if history.stop().is_some() {
             return Ok(None);
         }
-        if obstacle(problem, &engine.positions().await?) == Obstacle::None {
+        if obstacle(problem, &engine.positions().await?).await == Obstacle::None {
             let positions = engine.positions().await?.into_owned();
             let (least, best) = (history.least(), engine.best_positions().await?);
             return Ok(Some(DoublePrelude { log: history.into_log(), least, positions, best }));
         }
-        yield_now().await;
+        pause().await;
     }
     Ok(None)
 }

@@ -54,13 +54,13 @@ impl Smoother<'_> {
             if end.stop == Stop::Canceled {
                 return Ok(None);
             }
-            let f = self.objective(base, &end.positions);
+            let f = self.objective(base, &end.positions).await;
             let sweeps = end.history.len() - 1;
             describe.push(format!("{label}: {f} after {sweeps} sweeps ({})", end.stop.name()));
             desired = desired.min(f);
         }
         // On an optimal mesh, search runs gain no more than rounding. The initial f is then the desired one.
-        let initial = self.objective(base, start);
+        let initial = self.objective(base, start).await;
         if initial - desired <= NOISE * initial + ROUNDING {
             desired = initial;
         }
@@ -79,7 +79,7 @@ impl Smoother<'_> {
     ) -> Result<RunEnd, SmoothError> {
         let problem = &self.problem;
         let mut plan = Plan::toward(options, None);
-        set_guards(&mut plan, options.guard, problem, start);
+        set_guards(&mut plan, options.guard, problem, start).await;
         let spec = Spec { problem, device, options, phase: Phase::Reference, is_staged: false };
         let mut checkpointer = Checkpointer::new(policy);
         let live = Live::new(spec, plan, start, None, &mut checkpointer).await?;

@@ -11,9 +11,10 @@ use crate::error::{MeshError, SmoothError};
 use crate::layout::{Problem, laid_out, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
+use crate::parallel::pace::now;
 use crate::slide::{Slide, Sliding};
 use crate::targets::{OutsideReport, Surface, TargetField, Targets};
-use crate::topology::{Topology, certify};
+use crate::topology::{Topology, certified};
 use crate::whole::set_targets_of;
 
 use super::projection::Projection;
@@ -127,20 +128,20 @@ impl<'a> Smoother<'a> {
 
     /// Returns the normalized positions of points given in the order and coordinates of the mesh. Reuses the memory of
     /// `room`.
-    pub(super) fn positions_of(&self, points: &[[f64; 2]], room: Vec<DVec2>) -> Vec<DVec2> {
+    pub(super) async fn positions_of(&self, points: &[[f64; 2]], room: Vec<DVec2>) -> Vec<DVec2> {
         match &self.projection {
-            None => self.problem.normalized(points, room),
-            Some(projection) => self.problem.normalized(&projection.projected(points), room),
+            None => self.problem.normalized(points, room).await,
+            Some(projection) => self.problem.normalized(&projection.projected(points), room).await,
         }
     }
 
     /// Converts normalized positions to the order and coordinates of the mesh. Vertices that have not moved keep their
     /// bits.
-    pub(super) fn points_at(&self, positions: &[DVec2]) -> Vec<[f64; 2]> {
+    pub(super) async fn points_at(&self, positions: &[DVec2]) -> Vec<[f64; 2]> {
         match &self.projection {
-            None => self.problem.denormalize(&self.mesh, positions),
+            None => self.problem.in_unit_of(&self.mesh, positions).await,
             Some(projection) => {
-                let images = self.problem.denormalize(&projection.mesh, positions);
+                let images = self.problem.in_unit_of(&projection.mesh, positions).await;
                 projection.unprojected(&images, &self.mesh.points)
             }
         }
@@ -216,11 +217,13 @@ impl<'a> Smoother<'a> {
     /// that needs a target has an infinite or NaN coordinate.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
-        let positions = self.positions_of(points, Vec::new());
-        let Some(field) = &self.field else { return Ok(self.objective(metric, &positions)) };
+        let positions = now(self.positions_of(points, Vec::new()));
+        let Some(field) = &self.field else {
+            return Ok(now(self.objective(metric, &positions)));
+        };
         let mut problem = self.problem.clone();
         set_targets_of(field, &self.mesh, &mut problem, &positions)?;
-        Ok(metric.ideal_squared() + mean_excess(metric, &problem, &positions))
+        Ok(metric.ideal_squared() + now(mean_excess(metric, &problem, &positions)))
     }
 
     /// Returns the topology of the mesh: windings, boundary and free vertices.
@@ -233,7 +236,7 @@ impl<'a> Smoother<'a> {
     /// triangles. A mesh with such triangles may be refused by runs by EDGE or by metrics with a barrier
     /// ([`MeshError::BeyondPrecision`]); [`untangle`](fn@crate::untangle) opens those that have a free vertex.
     pub fn beyond_precision(&self) -> Vec<usize> {
-        let beyond = self.problem.beyond_precision(self.problem.positions());
+        let beyond = now(self.problem.beyond_precision(self.problem.positions()));
         self.problem.in_mesh(&beyond, self.topology.triangles())
     }
 
@@ -260,20 +263,25 @@ impl<'a> Smoother<'a> {
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex; no vertex is then moved.
     pub fn certify(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
+        now(self.certified(points))
+    }
+
+    /// Does the work of [`Self::certify`], with pauses.
+    pub(super) async fn certified(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
         let before = &self.mesh.points;
-        let mut returned = certify(&self.topology, before, points)?;
+        let mut returned = certified(&self.topology, before, points).await?;
         let Some(sliding) = &self.sliding else { return Ok(returned) };
         loop {
             match sliding.return_partners(before, points) {
                 0 => return Ok(returned),
-                more => returned += more + certify(&self.topology, before, points)?,
+                more => returned += more + certified(&self.topology, before, points).await?,
             }
         }
     }
 
     /// Returns the objective by a metric at normalized positions.
-    pub(super) fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
-        metric.ideal_squared() + mean_excess(metric, &self.problem, positions)
+    pub(super) async fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
+        metric.ideal_squared() + mean_excess(metric, &self.problem, positions).await
     }
 }
 

@@ -8,6 +8,7 @@ use crate::error::SmoothError;
 use crate::mesh::Mesh;
 use crate::options::Options;
 use crate::outcome::Outcome;
+use crate::parallel::pace::{BUDGET, paced};
 use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Progress};
 use crate::whole::Device;
 
@@ -110,7 +111,7 @@ impl<'r> Run<'r> {
 
 /// A run that is awaited does not block the thread while a device works. The future completes only if the application
 /// polls the device meanwhile, as an application that draws frames does (`Device::poll` with `PollType::Poll` is enough).
-/// A run on the CPU completes in its first poll. Dropping the future cancels the run without an outcome. The future is
+/// A poll computes for about 4 ms, and a run on the CPU completes after many polls. Dropping the future cancels the run without an outcome. The future is
 /// `Send`, except in a browser.
 impl<'r> IntoFuture for Run<'r> {
     type Output = Result<Outcome, SmoothError>;
@@ -122,7 +123,7 @@ impl<'r> IntoFuture for Run<'r> {
             #[cfg(feature = "gpu")]
             Backend::Gpu(gpu) => Some(Device::awaited(gpu)),
         };
-        Box::pin(self.begin(device))
+        Box::pin(paced(BUDGET, Box::pin(self.begin(device))))
     }
 }
 
@@ -145,4 +146,72 @@ pub fn smooth(
     let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: Vec::new() };
     let smoother = Smoother::new(&mesh)?;
     Ok(smoother.run(options).on(backend).block()?.points)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::options::WorstBy;
+    use crate::parallel::pace::polled;
+
+    /// Returns a lattice of squares cut in two, with its inner vertices moved, and one of them nearly onto an edge.
+    fn lattice(n: u32) -> Mesh {
+        let mut points = Vec::new();
+        for (row, column) in (0..=n).flat_map(|row| (0..=n).map(move |column| (row, column))) {
+            let is_inner = |i| 0 < i && i < n;
+            let away = if is_inner(row) && is_inner(column) { 0.2 } else { 0.0 };
+            let wave = f64::from(7 * row + 3 * column).sin();
+            points.push([f64::from(column) + away * wave, f64::from(row) - away * wave]);
+        }
+        let corner = |row: u32, column: u32| row * (n + 1) + column;
+        let mut triangles = Vec::new();
+        for (row, column) in (0..n).flat_map(|row| (0..n).map(move |column| (row, column))) {
+            let [a, b] = [corner(row, column), corner(row, column + 1)];
+            let [c, d] = [corner(row + 1, column), corner(row + 1, column + 1)];
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+        let [p, q, r] = triangles[2 * (n * (n / 2) + n / 2) as usize].map(|v| v as usize);
+        let middle = |i| 0.5 * (points[q][i] + points[r][i]);
+        let moved = [0, 1].map(|i| points[p][i] + (1.0 - 1e-7) * (middle(i) - points[p][i]));
+        points[p] = moved;
+        Mesh { points, triangles, fixed: Vec::new() }
+    }
+
+    /// With a budget of zero, each thread does one task in a poll: at most [`Problem::BLOCK`] visits of a sweep.
+    ///
+    /// [`Problem::BLOCK`]: crate::layout::Problem::BLOCK
+    fn assert_polls(device: Option<Device<'_>>, backend: &Backend, options: &Options) {
+        let mesh = lattice(80);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let blocked = smoother.run(options).on(backend).block().unwrap();
+        let run = smoother.run(options).on(backend);
+        let (awaited, polls) = polled(Duration::ZERO, run.begin(device));
+        let awaited = awaited.unwrap();
+        assert_eq!(awaited.points, blocked.points);
+        let history = |outcome: &Outcome| format!("{:?}", outcome.history);
+        assert_eq!(history(&awaited), history(&blocked));
+        let in_f64 = if device.is_none() { awaited.sweeps } else { awaited.opening_sweeps };
+        assert!(in_f64 > 0);
+        let tasks = 79 * 79 / crate::layout::Problem::BLOCK * in_f64 as usize;
+        let least = tasks / rayon::current_num_threads();
+        assert!(polls > least, "{polls} polls, {least} expected at least");
+    }
+
+    #[test]
+    fn an_awaited_run_pauses_within_each_sweep_on_the_cpu() {
+        let improved = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
+        for options in [Options::default(), improved] {
+            assert_polls(None, &Backend::Cpu, &options);
+        }
+    }
+
+    #[cfg(feature = "gpu")]
+    #[test]
+    fn an_awaited_run_pauses_while_the_cpu_opens_triangles_for_a_device() {
+        let gpu = crate::Gpu::open(None).unwrap();
+        let device = Some(Device::blocking(&gpu));
+        assert_polls(device, &Backend::Gpu(gpu.clone()), &Options::default());
+    }
 }

@@ -9,6 +9,7 @@ use crate::error::{MeshError, SmoothError};
 use crate::metric::Metric;
 use crate::options::{Feature, Goal, Options};
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::parallel::paced;
 use crate::precision::Precision;
 use crate::quality::Quality;
 use crate::resume;
@@ -17,11 +18,14 @@ use crate::run::{
     Phase, Plan, ROUNDING, RunFingerprint, Stop, set_guards,
 };
 use crate::slide::{Slide, Sliding};
-use crate::targets::TargetField;
+use crate::targets::{Surface, TargetField};
 use crate::whole::{Device, Improvement, Live, RunEnd, Spec, altitude, drive};
 
 use super::prepared::Smoother;
 use super::stages::Stages;
+
+/// Number of coordinates that one task rounds.
+const CHUNK: usize = 1 << 14;
 
 impl Smoother<'_> {
     pub(super) async fn run_at(
@@ -38,19 +42,22 @@ impl Smoother<'_> {
         // Only the CPU slides vertices, so a mesh without free vertices needs no device.
         let device = device.filter(|_| self.problem.free_count() > 0);
         let (device, fault) = self.checked(device, policy).await?;
-        let mut about = self.about(options);
+        let mut about = self.about(options).await;
         let resumed = from
             .map(|from| resume::check(&about, from, &self.problem).map(|()| from))
             .transpose()?;
         let base = options.scheme.base();
-        let objective = |metric| self.objective(metric, self.problem.positions());
-        let is_usable = |metric, f: f64| f.is_finite() && !self.is_beyond_precision(metric, f);
-        let initial = objective(base);
-        if !is_usable(base, initial) {
+        let initial = self.objective(base, self.problem.positions()).await;
+        if !self.is_usable(base, initial).await {
             let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
-            let usable =
-                Metric::ALL.iter().copied().filter(|&metric| is_usable(metric, objective(metric)));
-            let (metric, usable) = (base.name(), usable.map(Metric::name).collect());
+            let mut usable = Vec::new();
+            for &metric in Metric::ALL.iter() {
+                let f = self.objective(metric, self.problem.positions()).await;
+                if self.is_usable(metric, f).await {
+                    usable.push(metric.name());
+                }
+            }
+            let metric = base.name();
             return Err(MeshError::BeyondPrecision { triangle, metric, usable }.into());
         }
         let known = resumed.and_then(|resumed| resumed.about.goal.clone());
@@ -77,7 +84,7 @@ impl Smoother<'_> {
         let mut checkpointer = Checkpointer::new(policy);
         let mut plan = Plan::toward(options, target);
         let start = self.problem.positions();
-        set_guards(&mut plan, options.guard, &self.problem, start);
+        set_guards(&mut plan, options.guard, &self.problem, start).await;
         let mut stages = Stages::new(self, options, &plan);
         let mut in_order = stages.in_order();
         checkpointer.about = Some(about);
@@ -89,19 +96,19 @@ impl Smoother<'_> {
         }
         let live = Live::new(spec, plan, start, resumed, &mut checkpointer).await?;
         let ended = drive(live, &mut in_order, &mut checkpointer, observe, period).await?;
-        let outcome = self.judged(options, initial, goal, ended, stages, observe)?;
+        let outcome = self.judged(options, initial, goal, ended, stages, observe).await?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
     }
 
     /// Returns the description of a run with these options that its checkpoints carry.
-    fn about(&self, options: &Options) -> RunFingerprint {
+    async fn about(&self, options: &Options) -> RunFingerprint {
         let of_slide = self.slide.as_ref().map(Slide::words);
         let of_field = self.field.as_ref().map(TargetField::words);
         let of_projection = self.projection.as_ref().map(|_| vec![1]);
         let words = of_slide.into_iter().chain(of_field).chain(of_projection);
         let more: Vec<u64> = words.flatten().collect();
-        resume::about(&self.mesh, self.problem.targets(), &more, options)
+        resume::about(&self.mesh, self.problem.targets(), &more, options).await
     }
 
     /// Returns the features that the mesh, targets and curves of this smoother give to a run.
@@ -114,20 +121,25 @@ impl Smoother<'_> {
         ])
     }
 
+    /// Returns whether a run by the metric can begin at the mesh, where f is `objective`.
+    async fn is_usable(&self, metric: Metric, objective: f64) -> bool {
+        objective.is_finite() && !self.is_beyond_precision(metric, objective).await
+    }
+
     /// Returns whether a triangle is so flat, or so small beside others, that the metric cannot judge it in double
     /// precision. `objective` is f by the metric.
-    fn is_beyond_precision(&self, metric: Metric, objective: f64) -> bool {
+    async fn is_beyond_precision(&self, metric: Metric, objective: f64) -> bool {
         // Rounded areas have errors of some 1e-16 of the squared edges, so q² of such a triangle far exceeds this sum.
         const LEAST: f64 = 1e13;
-        let beyond = || self.problem.beyond_precision(self.problem.positions());
+        let beyond = self.problem.beyond_precision(self.problem.positions());
         if metric.properties().barrier {
             // Some metrics are negative where the rounded area is negative.
             let sum = objective.abs() * self.size().triangles as f64;
-            return sum > LEAST && !beyond().is_empty();
+            return sum > LEAST && !beyond.await.is_empty();
         }
         // The shape guard of EDGE would hold the vertices of such triangles.
         let can_move = |&t: &u32| self.problem.can_move(&self.problem.triangles()[t as usize]);
-        !metric.is_smooth() && beyond().iter().any(can_move)
+        !metric.is_smooth() && beyond.await.iter().any(can_move)
     }
 
     /// Returns the device on which a run begins, after checks that the mesh fits the device and that its arithmetic
@@ -151,7 +163,7 @@ impl Smoother<'_> {
     /// Converts the final positions of the sweeps to coordinates, and evaluates the result. Rounding, and vertices that
     /// were set back, may have cost more than the sweeps gained. A device also moves the vertices of an optimal mesh by
     /// its own rounding. If nothing was gained on `initial`, the mesh is returned unchanged.
-    fn judged(
+    async fn judged(
         &self,
         options: &Options,
         initial: f64,
@@ -170,33 +182,43 @@ impl Smoother<'_> {
         let swept = f(best_sweep);
         let mut problem = self.problem.clone();
         stages.set_targets_at(&mut problem, &ended.positions)?;
-        let improving = Improvement::after(&mut ended, options, &problem, stages.bounds(), observe);
+        let improving =
+            Improvement::after(&mut ended, options, &problem, stages.bounds(), observe).await;
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
-        let mut points = self.points_at(&ended.positions);
+        let mut points = self.points_at(&ended.positions).await;
         stages.slide_into(&mut points);
-        for x in points.as_flattened_mut() {
-            *x = options.stored.rounded(*x);
+        if !matches!(options.stored, Precision::Double) {
+            paced::for_each_chunk(points.as_flattened_mut(), CHUNK, |_, coordinates| {
+                coordinates.iter_mut().for_each(|x| *x = options.stored.rounded(*x));
+            })
+            .await;
         }
-        let mut returned = self.certify(&mut points)?;
+        let mut returned = self.certified(&mut points).await?;
         // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
         let mut low = usize::from(options.keep_altitude);
-        let guard = if low > 0 { self.final_guard(options) } else { f64::INFINITY };
+        let guard = if low > 0 { self.final_guard(options).await } else { f64::INFINITY };
         while low > 0 {
             low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
-            returned += low + self.certify(&mut points)?;
+            returned += low + self.certified(&mut points).await?;
         }
         // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
         let is_as_swept =
             returned == 0 && self.sliding.is_none() && matches!(options.stored, Precision::Double);
-        let exact = (!is_as_swept)
-            .then(|| base.ideal_squared() + mean_excess(base, &problem, &ended.positions));
-        let judged = self.positions_of(&points, ended.positions);
+        let exact = match is_as_swept {
+            true => None,
+            false => {
+                Some(base.ideal_squared() + mean_excess(base, &problem, &ended.positions).await)
+            }
+        };
+        let judged = self.positions_of(&points, ended.positions).await;
         stages.set_targets_at(&mut problem, &judged)?;
         let problem = &problem;
-        let written = base.ideal_squared() + mean_excess(base, problem, &judged);
-        let gains = initial - written > NOISE * initial + ROUNDING
-            && self.is_lower(base, &points)?
-            || improving.as_ref().is_some_and(|improving| improving.is_better(problem, &judged));
+        let written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
+        let mut gains =
+            initial - written > NOISE * initial + ROUNDING && self.is_lower(base, &points).await?;
+        if let (false, Some(improving)) = (gains, &improving) {
+            gains = improving.is_better(problem, &judged).await;
+        }
         // In a smaller gain, the errors of f on a device would be a considerable share.
         let lost = match initial - swept > 100.0 * JITTER * initial {
             true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
@@ -216,10 +238,13 @@ impl Smoother<'_> {
         let least = base.least_objective(problem.targets().is_some());
         let possible = (best - least).max(0.0) / best.max(MIN_SCALE);
         let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
-        let improved = improving.map(|improving| {
-            let positions = if gains { &judged } else { self.problem.positions() };
-            improving.outcome(problem, positions, best, &slides, gains)
-        });
+        let improved = match improving {
+            Some(improving) => {
+                let positions = if gains { &judged } else { self.problem.positions() };
+                Some(improving.outcome(problem, positions, best, &slides, gains).await)
+            }
+            None => None,
+        };
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
             // 0 / 0 means that the initial objective equals the desired one.
@@ -251,23 +276,24 @@ impl Smoother<'_> {
     /// Returns whether f by a metric, with the areas of the vertices at `points`, is lower than f of the mesh. A run
     /// divides areas by the mean area at its start, and sliding vertices change the mean area. Areas that are errors of
     /// rounding depend on the unit of positions too. With targets, sizes are absolute, and the result is true.
-    fn is_lower(&self, metric: Metric, points: &[[f64; 2]]) -> Result<bool, MeshError> {
+    async fn is_lower(&self, metric: Metric, points: &[[f64; 2]]) -> Result<bool, MeshError> {
         let is_exact = self.sliding.is_none() && metric.properties().barrier;
         if is_exact || self.problem.targets().is_some() || self.field.is_some() {
             return Ok(true);
         }
-        let f = |points| Ok(Quality::of(points, &self.topology)?.f(metric));
-        Ok(f(points)? < f(&self.mesh.points)?)
+        let now = Quality::with_pauses(Surface::Plane, points, &self.topology).await?;
+        let before = Quality::with_pauses(Surface::Plane, &self.mesh.points, &self.topology);
+        Ok(now.f(metric) < before.await?.f(metric))
     }
 
     /// Returns the largest inverse mean ratio that the guard of a run allows; infinite without a guard, and with
     /// targets, by which the guard is no property of the triangles alone.
-    fn final_guard(&self, options: &Options) -> f64 {
+    async fn final_guard(&self, options: &Options) -> f64 {
         if self.problem.targets().is_some() {
             return f64::INFINITY;
         }
         let mut plan = Plan::new(options);
-        set_guards(&mut plan, options.guard, &self.problem, self.problem.positions());
+        set_guards(&mut plan, options.guard, &self.problem, self.problem.positions()).await;
         plan.base_step(1.0).shape_guard
     }
 

@@ -1,6 +1,7 @@
 //! Makes a mesh feasible by exact predicates, after its vertices have been moved and rounded.
 
 use crate::error::MeshError;
+use crate::parallel::pace::now;
 use crate::topology::Topology;
 use crate::topology::predicates::{bad_triangles, is_positive, not_positive};
 
@@ -19,10 +20,19 @@ pub fn certify(
     before: &[[f64; 2]],
     points: &mut [[f64; 2]],
 ) -> Result<usize, MeshError> {
+    now(certified(topology, before, points))
+}
+
+/// Does the work of [`certify`], with pauses.
+pub(crate) async fn certified(
+    topology: &Topology<'_>,
+    before: &[[f64; 2]],
+    points: &mut [[f64; 2]],
+) -> Result<usize, MeshError> {
     topology.check_count(before)?;
     topology.check_count(points)?;
     let triangles = topology.triangles();
-    let mut suspects = not_positive(points, triangles);
+    let mut suspects = not_positive(points, triangles).await;
     let is_certified = suspects.is_empty();
     let mut returned = 0;
     // Each round sets back the moved vertices of every suspect, and then tests the triangles around these vertices.
@@ -48,7 +58,7 @@ pub fn certify(
     if is_certified {
         return Ok(0);
     }
-    match bad_triangles(points, triangles) {
+    match bad_triangles(points, triangles).await {
         left if left.is_empty() => Ok(returned),
         triangles => Err(MeshError::Infeasible { triangles }),
     }

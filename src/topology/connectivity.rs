@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use crate::error::{BadTriangle, MeshError};
 use crate::mesh::Mesh;
 use crate::parallel::counting_sort::Groups;
+use crate::parallel::pace::now;
 use crate::parallel::{map_parts, map_ranges};
 use crate::topology::predicates;
 use crate::topology::stars::{close, outer_edge, stars};
@@ -119,7 +120,7 @@ impl<'m> Topology<'m> {
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn bad_triangles(&self, points: &[[f64; 2]]) -> Result<Vec<BadTriangle>, MeshError> {
         self.check_count(points)?;
-        Ok(predicates::bad_triangles(points, &self.triangles))
+        Ok(now(predicates::bad_triangles(points, &self.triangles)))
     }
 
     /// Fails with [`MeshError::PointCount`] unless `points` has one entry per vertex.

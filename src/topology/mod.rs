@@ -16,6 +16,7 @@ mod winding;
 
 pub use crate::error::BadTriangle;
 pub use boundary::signed_area;
+pub(crate) use certify::certified;
 pub use certify::certify;
 pub use connectivity::Topology;
 pub use crossings::Crossing;

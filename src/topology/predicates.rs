@@ -3,7 +3,8 @@
 use robust::Coord;
 
 use crate::error::{BadTriangle, MeshError};
-use crate::parallel::map_parts;
+use crate::parallel::pace::now;
+use crate::parallel::paced;
 
 /// Bound below which the products of a determinant may have lost bits to underflow. About 2^-960, far above the least
 /// positive `f64`.
@@ -111,31 +112,31 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
     {
         return Err(MeshError::IndexOutOfRange { triangle: Some(t), vertex, vertices });
     }
-    Ok(not_positive(points, triangles))
+    Ok(now(not_positive(points, triangles)))
 }
 
 /// Returns the triangles that [`infeasible`] would return. Panics if `points` lacks a vertex of `triangles`.
-pub(crate) fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
+pub(crate) async fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<u32> {
     const CHUNK: usize = 1 << 10;
-    let found = map_parts(triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
+    let found = paced::map_parts(triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
         if part.iter().all(|t| is_surely_positive(points, t)) {
             return Vec::new();
         }
         let bad = part.iter().zip(chunk * CHUNK..).filter(|(t, _)| !is_positive(points, t));
         bad.map(|(_, index)| index as u32).collect()
     });
-    found.concat()
+    found.await.concat()
 }
 
 /// Returns the triangles that are not counter-clockwise, in ascending order. Each [`BadTriangle`] tells flat triangles
 /// from inverted ones.
-pub(crate) fn bad_triangles(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<BadTriangle> {
+pub(crate) async fn bad_triangles(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<BadTriangle> {
     let describe = |t: u32| {
         let vertices = triangles[t as usize];
         let flat = orientation(points, &vertices) == 0.0;
         BadTriangle { triangle: t as usize, vertices, flat }
     };
-    not_positive(points, triangles).into_iter().map(describe).collect()
+    not_positive(points, triangles).await.into_iter().map(describe).collect()
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use glam::DVec2;
 use crate::error::BadTriangle;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
+use crate::parallel::pace::now;
 use crate::precision::Precision;
 use crate::topology::Topology;
 use crate::topology::overlapping_star;
@@ -27,9 +28,10 @@ impl Judge<'_> {
     /// flat for double precision are in the list too.
     pub(super) fn bad_triangles(&self, points: &[[f64; 2]]) -> (Vec<BadTriangle>, usize) {
         let triangles = self.topology.triangles();
-        let mut bad = bad_triangles(points, triangles);
+        let mut bad = now(bad_triangles(points, triangles));
         let exact: HashSet<usize> = bad.iter().map(|bad| bad.triangle).collect();
-        let beyond = self.problem.beyond_precision(&self.problem.normalized(points, Vec::new()));
+        let beyond =
+            now(self.problem.beyond_precision(&now(self.problem.normalized(points, Vec::new()))));
         for triangle in self.problem.in_mesh(&beyond, triangles) {
             if !exact.contains(&triangle) && self.topology.can_move(triangle) {
                 bad.push(BadTriangle { triangle, vertices: triangles[triangle], flat: true });

@@ -21,6 +21,7 @@ use glam::DVec2;
 use crate::error::{BadTriangle, MeshError};
 use crate::layout::{Coloring, Problem, target_areas};
 use crate::mesh::Mesh;
+use crate::parallel::pace::now;
 use crate::precision::Precision;
 use crate::run::multilevel::Hierarchy;
 use crate::run::regularization::epsilon;
@@ -326,8 +327,8 @@ impl<'m> Work<'m> {
     fn bad(&self) -> Vec<u32> {
         let positions = &self.state.positions;
         let points: Vec<[f64; 2]> = positions.iter().map(|p| p.to_array()).collect();
-        let mut bad = not_positive(&points, self.problem.triangles());
-        bad.extend(self.problem.beyond_precision(positions));
+        let mut bad = now(not_positive(&points, self.problem.triangles()));
+        bad.extend(now(self.problem.beyond_precision(positions)));
         bad
     }
 }

@@ -4,6 +4,7 @@ use glam::{DVec2, Vec2};
 
 use crate::cpu::correction;
 use crate::layout::Problem;
+use crate::parallel::pace::now;
 use crate::parallel::{collect, for_each_chunk, map_parts, map_ranges};
 use crate::patch::{VertexBatch, batches};
 use crate::run::multilevel::{Hierarchy, Search};
@@ -154,7 +155,7 @@ impl<'p> State<'p> {
         let most = largest(&gradient);
         let unit = if most > 0.0 && most.is_finite() { 1.0 / most } else { return };
         let scaled: Vec<Vec2> = collect(gradient.len(), |v| (gradient[v] * unit).as_vec2());
-        let direction = correction(hierarchy, self.problem, &scaled);
+        let direction = now(correction(hierarchy, self.problem, &scaled));
         let along = |v: usize| direction.get(v).map_or(DVec2::ZERO, |d| d.as_dvec2() * most);
         let slopes = map_ranges(gradient.len(), CHUNK, |range| {
             range.map(|v| gradient[v].dot(along(v))).sum::<f64>()
@@ -278,7 +279,7 @@ pub(super) fn preconditioned(
         return vec![DVec2::ZERO; gradient.len()];
     }
     let scaled: Vec<Vec2> = collect(gradient.len(), |v| (gradient[v] / most).as_vec2());
-    let coarse = correction(hierarchy, problem, &scaled);
+    let coarse = now(correction(hierarchy, problem, &scaled));
     let diagonal = hierarchy.inverse_diagonal();
     collect(gradient.len(), |v| gradient[v] * f64::from(diagonal[v]) - coarse[v].as_dvec2() * most)
 }

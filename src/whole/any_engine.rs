@@ -72,8 +72,8 @@ impl Engine for AnyEngine<'_> {
         on!(self, engine => engine.take_hierarchy())
     }
 
-    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
-        on!(self, engine => engine.set_hierarchy(hierarchy))
+    async fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+        on!(self, engine => engine.set_hierarchy(hierarchy).await)
     }
 
     async fn stiffness_roots(&mut self, smoothing: Smoothing) -> Result<Vec<f32>, GpuError> {
@@ -109,7 +109,7 @@ impl Engine for AnyEngine<'_> {
         on!(self, engine => engine.save(whole).await)
     }
 
-    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
-        on!(self, engine => engine.restore(state))
+    async fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
+        on!(self, engine => engine.restore(state).await)
     }
 }

@@ -40,13 +40,13 @@ impl<'s> Device<'s> {
     }
 
     /// Returns an engine for a run by `plan`, which may take `steps`; see [`GpuEngine::new`].
-    pub(crate) fn engine(
+    pub(crate) async fn engine(
         self,
         problem: &Problem,
         from: &[DVec2],
         plan: Plan,
         steps: Vec<SweepParams>,
     ) -> Result<DeviceEngine<'s>, GpuError> {
-        GpuEngine::new(self.gpu, problem, from, plan, steps, self.waiting).map(Box::new)
+        GpuEngine::new(self.gpu, problem, from, plan, steps, self.waiting).await.map(Box::new)
     }
 }

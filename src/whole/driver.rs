@@ -22,10 +22,10 @@ pub(crate) async fn drive(
         // Without stages, the engine ends the run. With stages, the host does.
         let until = if stages.is_empty() { u32::MAX } else { 0 };
         let (positions, stop) = live.sweep(until, None, checkpointer, observe).await?;
-        return Ok(live.end(positions, stop.unwrap_or(Stop::MaxSweeps)));
+        return Ok(live.end(positions, stop.unwrap_or(Stop::MaxSweeps)).await);
     }
     let plan = live.plan.clone();
-    let mut host = Host::new(live.problem.clone(), &plan, live.start());
+    let mut host = Host::new(live.problem.clone(), &plan, live.start()).await;
     let mut began = 0;
     if let Some(period) = resumed {
         restore(period, &mut host, stages).ok_or_else(resume::foreign)?;
@@ -39,7 +39,7 @@ pub(crate) async fn drive(
         let state = || saved(&host, stages, began, on_cpu_from);
         let (swept_to, swept) = live.sweep(until, Some(&state), checkpointer, observe).await?;
         if swept == Some(Stop::NotFinite) {
-            return Ok(live.end(swept_to, Stop::NotFinite));
+            return Ok(live.end(swept_to, Stop::NotFinite).await);
         }
         host.positions.clone_from(&swept_to);
         let mut is_settled = true;
@@ -53,7 +53,7 @@ pub(crate) async fn drive(
                 earlier.iter_mut().for_each(|stage| stage.follow(&mut host));
             }
         }
-        let now = objectives(&host.problem, &plan, &host.positions);
+        let now = objectives(&host.problem, &plan, &host.positions).await;
         let f = now.of(plan.scheme.base()).unwrap_or(f64::NAN);
         let moved = Moved {
             positions: &host.positions,
@@ -62,7 +62,7 @@ pub(crate) async fn drive(
             targets: std::mem::take(&mut host.has_new_targets).then_some(&host.problem),
             now,
         };
-        live.write_back(began, moved, checkpointer)?;
+        live.write_back(began, moved, checkpointer).await?;
         let period = Period {
             f: [host.f_before, f],
             swept,
@@ -76,7 +76,7 @@ pub(crate) async fn drive(
             judged.unwrap_or(Judgment { stop: None, remaining: None });
         let stop = if swept == Some(Stop::Canceled) { swept } else { stop };
         if let Some(stop) = stop {
-            let ended = live.end(host.positions, stop);
+            let ended = live.end(host.positions, stop).await;
             return Ok(RunEnd { remaining, ..ended });
         }
         host.begin_period(f);

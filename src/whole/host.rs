@@ -26,9 +26,9 @@ pub(crate) struct Host<'r> {
 
 impl<'r> Host<'r> {
     /// Creates the state before the first sweep, with no vertex held.
-    pub(crate) fn new(problem: Problem, plan: &'r Plan, positions: &[DVec2]) -> Self {
+    pub(crate) async fn new(problem: Problem, plan: &'r Plan, positions: &[DVec2]) -> Self {
         let held = vec![false; problem.free_count()];
-        let f_before = f(&problem, plan, positions);
+        let f_before = f(&problem, plan, positions).await;
         let (before, positions) = (positions.to_vec(), positions.to_vec());
         Self { problem, plan, before, f_before, positions, held, has_new_targets: false }
     }
@@ -40,8 +40,8 @@ impl<'r> Host<'r> {
     }
 
     /// Returns f by the base metric at the given positions.
-    pub(crate) fn f(&self, positions: &[DVec2]) -> f64 {
-        f(&self.problem, self.plan, positions)
+    pub(crate) async fn f(&self, positions: &[DVec2]) -> f64 {
+        f(&self.problem, self.plan, positions).await
     }
 
     /// Returns the shape guard of sweeps by the base metric.
@@ -67,16 +67,16 @@ impl<'r> Host<'r> {
 }
 
 /// Returns f by the base metric of a plan.
-fn f(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> f64 {
+async fn f(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> f64 {
     let base = plan.scheme.base();
-    base.ideal_squared() + mean_excess(base, problem, positions)
+    base.ideal_squared() + mean_excess(base, problem, positions).await
 }
 
 /// Returns the objectives that a plan tracks.
-pub(crate) fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
+pub(crate) async fn objectives(problem: &Problem, plan: &Plan, positions: &[DVec2]) -> Objectives {
     let mut objectives = Objectives::empty();
     for metric in plan.tracked() {
-        let excess = mean_excess(metric, problem, positions);
+        let excess = mean_excess(metric, problem, positions).await;
         objectives.set(metric, metric.ideal_squared() + excess);
     }
     objectives

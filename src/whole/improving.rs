@@ -4,15 +4,21 @@ use glam::DVec2;
 
 use crate::cpu::mean_excess;
 use crate::layout::Problem;
+use crate::metric::Metric;
 use crate::options::{Options, WorstBy};
 use crate::outcome::Improved;
 use crate::run::{NOISE, Observer, Phase, Plan, Progress, Stop};
 use crate::whole::altitude;
 use crate::whole::live::RunEnd;
-use crate::worst::{Badness, MoveConstraints, improve, stuck, worst_movable};
+use crate::worst::{Badness, MoveConstraints, Passes, stuck, worst_movable};
 
 /// Share by which rounding may raise the worst inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
+
+/// Returns f by the base metric at the given positions.
+async fn objective(base: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
+    base.ideal_squared() + mean_excess(base, problem, positions).await
+}
 
 /// The result of the stage that improves the worst triangles, evaluated at the coordinates as they are written.
 pub(crate) struct Improvement {
@@ -29,7 +35,7 @@ impl Improvement {
     /// Improves the worst triangles of a mesh after a run. `None` if [`Options::improve_worst`] is `None`, or if the
     /// run was canceled or failed. `bounds` limit the distance of each free vertex from the start of the run. If the
     /// observer ends the stage, the run counts as canceled.
-    pub(crate) fn after(
+    pub(crate) async fn after(
         ended: &mut RunEnd,
         options: &Options,
         problem: &Problem,
@@ -41,12 +47,11 @@ impl Improvement {
             return None;
         }
         let base = options.scheme.base();
-        let f = |positions: &[DVec2]| base.ideal_squared() + mean_excess(base, problem, positions);
         let sweep = ended.history.len() as u32 - 1;
         let RunEnd { positions, stop, .. } = ended;
-        let before = f(positions);
-        let worst_before = worst_movable(problem, badness, positions);
-        let worst_shape = worst_movable(problem, Badness(WorstBy::Imr), positions);
+        let before = objective(base, problem, positions).await;
+        let worst_before = worst_movable(problem, badness, positions).await;
+        let worst_shape = worst_movable(problem, Badness(WorstBy::Imr), positions).await;
         let rules = MoveConstraints {
             badness,
             step: Plan::new(options).base_step(1.0),
@@ -54,28 +59,36 @@ impl Improvement {
             floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
             bounds,
         };
-        let goes_on = |positions: &[DVec2]| {
-            let progress = Progress { phase: Phase::Improving, sweep, f: f(positions) };
-            let is_left = observe(&progress).is_break();
-            if is_left {
+        let mut passes = Passes::new(problem, &rules, positions).await;
+        let mut f = before;
+        loop {
+            if observe(&Progress { phase: Phase::Improving, sweep, f }).is_break() {
                 *stop = Stop::Canceled;
+                break;
             }
-            !is_left
-        };
-        let vertices = improve(problem, &rules, positions, goes_on);
-        Some(Self { badness, vertices, worst: worst_before, f: [before, f(positions)] })
+            let is_last = !passes.next(positions).await;
+            f = objective(base, problem, positions).await;
+            if is_last {
+                break;
+            }
+        }
+        let vertices = passes.moved();
+        Some(Self { badness, vertices, worst: worst_before, f: [before, f] })
     }
 
     /// Returns whether the worst triangle is better than in the mesh before the run.
-    pub(crate) fn is_better(&self, problem: &Problem, positions: &[DVec2]) -> bool {
-        let worst = |positions| worst_movable(problem, self.badness, positions);
-        self.vertices > 0 && worst(positions) < worst(problem.positions()) * (1.0 - NOISE)
+    pub(crate) async fn is_better(&self, problem: &Problem, positions: &[DVec2]) -> bool {
+        if self.vertices == 0 {
+            return false;
+        }
+        let now = worst_movable(problem, self.badness, positions).await;
+        now < worst_movable(problem, self.badness, problem.positions()).await * (1.0 - NOISE)
     }
 
     /// Returns the outcome of the stage, with the vertices at `positions` as they are written, and `f` the objective
     /// there. If `is_written` is false, `positions` are those before the run, and the stage has changed nothing.
     /// `slides` are the sliding vertices as indices in the problem, in ascending order.
-    pub(crate) fn outcome(
+    pub(crate) async fn outcome(
         &self,
         problem: &Problem,
         positions: &[DVec2],
@@ -83,8 +96,8 @@ impl Improvement {
         slides: &[u32],
         is_written: bool,
     ) -> Improved {
-        let now = worst_movable(problem, self.badness, positions);
-        let stuck = stuck(problem, self.badness, positions, slides);
+        let now = worst_movable(problem, self.badness, positions).await;
+        let stuck = stuck(problem, self.badness, positions, slides).await;
         let [now, before] = [now, self.worst].map(|worst| self.badness.meaning(worst, problem));
         let by = self.badness.0;
         match is_written {

@@ -8,9 +8,9 @@ use glam::DVec2;
 use crate::cpu::{CpuEngine, held_back, mean_excess};
 use crate::error::{GpuError, SmoothError};
 use crate::layout::Problem;
-use crate::metric::Metric;
 use crate::options::{Guard, Method, Options};
 use crate::outcome::DeviceFault;
+use crate::parallel::paced;
 use crate::resume;
 use crate::run::opening::{self, DoublePrelude, Obstacle};
 use crate::run::{
@@ -98,7 +98,8 @@ impl<'s> Live<'s> {
         checkpointer.last = resumed.map(|resumed| resumed.saved.clone());
         let opening_sweeps = opened.as_ref().map_or(0, DoublePrelude::sweeps);
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
-        let positions = opened.as_ref().map_or(from, |opened| &opened.positions).to_vec();
+        let start = opened.as_ref().map_or(from, |opened| &opened.positions);
+        let positions = paced::copied(start).await;
         let is_refused = spec.device.is_some() && device.is_none() && resumed.is_none();
         let period = resumed.and_then(|resumed| Some((resumed, resumed.period.as_ref()?)));
         let (last, held, on_cpu_from) = match period {
@@ -114,7 +115,7 @@ impl<'s> Live<'s> {
             && problem.targets().is_none()
             && problem.is_strongly_stretched(from)
         {
-            problem.set_local_maps_at(from);
+            problem.set_local_maps_at(from).await;
         }
         Ok(Self {
             problem,
@@ -175,7 +176,7 @@ impl<'s> Live<'s> {
                     if self.device.is_none() || self.fall_back(error, checkpointer).is_err() {
                         // Sweeps after the last stages may have moved vertices beyond the bounds of the stages.
                         let saved = checkpointer.last.take().filter(|_| !self.spec.is_staged);
-                        return Ok((self.undone(saved), Some(Stop::NotFinite)));
+                        return Ok((self.undone(saved).await, Some(Stop::NotFinite)));
                     }
                 }
                 Err(DriveError::LeftOut(error)) => return Err(error.into()),
@@ -193,7 +194,7 @@ impl<'s> Live<'s> {
     ) -> Result<(Vec<DVec2>, Option<Stop>), DriveError> {
         let mut session = match self.session.take() {
             Some(session) => session,
-            None => self.begun(checkpointer.last.clone())?,
+            None => self.begun(checkpointer.last.clone()).await?,
         };
         let done = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         let requires_levels = self.spec.options.method == Method::Multilevel;
@@ -205,17 +206,21 @@ impl<'s> Live<'s> {
     }
 
     /// Creates an engine in a saved state, or in the state that `last` has.
-    fn begun(&self, saved: Option<Saved>) -> Result<Session<AnyEngine<'s>>, DriveError> {
+    async fn begun(&self, saved: Option<Saved>) -> Result<Session<AnyEngine<'s>>, DriveError> {
         let Self { problem, plan, last: Point { log, positions }, held, .. } = self;
         let corrected = self.is_corrected();
         let mut engine = match self.device {
-            None => AnyEngine::Cpu(Box::new(CpuEngine::new(problem, positions.clone(), plan))),
+            None => AnyEngine::Cpu(Box::new(CpuEngine::new(
+                problem,
+                paced::copied(positions).await,
+                plan,
+            ))),
             Some(device) => {
                 // The host judges runs with corrections or stages, so the device must not end them.
                 let is_judged_by_host = corrected || self.spec.is_staged;
                 let judged = if is_judged_by_host { plan.clone().endless() } else { plan.clone() };
                 let steps = steps(plan, corrected);
-                AnyEngine::Device(device.engine(problem, positions, judged, steps)?)
+                AnyEngine::Device(device.engine(problem, positions, judged, steps).await?)
             }
         };
         if !held.is_empty() {
@@ -224,7 +229,7 @@ impl<'s> Live<'s> {
         let corrections = corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged));
         let mut session = Session::new(engine, plan, corrections, log);
         if let Some(saved) = saved {
-            session.restore(saved)?;
+            session.restore(saved).await?;
         }
         Ok(session)
     }
@@ -249,12 +254,12 @@ impl<'s> Live<'s> {
 
     /// Returns to the last saved state, or to the state of `last`, because a later sweep made f infinite or NaN.
     /// Returns the positions of this state.
-    fn undone(&mut self, saved: Option<Saved>) -> Vec<DVec2> {
+    async fn undone(&mut self, saved: Option<Saved>) -> Vec<DVec2> {
         if let Some(Saved { log, engine, .. }) = saved {
             self.last = Point { log, positions: engine.best.unwrap_or(engine.positions) };
         }
         if self.last.log.is_empty() {
-            self.last.log = vec![objectives(&self.problem, &self.plan, &self.last.positions)];
+            self.last.log = vec![objectives(&self.problem, &self.plan, &self.last.positions).await];
         }
         self.session = None;
         self.last.positions.clone()
@@ -262,7 +267,7 @@ impl<'s> Live<'s> {
 
     /// Records the changes of the stages after sweep `from`: the positions of vertices, the held vertices, and the
     /// targets. Sends the changes to the engine.
-    pub(crate) fn write_back(
+    pub(crate) async fn write_back(
         &mut self,
         from: u32,
         moved: Moved<'_>,
@@ -300,8 +305,10 @@ impl<'s> Live<'s> {
             Err(error) => self.fall_back(error, checkpointer)?,
         }
         // A device cannot sweep a mesh with triangles that a stage has made too flat.
-        let is_flat = || opening::obstacle(&self.problem, positions) != Obstacle::None;
-        if self.device.is_some() && positions != swept_to && is_flat() {
+        if self.device.is_some()
+            && positions != swept_to
+            && opening::obstacle(&self.problem, positions).await != Obstacle::None
+        {
             self.on_cpu_from = Some(self.sweeps());
             (self.device, self.session) = (None, None);
         }
@@ -309,7 +316,7 @@ impl<'s> Live<'s> {
     }
 
     /// Ends the run for the reason `stop`, with the vertices at `positions`.
-    pub(crate) fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> RunEnd {
+    pub(crate) async fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> RunEnd {
         let Self { plan, problem, last, session, .. } = self;
         let none = Counts { alternated: 0, corrections: 0, levels_left_out: false };
         let (counts, remaining, history) = match session {
@@ -326,7 +333,7 @@ impl<'s> Live<'s> {
         let step = plan.base_step(1.0);
         let can_be_held = matches!(stop, Stop::Converged | Stop::MaxSweeps);
         if can_be_held && step.shape_guard.is_finite() && problem.free_count() > 0 {
-            held = held_back(&problem, &positions, &self.held, &step);
+            held = held_back(&problem, &positions, &self.held, &step).await;
             if held > 0 && self.spec.options.guard == Guard::ByMetric && stop == Stop::Converged {
                 stop = Stop::HeldBack;
             }
@@ -376,22 +383,24 @@ async fn opened<'s>(
         return Ok((None, None));
     }
     // If sizes of triangles differ very much, sums of some metrics exceed the range of single precision.
-    let sum =
-        |metric: &Metric| mean_excess(*metric, problem, from) * problem.triangles().len() as f64;
-    let is_huge = |metric: &Metric| {
-        let is_ratio = metric.properties().is_inverse_mean_ratio;
+    let mut metrics = plan.tracked();
+    metrics.extend(plan.scheme.metrics());
+    for metric in metrics {
+        if metric.properties().is_inverse_mean_ratio {
+            continue;
+        }
+        let sum = mean_excess(metric, problem, from).await * problem.triangles().len() as f64;
         // A sum of NaN counts as too large.
-        !is_ratio && sum(metric).partial_cmp(&MAX_SUM_ON_DEVICE) != Some(Ordering::Less)
-    };
-    if plan.tracked().iter().chain(plan.scheme.metrics()).any(is_huge) {
-        return Ok((None, None));
+        if sum.partial_cmp(&MAX_SUM_ON_DEVICE) != Some(Ordering::Less) {
+            return Ok((None, None));
+        }
     }
-    match opening::obstacle(problem, from) {
+    match opening::obstacle(problem, from).await {
         Obstacle::None => return Ok((device, None)),
         Obstacle::Flat => {}
         Obstacle::Small => return Ok((None, None)),
     }
-    let engine = CpuEngine::new(problem, from.to_vec(), plan);
+    let engine = CpuEngine::new(problem, paced::copied(from).await, plan);
     Ok(match opening::open(problem, engine, plan).await? {
         Some(opened) => (device, Some(opened)),
         None => (None, None),

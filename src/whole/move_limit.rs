@@ -7,6 +7,7 @@ use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::mean_edges;
 use crate::mesh::Mesh;
+use crate::parallel::pace::now;
 use crate::patch::{Circle, batches};
 use crate::precision::Precision;
 use crate::run::records::{Reader, Writer};
@@ -100,7 +101,7 @@ impl<'s> MoveLimitStage<'s> {
                 let wanted = if share == 1.0 { *to } else { *place + (*to - *place) * share };
                 *place = self.within(v, wanted);
             }
-            if host.is_sound(&host.before, &there) && host.f(&there) < host.f_before {
+            if host.is_sound(&host.before, &there) && now(host.f(&there)) < host.f_before {
                 host.positions = there;
                 return true;
             }

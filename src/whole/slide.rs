@@ -5,6 +5,7 @@ use glam::DVec2;
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::outcome::Slid;
+use crate::parallel::pace::now;
 use crate::run::StopRule;
 use crate::run::records::{Reader, Writer};
 use crate::slide::{Acceleration, Params, Rule, Sliding, read_params, write_params};
@@ -120,7 +121,7 @@ impl Stage for SlideStage<'_> {
         if self.sliding.place(&host.problem, &mut params, safe, reach, &mut there)
             && allows(&there)
             && host.is_sound(&host.positions, &there)
-            && host.f(&there) < host.f(&host.positions)
+            && now(host.f(&there)) < now(host.f(&host.positions))
         {
             (self.params, host.positions, worked.has_moved_free) = (params, there, true);
         } else {

@@ -6,6 +6,7 @@ use glam::DVec2;
 use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
+use crate::parallel::pace::now;
 use crate::run::records::{Reader, Writer};
 use crate::run::{NOISE, Stop};
 use crate::targets::TargetField;
@@ -103,7 +104,7 @@ impl Stage for TargetFieldStage<'_> {
             };
             if host.is_sound(&host.before, &there) {
                 self.follow_to(host, &there)?;
-                if host.f(&there) < host.f_before {
+                if now(host.f(&there)) < host.f_before {
                     (host.positions, self.has_moved) = (there, true);
                     return Ok(Worked { is_settled: true, has_moved_free: false });
                 }

@@ -8,4 +8,4 @@ mod stage;
 
 pub(crate) use badness::Badness;
 pub(crate) use region::MoveConstraints;
-pub(crate) use stage::{improve, stuck, worst_movable};
+pub(crate) use stage::{Passes, stuck, worst_movable};

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::metric::{Dual, Smoothing, TargetMap};
+use crate::parallel::pace::pause;
 use crate::patch::{
     Circle, FanCorner, FanPatch, MetricObjective, Objective, SearchRule, is_acceptable, step_alone,
 };
@@ -89,14 +90,17 @@ impl<'a> Region<'a> {
     /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
     /// possible. Returns the new positions with the indices of the vertices in the problem. `None` if the worst
     /// triangle cannot be improved.
-    pub(crate) fn improve(mut self) -> Option<Vec<(u32, DVec2)>> {
+    pub(crate) async fn improve(mut self) -> Option<Vec<(u32, DVec2)>> {
         let count = self.vertices.len();
         let before = self.worst();
         let mut best = (before, self.positions[..count].to_vec());
         for doublings in DOUBLINGS {
             for _ in 0..VISITS {
-                let moves = (0..count).map(|v| self.visit(v, doublings));
-                let most = moves.fold(0.0, f64::max);
+                let mut most = 0.0_f64;
+                for v in 0..count {
+                    most = most.max(self.visit(v, doublings));
+                    pause().await;
+                }
                 let worst = self.worst();
                 if worst < best.0 {
                     best = (worst, self.positions[..count].to_vec());
@@ -116,6 +120,7 @@ impl<'a> Region<'a> {
         for _ in 0..RELAXING {
             for v in 0..count {
                 self.relax(v, worst);
+                pause().await;
             }
         }
         Some(self.vertices.into_iter().zip(self.positions).collect())

@@ -3,12 +3,16 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::parallel::{collect, map_parts};
+use crate::parallel::paced;
 use crate::patch::FanCorner;
 use crate::worst::badness::Badness;
 use crate::worst::region::{MoveConstraints, Region};
 use crate::worst::regions::around;
 
+/// Number of triangles that one task evaluates.
+const CHUNK: usize = 1 << 12;
+/// Number of triangles among which one task finds the worst.
+const SORTED: usize = 1 << 15;
 /// Number of triangles of the mesh for each triangle that a pass improves. The worst triangles with a free vertex come
 /// first.
 const SHARE: usize = 1000;
@@ -29,92 +33,128 @@ const MIN_GAIN: f64 = 0.01;
 const MIN_KEPT: [f64; 2] = [2e-3, 1e-9];
 
 /// Returns the largest badness among triangles with a free vertex.
-pub(crate) fn worst_movable(problem: &Problem, badness: Badness, positions: &[DVec2]) -> f64 {
-    worst_of(problem, &all(problem, badness, positions))
+pub(crate) async fn worst_movable(problem: &Problem, badness: Badness, positions: &[DVec2]) -> f64 {
+    worst_of(problem, &all(problem, badness, positions).await).await
 }
 
-fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
-    let movable = problem.triangles().iter().zip(badness).filter(|(t, _)| problem.can_move(t));
-    movable.map(|(_, badness)| *badness).fold(0.0, f64::max)
+async fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
+    let worst = |_, (triangles, badness): (&[[u32; 3]], &[f64])| {
+        let movable = triangles.iter().zip(badness).filter(|(t, _)| problem.can_move(t));
+        movable.map(|(_, badness)| *badness).fold(0.0, f64::max)
+    };
+    let parts = problem.triangles().chunks(CHUNK).zip(badness.chunks(CHUNK));
+    paced::map_parts(parts, worst).await.into_iter().fold(0.0, f64::max)
 }
 
 /// Returns the number of triangles that are worse than every triangle with a free vertex, but have only fixed corners.
 /// Corners in `slides`, an ascending list, do not count as fixed.
-pub(crate) fn stuck(
+pub(crate) async fn stuck(
     problem: &Problem,
     badness: Badness,
     positions: &[DVec2],
     slides: &[u32],
 ) -> usize {
-    let all = all(problem, badness, positions);
-    let worst = worst_of(problem, &all);
+    let all = all(problem, badness, positions).await;
+    let worst = worst_of(problem, &all).await;
     let stays =
         |t: &[u32; 3]| !problem.can_move(t) && t.iter().all(|v| slides.binary_search(v).is_err());
-    let pairs = problem.triangles().iter().zip(&all);
-    pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
+    let count = |_, (triangles, badness): (&[[u32; 3]], &[f64])| {
+        let pairs = triangles.iter().zip(badness);
+        pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
+    };
+    let parts = problem.triangles().chunks(CHUNK).zip(all.chunks(CHUNK));
+    paced::map_parts(parts, count).await.into_iter().sum()
 }
 
 /// Returns the badness of every triangle of the problem.
-fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
-    collect(problem.triangles().len(), |t| {
+async fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
+    paced::collect(problem.triangles().len(), |t| {
         let t = problem.triangles()[t];
         let [p, q, r] = t.map(|v| positions[v as usize]);
         let triangle = FanCorner { ends: [q, r], map: problem.target_map(&t) };
         badness.of(&badness.seen(&triangle, p, problem.mean_area()))
     })
+    .await
 }
 
-/// Improves the worst triangles of a mesh with its vertices at `positions`, in independent regions. Passes continue
-/// while the worst triangle of the mesh becomes less bad. `goes_on`, called before each pass, may end them. A pass
-/// without a sufficient gain is undone. No triangle becomes worse than the former worst triangle of its region. Returns
-/// the number of vertices that moved.
-pub(crate) fn improve(
-    problem: &Problem,
-    rules: &MoveConstraints<'_>,
-    positions: &mut [DVec2],
-    mut goes_on: impl FnMut(&[DVec2]) -> bool,
-) -> usize {
-    let free = problem.free_count() as u32;
-    let mut has_moved = vec![false; free as usize];
-    let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MAX_WORST);
-    let mut badness = all(problem, rules.badness, positions);
-    let mut worst = worst_of(problem, &badness);
-    for pass in 0..PASSES {
-        if !goes_on(positions) {
-            break;
-        }
-        let can_move = |&t: &u32| problem.can_move(&problem.triangles()[t as usize]);
-        let mut bad: Vec<u32> = (0..badness.len() as u32).filter(can_move).collect();
-        let worse_first = |a: &u32, b: &u32| {
-            let [x, y] = [a, b].map(|&t| badness[t as usize]);
-            y.total_cmp(&x).then(a.cmp(b))
-        };
-        if bad.len() > count {
-            bad.select_nth_unstable_by(count, worse_first);
-            bad.truncate(count);
-        }
+/// Passes that improve the worst triangles of a mesh, in independent regions, while the worst triangle of the mesh
+/// becomes less bad. A pass without a sufficient gain is undone. No triangle becomes worse than the former worst triangle
+/// of its region.
+pub(crate) struct Passes<'a> {
+    problem: &'a Problem,
+    rules: &'a MoveConstraints<'a>,
+    /// Badness of every triangle, and the largest among triangles with a free vertex.
+    badness: Vec<f64>,
+    worst: f64,
+    has_moved: Vec<bool>,
+    done: u32,
+}
+
+impl<'a> Passes<'a> {
+    /// Prepares the passes for a mesh with its vertices at `positions`.
+    pub(crate) async fn new(
+        problem: &'a Problem,
+        rules: &'a MoveConstraints<'a>,
+        positions: &[DVec2],
+    ) -> Self {
+        let badness = all(problem, rules.badness, positions).await;
+        let worst = worst_of(problem, &badness).await;
+        let has_moved = vec![false; problem.free_count()];
+        Self { problem, rules, badness, worst, has_moved, done: 0 }
+    }
+
+    /// Does a pass. Returns whether another pass may improve more.
+    pub(crate) async fn next(&mut self, positions: &mut [DVec2]) -> bool {
+        let Self { problem, rules, badness, worst, has_moved, done } = self;
+        let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MAX_WORST);
+        let bad = worst_triangles(problem, badness, count).await;
         let here = &*positions;
-        let improved = map_parts(around(problem, &bad, RINGS), |_, vertices| {
-            Region::new(problem, rules, here, vertices).improve()
-        });
+        let regions = around(problem, &bad, RINGS);
+        let improved = paced::map_futures(regions, |vertices| async {
+            Region::new(problem, rules, here, vertices).improve().await
+        })
+        .await;
         let moves: Vec<(u32, DVec2)> = improved.into_iter().flatten().flatten().collect();
         let from: Vec<DVec2> = moves.iter().map(|&(v, _)| positions[v as usize]).collect();
         moves.iter().for_each(|&(v, to)| positions[v as usize] = to);
-        badness = all(problem, rules.badness, positions);
-        let last = std::mem::replace(&mut worst, worst_of(problem, &badness));
-        let least = MIN_KEPT[usize::from(pass > 0)];
-        let is_kept = worst < last * (1.0 - least);
+        *badness = all(problem, rules.badness, positions).await;
+        let last = std::mem::replace(worst, worst_of(problem, badness).await);
+        let least = MIN_KEPT[usize::from(*done > 0)];
+        let is_kept = *worst < last * (1.0 - least);
         if !is_kept {
             moves.iter().zip(from).for_each(|(&(v, _), from)| positions[v as usize] = from);
-            break;
+            return false;
         }
         for (&(v, to), from) in moves.iter().zip(from) {
             has_moved[v as usize] |= from != to;
         }
-        let is_better = worst < last * (1.0 - MIN_GAIN);
-        if !is_better {
-            break;
-        }
+        *done += 1;
+        *worst < last * (1.0 - MIN_GAIN) && *done < PASSES
     }
-    has_moved.into_iter().filter(|moved| *moved).count()
+
+    /// Returns the number of vertices that the passes have moved.
+    pub(crate) fn moved(&self) -> usize {
+        self.has_moved.iter().filter(|moved| **moved).count()
+    }
+}
+
+/// Returns the `count` worst triangles with a free vertex, in any order, and fewer if the mesh has fewer.
+async fn worst_triangles(problem: &Problem, badness: &[f64], count: usize) -> Vec<u32> {
+    let worst = |mut triangles: Vec<u32>| {
+        let worse_first = |a: &u32, b: &u32| {
+            let [x, y] = [a, b].map(|&t| badness[t as usize]);
+            y.total_cmp(&x).then(a.cmp(b))
+        };
+        if triangles.len() > count {
+            triangles.select_nth_unstable_by(count, worse_first);
+            triangles.truncate(count);
+        }
+        triangles
+    };
+    // The worst triangles of the mesh are among the worst of each part.
+    let can_move = |&t: &u32| problem.can_move(&problem.triangles()[t as usize]);
+    let of_parts = paced::map_ranges(badness.len(), SORTED, |part| {
+        worst((part.start as u32..part.end as u32).filter(can_move).collect())
+    });
+    worst(of_parts.await.concat())
 }

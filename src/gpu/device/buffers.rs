@@ -5,8 +5,10 @@ use std::ops::Range;
 
 use wgpu::BufferUsages as Usage;
 
+use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::scope::poll;
+use crate::gpu::scope::{poll, scoped};
+use crate::parallel::pace::pause;
 
 /// Returns the binding of one uniform of type `T`, read at a dynamic offset.
 pub(crate) fn uniform<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
@@ -32,6 +34,8 @@ pub(crate) fn bytes(buffer: &wgpu::Buffer, range: Range<u64>) -> wgpu::BindingRe
 
 /// Size of one write to a large buffer, in bytes.
 const PIECE: usize = 16 << 20;
+/// Size of one write between two pauses, in bytes.
+const SMALL: usize = 2 << 20;
 /// Limit of the pieces in flight: before a further write, the oldest is waited for. With fewer than eight million
 /// vertices nothing waits.
 const UNDER_WAY: usize = 8;
@@ -80,6 +84,39 @@ pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, byte
     }
 }
 
+/// Creates a buffer that holds `contents`, with pauses between its pieces.
+pub(crate) async fn filled_with_pauses<T: bytemuck::NoUninit + Sync>(
+    gpu: &Gpu,
+    label: &str,
+    contents: &[T],
+    usage: Usage,
+) -> Result<wgpu::Buffer, GpuError> {
+    let bytes: &[u8] = bytemuck::cast_slice(contents);
+    if bytes.len() <= SMALL {
+        return scoped(&gpu.device, || filled(gpu, label, contents, usage));
+    }
+    let size = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+    let buffer = scoped(&gpu.device, || zeroed(gpu, label, size, usage | Usage::COPY_DST))?;
+    // As in `write_by_pieces`, with smaller pieces.
+    let mut under_way = VecDeque::new();
+    for (at, piece) in (0..).step_by(SMALL).zip(bytes.chunks(SMALL)) {
+        pause().await;
+        let oldest = match under_way.len() == UNDER_WAY * (PIECE / SMALL) {
+            true => under_way.pop_front(),
+            false => None,
+        };
+        under_way.push_back(scoped(&gpu.device, || {
+            if oldest.is_some() {
+                let wait = wgpu::PollType::Wait { submission_index: oldest, timeout: None };
+                let _ = poll(&gpu.device, wait);
+            }
+            gpu.queue.write_buffer(&buffer, at, piece);
+            gpu.queue.submit([])
+        })?);
+    }
+    Ok(buffer)
+}
+
 /// Creates a buffer of zeros. To be called in an error scope.
 pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -94,7 +131,7 @@ pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::B
 mod tests {
     use super::*;
     use crate::gpu::device::readback::{self, Waiting};
-    use crate::gpu::scope::scoped;
+    use crate::parallel::pace::now;
 
     #[test]
     fn buffers_hold_their_contents_however_large() {
@@ -105,8 +142,11 @@ mod tests {
                 (0..length as u32).map(|i| i.wrapping_mul(0x9e37_79b1)).collect();
             let usage = Usage::STORAGE | Usage::COPY_SRC;
             let buffer = scoped(&gpu.device, || filled(&gpu, "test", &contents, usage)).unwrap();
-            let read = readback::read::<u32>(&gpu, &buffer, length, Waiting::Block);
-            assert!(pollster::block_on(read).unwrap() == contents, "{length} numbers");
+            let paced = now(filled_with_pauses(&gpu, "test", &contents, usage)).unwrap();
+            for buffer in [&buffer, &paced] {
+                let read = readback::read::<u32>(&gpu, buffer, length, Waiting::Block);
+                assert!(pollster::block_on(read).unwrap() == contents, "{length} numbers");
+            }
         }
     }
 }

@@ -8,6 +8,10 @@ use futures_intrusive::channel::shared::{OneshotReceiver, oneshot_channel};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::scope::{poll, scoped};
+use crate::parallel::paced;
+
+/// Number of values that are copied between two pauses.
+const CHUNK: usize = 1 << 15;
 
 /// The party that polls the device while a readback is in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +23,7 @@ pub(crate) enum Waiting {
 }
 
 /// Copies `count` values from the start of `source` to the host, after everything submitted so far.
-pub(crate) async fn read<T: Pod>(
+pub(crate) async fn read<T: Pod + Send>(
     gpu: &Gpu,
     source: &wgpu::Buffer,
     count: usize,
@@ -68,7 +72,7 @@ pub(crate) struct Copied<'g, T> {
     values: PhantomData<fn() -> T>,
 }
 
-impl<T: Pod> Copied<'_, T> {
+impl<T: Pod + Send> Copied<'_, T> {
     /// Waits for the values and returns them. Returns [`GpuError::WouldBlock`] for [`Waiting::Block`] in a browser, and
     /// [`GpuError::Lost`] if the device is lost.
     pub(crate) async fn values(self, waiting: Waiting) -> Result<Vec<T>, GpuError> {
@@ -92,7 +96,12 @@ impl<T: Pod> Copied<'_, T> {
         }
         let view =
             staging.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
-        let values = bytemuck::pod_collect_to_vec(&view[..]);
+        let mut values = vec![T::zeroed(); view.len() / size_of::<T>()];
+        paced::in_order(values.len(), CHUNK, |range| {
+            let bytes = range.start * size_of::<T>()..range.end * size_of::<T>();
+            bytemuck::cast_slice_mut(&mut values[range]).copy_from_slice(&view[bytes]);
+        })
+        .await;
         drop(view);
         staging.unmap();
         Ok(values)

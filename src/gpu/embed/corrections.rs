@@ -15,6 +15,7 @@ use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::{Dispatches, Fitting, Levels, stiffness};
 use crate::gpu::scope::scoped;
 use crate::metric::Smoothing;
+use crate::parallel::pace::now;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Plan, SweepParams};
 
@@ -54,8 +55,9 @@ impl EncodedCorrections {
         let Swept { buffers: copy, dispatches: of_copy } = swept(mesh, &dispatches.plan, step)?;
         let roots = stiffness::roots(gpu, &copy, &of_copy, free, smoothing, waiting).await?;
         drop((copy, of_copy));
-        let hierarchy = Hierarchy::new(problem, roots);
-        let levels = Levels::new(gpu, problem, buffers, dispatches, &hierarchy, Fitting::EachTime)?;
+        let hierarchy = Hierarchy::new(problem, roots).await;
+        let levels =
+            Levels::new(gpu, problem, buffers, dispatches, &hierarchy, Fitting::EachTime).await?;
         let whole = Positions::Whole;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, whole);
         let (begin, judge) = (pipeline(Kernel::BeginSearch)?, pipeline(Kernel::JudgeTrial)?);
@@ -96,7 +98,7 @@ fn swept(mesh: &DeviceMesh, plan: &Plan, step: &SweepParams) -> Result<Swept, Gp
     let DeviceMesh { gpu, problem, buffers, .. } = mesh;
     let copy = buffers.copied(gpu)?;
     let plan = plan.clone().endless();
-    let dispatches = Dispatches::new(gpu, problem, &copy, plan, vec![*step], false)?;
+    let dispatches = now(Dispatches::new(gpu, problem, &copy, plan, vec![*step], false))?;
     scoped(&gpu.device, || {
         let label = "gpu-smooth sweeps before levels";
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };

@@ -17,6 +17,7 @@ use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::options::Options;
+use crate::parallel::pace::now;
 use crate::run::Plan;
 
 /// The last valid positions of a mesh. Created by
@@ -31,7 +32,7 @@ pub struct LastValid {
 impl LastValid {
     pub(crate) fn new(gpu: &Gpu, problem: &Problem, mesh: &MeshBuffers) -> Result<Self, GpuError> {
         let plan = Plan::new(&Options::default()).endless();
-        let evaluation = Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)?;
+        let evaluation = now(Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false))?;
         let form = mesh.parts.form();
         let restore = gpu.pipelines.get(&gpu.device, &Kernel::RestoreLastValid, form)?;
         let parts = scoped(&gpu.device, || {

@@ -25,6 +25,7 @@ use crate::layout::Problem;
 use crate::layout::{prepare, prepare_to_untangle};
 use crate::mesh::{Mesh, MeshSize};
 use crate::options::{Feature, Options};
+use crate::parallel::pace::now;
 use crate::run::Plan;
 use crate::run::multilevel::NONE;
 use crate::targets::Targets;
@@ -114,7 +115,7 @@ impl DeviceMesh {
     }
 
     fn uploaded(gpu: &Gpu, mesh: &Mesh, problem: Problem) -> Result<Self, SmoothError> {
-        let buffers = MeshBuffers::new(gpu, &problem, problem.positions())?;
+        let buffers = now(MeshBuffers::new(gpu, &problem, problem.positions()))?;
         let numbers = scoped(&gpu.device, || {
             filled(gpu, "vertex numbers", problem.vertices(), Usage::STORAGE)
         })?;

@@ -21,6 +21,7 @@ use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped_to_buffer;
 use crate::layout::Problem;
 use crate::metric::Metric;
+use crate::parallel::pace::now;
 use crate::run::{Plan, Stop};
 
 /// Objectives and quality of a mesh at one point of a command buffer, as [`BoundObjective::encode_objective`] writes
@@ -112,7 +113,8 @@ impl Run {
         mesh: &MeshBuffers,
         plan: Plan,
     ) -> Result<Self, GpuError> {
-        let evaluation = Arc::new(Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)?);
+        let evaluation =
+            now(Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)).map(Arc::new)?;
         let (changes, triangles) = (mesh.changes.clone(), problem.triangles().len());
         Ok(Self { dispatches: Arc::clone(&evaluation), evaluation, changes, triangles })
     }

@@ -18,6 +18,7 @@ use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Scheme;
 use crate::options::{Feature, Method, Options};
+use crate::parallel::pace::now;
 use crate::run::corrections::plan_steps::OMEGA_BETWEEN;
 use crate::run::{Plan, SweepParams};
 
@@ -130,8 +131,9 @@ impl Sweeps {
             false => plan.steps(),
         };
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
-        let dispatches =
-            |plan, steps| Dispatches::new(gpu, problem, buffers, plan, steps, false).map(Arc::new);
+        let dispatches = |plan, steps| {
+            now(Dispatches::new(gpu, problem, buffers, plan, steps, false)).map(Arc::new)
+        };
         let (dispatches, evaluation) = match ending {
             Ending::Never => {
                 let both = dispatches(endless, steps)?;

@@ -7,6 +7,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::size::ALIGNMENT;
 use crate::gpu::embed::window::Window;
 use crate::layout::Problem;
+use crate::parallel::pace::now;
 use crate::topology::predicates::not_positive;
 
 /// The layout and coordinates of an application's vertex buffer: x and y of vertex i are two f32 from byte
@@ -154,7 +155,7 @@ impl Coordinates {
         if !rounded.as_flattened().iter().all(|x| x.is_finite()) {
             return None;
         }
-        let bad = |points: &[[f64; 2]]| not_positive(points, problem.triangles()).len();
+        let bad = |points: &[[f64; 2]]| now(not_positive(points, problem.triangles())).len();
         let inverted = bad(&rounded);
         if inverted == 0 {
             return Some(0);

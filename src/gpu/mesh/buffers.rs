@@ -5,7 +5,9 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::buffers::{bytes, filled, rows, write_by_pieces, zeroed};
+use crate::gpu::device::buffers::{
+    bytes, filled, filled_with_pauses, rows, write_by_pieces, zeroed,
+};
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
 use crate::gpu::kernels::layouts::BoundPositions;
@@ -13,6 +15,8 @@ use crate::gpu::kernels::uniforms::{HELD, split};
 use crate::gpu::mesh::{Changes, Parts, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
+use crate::parallel::pace::now;
+use crate::parallel::paced;
 
 /// The buffers that live as long as a mesh stays on the device.
 pub(crate) struct MeshBuffers {
@@ -28,27 +32,22 @@ pub(crate) struct MeshBuffers {
 
 impl MeshBuffers {
     /// Uploads a problem with its vertices at `positions`.
-    pub(crate) fn new(gpu: &Gpu, problem: &Problem, positions: &[DVec2]) -> Result<Self, GpuError> {
+    pub(crate) async fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        positions: &[DVec2],
+    ) -> Result<Self, GpuError> {
         let parts = Parts::new(problem, &gpu.device.limits())?;
-        let positions = laid_out(positions, problem.maps(), parts.low_positions);
-        scoped(&gpu.device, || Self {
-            positions: filled(
-                gpu,
-                "positions",
-                &positions,
-                Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
-            ),
-            ring_start: filled(
-                gpu,
-                "ring starts",
-                problem.ring_start(),
-                Usage::STORAGE | Usage::COPY_DST,
-            ),
-            ring: filled(gpu, "one-rings", problem.ring(), Usage::STORAGE),
-            triangles: filled(gpu, "triangles", problem.triangles(), Usage::STORAGE),
-            changes: Changes::new(gpu),
-            parts,
-        })
+        let positions = laid_out(positions, problem.maps(), parts.low_positions).await;
+        let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+        let positions = filled_with_pauses(gpu, "positions", &positions, usage).await?;
+        let (starts, usage) = (problem.ring_start(), Usage::STORAGE | Usage::COPY_DST);
+        let ring_start = filled_with_pauses(gpu, "ring starts", starts, usage).await?;
+        let (ring, triangles) = (problem.ring(), problem.triangles());
+        let ring = filled_with_pauses(gpu, "one-rings", ring, Usage::STORAGE).await?;
+        let triangles = filled_with_pauses(gpu, "triangles", triangles, Usage::STORAGE).await?;
+        let changes = scoped(&gpu.device, || Changes::new(gpu))?;
+        Ok(Self { positions, ring_start, ring, triangles, changes, parts })
     }
 
     /// Creates a mesh at other `positions`, with its own counters of changes. Both meshes share all other buffers.
@@ -61,7 +60,7 @@ impl MeshBuffers {
         problem: &Problem,
         positions: &[DVec2],
     ) -> Result<Self, GpuError> {
-        let positions = laid_out(positions, problem.maps(), self.parts.low_positions);
+        let positions = now(laid_out(positions, problem.maps(), self.parts.low_positions));
         scoped(&gpu.device, || {
             self.at(gpu, filled(gpu, "further positions", &positions, Usage::STORAGE))
         })
@@ -183,24 +182,41 @@ impl MeshBuffers {
     }
 }
 
+/// Number of rows that are computed between two pauses.
+const CHUNK: usize = 1 << 14;
+
 /// Size of the high parts of a position, in bytes. The low parts have equal size.
 const PART: u64 = POSITION / 2;
 
 /// Returns the content of the buffer of positions. Without `low`, the low parts of each vertex follow its high parts.
-/// With `low`, all high parts come first, and all low parts start at byte `low`. Maps follow the positions in the
-/// same form.
-fn laid_out(positions: &[DVec2], maps: Option<&[[f32; 3]]>, low: Option<u64>) -> Vec<[f32; 2]> {
+/// With `low`, all high parts come first, and all low parts start at byte `low`. Maps follow the positions in
+/// the same form.
+async fn laid_out(
+    positions: &[DVec2],
+    maps: Option<&[[f32; 3]]>,
+    low: Option<u64>,
+) -> Vec<[f32; 2]> {
     let count = positions.len() + maps.map_or(0, <[_]>::len);
     let (step, low, length) = match low {
         None => (2, 1, 2 * count),
         Some(low) => (1, (low / PART) as usize, (low / PART) as usize + count),
     };
     let mut parts = vec![[0.0; 2]; length];
-    let positions = positions.iter().map(|&p| split(p));
-    let maps = maps.unwrap_or_default().iter().map(|&[xx, xy, yy]| [xx, xy, yy, 0.0]);
-    for (row, [a, b, c, d]) in positions.chain(maps).enumerate() {
-        parts[step * row] = [a, b];
-        parts[step * row + low] = [c, d];
-    }
+    let maps = maps.unwrap_or_default();
+    let row_of = |row: usize| match positions.get(row) {
+        Some(&position) => split(position),
+        None => {
+            let [xx, xy, yy] = maps[row - positions.len()];
+            [xx, xy, yy, 0.0]
+        }
+    };
+    paced::in_order(count, CHUNK, |rows| {
+        for row in rows {
+            let [a, b, c, d] = row_of(row);
+            parts[step * row] = [a, b];
+            parts[step * row + low] = [c, d];
+        }
+    })
+    .await;
     parts
 }

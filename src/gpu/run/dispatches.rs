@@ -20,6 +20,7 @@ use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::options::Derivatives;
+use crate::parallel::pace::pause;
 use crate::run::{Plan, StopRule, SweepParams};
 
 /// The dispatches of a plan, bound to a mesh on the device. The methods encode sweeps and evaluations, and submit
@@ -130,7 +131,7 @@ impl Uniforms {
 impl Dispatches {
     /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, each evaluation
     /// copies the positions of a new lowest objective.
-    pub(crate) fn new(
+    pub(crate) async fn new(
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
@@ -145,11 +146,15 @@ impl Dispatches {
             if sweeps.iter().all(|known| (known.0, known.1) != (metric, derivatives)) {
                 let sweep = pipeline(Kernel::Sweep(metric, derivatives))?;
                 sweeps.push((metric, derivatives, sweep));
+                pause().await;
             }
         }
         let objective = pipeline(Kernel::Objective(plan.tracked()))?;
+        pause().await;
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
+        pause().await;
         let keep_best = keep_best.then(|| pipeline(Kernel::KeepBest)).transpose()?;
+        pause().await;
 
         let partials = objective_invocations(problem.triangles().len());
         let partial_bytes =

@@ -19,9 +19,12 @@ use crate::gpu::run::stiffness;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
+use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Stop, SweepParams};
 
+/// Number of positions that are computed between two pauses.
+const CHUNK: usize = 1 << 14;
 /// Least sum of q² - ideal² over a mesh with a triangle whose edges are not finite.
 const MIN_NOT_FINITE: f64 = 1e38;
 /// Number of totals along a correction: objective before and after the step, broken triangles, and slope.
@@ -57,7 +60,7 @@ impl<'a> GpuEngine<'a> {
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
-    pub(crate) fn new(
+    pub(crate) async fn new(
         gpu: &'a Gpu,
         problem: &Problem,
         start: &[DVec2],
@@ -66,15 +69,16 @@ impl<'a> GpuEngine<'a> {
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
         gpu.device.check()?;
-        let mesh = MeshBuffers::new(gpu, problem, start)?;
+        let mesh = MeshBuffers::new(gpu, problem, start).await?;
         let keep_best = !plan.is_monotone();
-        let dispatches = Dispatches::new(gpu, problem, &mesh, plan, steps, keep_best)?;
+        let dispatches = Dispatches::new(gpu, problem, &mesh, plan, steps, keep_best).await?;
+        let start = paced::copied(start).await;
         let (levels, secants, hierarchy) = (None, None, None);
         let evaluated = 0;
         Ok(Self {
             gpu,
             problem: problem.clone(),
-            start: start.to_vec(),
+            start,
             mesh,
             dispatches,
             levels,
@@ -158,13 +162,18 @@ impl<'a> GpuEngine<'a> {
 
     /// Returns the positions of all vertices, given the free vertices' positions on the device. A vertex that has not
     /// moved keeps the bits of `start`, as the device's pairs of floats hold only 48 bits.
-    fn moved(&self, free: Vec<[f32; 4]>) -> Vec<DVec2> {
-        let mut positions = self.start.clone();
-        for (position, now) in positions.iter_mut().zip(free) {
-            if now != split(*position) {
-                *position = join(now);
-            }
-        }
+    async fn moved(&self, free: Vec<[f32; 4]>) -> Vec<DVec2> {
+        let mut positions = Vec::with_capacity(self.start.len());
+        paced::in_order(self.start.len(), CHUNK, |range| {
+            let start = &self.start[range.clone()];
+            let now = free.get(range.start..range.end.min(free.len())).unwrap_or_default();
+            let moved = start.iter().zip(now).map(|(&start, &now)| match now == split(start) {
+                true => start,
+                false => join(now),
+            });
+            positions.extend(moved.chain(start[now.len()..].iter().copied()));
+        })
+        .await;
         positions
     }
 
@@ -238,7 +247,7 @@ impl Engine for GpuEngine<'_> {
     async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
         let free = self.problem.free_count();
         let moved = self.mesh.read_positions(self.gpu, free, self.waiting).await?;
-        Ok(Cow::Owned(self.moved(moved)))
+        Ok(Cow::Owned(self.moved(moved).await))
     }
 
     async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
@@ -247,18 +256,19 @@ impl Engine for GpuEngine<'_> {
             true => self.mesh.read_positions(self.gpu, free, self.waiting).await?,
             false => readback::read(self.gpu, &self.dispatches.best, free, self.waiting).await?,
         };
-        Ok(self.moved(moved))
+        Ok(self.moved(moved).await)
     }
 
     fn take_hierarchy(&mut self) -> Option<Hierarchy> {
         self.hierarchy.take()
     }
 
-    fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
+    async fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         // The old levels are dropped first, as both at once would take more memory than the mesh itself.
         self.levels = None;
         let Self { gpu, problem, mesh, dispatches, secants, .. } = self;
-        let levels = Levels::new(gpu, problem, mesh, dispatches, &hierarchy, Fitting::ByHost)?;
+        let levels =
+            Levels::new(gpu, problem, mesh, dispatches, &hierarchy, Fitting::ByHost).await?;
         if let Some(secants) = secants {
             secants.bind_to(gpu, mesh, &dispatches.params, &levels)?;
         }
@@ -288,7 +298,7 @@ impl Engine for GpuEngine<'_> {
         let mut secants = self.secants.take().filter(|_| accelerated);
         if accelerated && secants.is_none() {
             let (params, free) = (&self.dispatches.params, self.problem.free_count() as u32);
-            secants = Secants::new(self.gpu, &self.mesh, params, levels, free)?;
+            secants = Secants::new(self.gpu, &self.mesh, params, levels, free).await?;
         }
         let correction = |passes: &mut Passes<'_>| {
             self.dispatches.encode_sweep(passes, step);
@@ -348,7 +358,7 @@ impl Engine for GpuEngine<'_> {
             if whole {
                 state.add(BEST, &best);
             }
-            state.best = Some(self.moved(best));
+            state.best = Some(self.moved(best).await);
         }
         if whole {
             state.add(POSITIONS, &positions);
@@ -361,11 +371,11 @@ impl Engine for GpuEngine<'_> {
                 secants.save(gpu, &mut state, waiting).await?;
             }
         }
-        state.positions = self.moved(positions);
+        state.positions = self.moved(positions).await;
         Ok(state)
     }
 
-    fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
+    async fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
         let (gpu, free) = (self.gpu, self.problem.free_count());
         let Some(positions) = state.own::<[f32; 4]>(POSITIONS, free) else { return Ok(false) };
         let Some([control]) = state
@@ -400,13 +410,13 @@ impl Engine for GpuEngine<'_> {
         if state.roots.is_empty() {
             return Ok(true);
         }
-        let Some(hierarchy) = Hierarchy::of_build_log(&self.problem, &state.roots) else {
+        let Some(hierarchy) = Hierarchy::of_build_log(&self.problem, &state.roots).await else {
             return Ok(false);
         };
-        self.set_hierarchy(hierarchy)?;
+        self.set_hierarchy(hierarchy).await?;
         if let (Some(levels), true) = (&self.levels, Secants::are_in(state)) {
             let params = &self.dispatches.params;
-            let secants = Secants::new(gpu, &self.mesh, params, levels, free as u32)?;
+            let secants = Secants::new(gpu, &self.mesh, params, levels, free as u32).await?;
             let Some(mut secants) = secants else { return Ok(false) };
             if !secants.restore(gpu, state)? {
                 return Ok(false);

@@ -1,5 +1,7 @@
 //! Coarse levels of a mesh on the device, and the dispatches of a correction.
 
+use std::pin::Pin;
+
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
@@ -22,6 +24,7 @@ use crate::gpu::run::pages::Pages;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
+use crate::parallel::pace::pause;
 use crate::run::EXCLUSION_PASSES;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
@@ -154,10 +157,14 @@ impl Listing<'_> {
 
     /// Stores a matrix and the reciprocals of its diagonal, an empty slice for none. Returns the pages and offsets of
     /// both.
-    fn matrix(&mut self, matrix: &Sparse, diagonal: &[f32]) -> Result<(Bound, CoarseOp), GpuError> {
+    async fn matrix(
+        &mut self,
+        matrix: &Sparse,
+        diagonal: &[f32],
+    ) -> Result<(Bound, CoarseOp), GpuError> {
         let (structure, [starts, columns]) =
-            self.structure.place([matrix.starts(), matrix.columns()])?;
-        let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal])?;
+            self.structure.place([matrix.starts(), matrix.columns()]).await?;
+        let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal]).await?;
         let op = coarse_op(matrix.rows() as u32);
         let op = CoarseOp { starts, columns, entries, diagonal, ..op };
         Ok((Bound::Coarse { structure, values }, op))
@@ -183,7 +190,17 @@ impl Listing<'_> {
 
     /// Appends the dispatches of one V-cycle over the levels to `list`. `right` is the offset of the right-hand side in
     /// `vectors`. Returns the offset of the solution.
-    fn solve(
+    fn solve<'l>(
+        &'l mut self,
+        levels: &'l [Level],
+        right: u32,
+        list: &'l mut Vec<Dispatch>,
+    ) -> Pin<Box<dyn Future<Output = Result<u32, GpuError>> + Send + 'l>> {
+        Box::pin(self.solved(levels, right, list))
+    }
+
+    /// Does the work of [`Self::solve`], which makes the recursion finite in size.
+    async fn solved(
         &mut self,
         levels: &[Level],
         right: u32,
@@ -193,14 +210,14 @@ impl Listing<'_> {
         let rows = level.operator.rows();
         let x = self.vector(rows);
         if let Coarser::Direct(inverse) = &level.coarser {
-            let (values, [entries]) = self.values.place([&inverse[..]])?;
+            let (values, [entries]) = self.values.place([&inverse[..]]).await?;
             let op = CoarseOp { entries, right, out: x, ..coarse_op(rows as u32) };
             let bound = Bound::Coarse { structure: 0, values };
             list.push(self.step(Kernel::CoarsestSolve, bound, Groups::ForRows, Op::Coarse(op))?);
             return Ok(x);
         }
         let (other, last_step) = (self.vector(rows), self.vector(rows));
-        let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
+        let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal).await?;
         let smoother = CoarseOp { right, last_step, ..operator };
         // Lists two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, and one on to
         // `to`.
@@ -226,32 +243,52 @@ impl Listing<'_> {
         let residual = Op::Coarse(residual);
         list.push(self.step(Kernel::MatrixVector, bound, Groups::ForRows, residual)?);
         let below_right = self.vector(restriction.rows());
-        list.push(self.matrix_vector(restriction, other, NONE, below_right)?);
-        let solution = self.solve(below, below_right, list)?;
-        list.push(self.matrix_vector(prolongation, solution, x, other)?);
+        list.push(self.matrix_vector(restriction, other, NONE, below_right).await?);
+        let solution = self.solve(below, below_right, list).await?;
+        list.push(self.matrix_vector(prolongation, solution, x, other).await?);
         let end = self.vector(rows);
         smooth(self, list, [other, x, end])?;
         Ok(end)
     }
 
     /// Returns the dispatch of out = right + M x, with offsets in `vectors` for all three.
-    fn matrix_vector(
+    async fn matrix_vector(
         &mut self,
         matrix: &Sparse,
         x: u32,
         right: u32,
         out: u32,
     ) -> Result<Dispatch, GpuError> {
-        let (bound, op) = self.matrix(matrix, &[])?;
+        let (bound, op) = self.matrix(matrix, &[]).await?;
         let op = CoarseOp { x, right, out, right_factor: 1.0, product_factor: 1.0, ..op };
         self.step(Kernel::MatrixVector, bound, Groups::ForRows, Op::Coarse(op))
     }
 
     /// Creates the buffers, and the bind groups of the listed dispatches. `params` is the uniform of the run on `mesh`.
-    fn upload(&self, mesh: &MeshBuffers, free: u32, params: &wgpu::Buffer, ops: &[u8]) -> Uploaded {
+    async fn upload(
+        &self,
+        mesh: &MeshBuffers,
+        free: u32,
+        params: &wgpu::Buffer,
+        ops: &[u8],
+    ) -> Result<Uploaded, GpuError> {
+        let gpu = self.gpu;
+        let structure = self.structure.upload(gpu).await?;
+        let values = self.values.upload(gpu).await?;
+        scoped(&gpu.device, || self.bound(mesh, free, params, ops, [structure, values]))
+    }
+
+    /// Does the work of [`Self::upload`] after the pages of structure and values. To be called in an error scope.
+    fn bound(
+        &self,
+        mesh: &MeshBuffers,
+        free: u32,
+        params: &wgpu::Buffer,
+        ops: &[u8],
+        [structure, values]: [Vec<wgpu::Buffer>; 2],
+    ) -> Uploaded {
         let gpu = self.gpu;
         let ops = filled(gpu, "level steps", ops, Usage::UNIFORM | Usage::COPY_DST);
-        let (structure, values) = (self.structure.upload(gpu), self.values.upload(gpu));
         let pairs = |label, length: u64| {
             let usage = Usage::STORAGE | Usage::COPY_SRC;
             zeroed(gpu, label, length * size_of::<[f32; 2]>() as u64, usage)
@@ -322,7 +359,7 @@ impl Levels {
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the levels are too large for the device, or another [`GpuError`] if the device fails.
-    pub(crate) fn new(
+    pub(crate) async fn new(
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
@@ -332,6 +369,28 @@ impl Levels {
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
+        let mut kernels = vec![
+            Kernel::Gradient(metric),
+            Kernel::SmoothGradient,
+            Kernel::Restrict,
+            Kernel::CoarsestSolve,
+            Kernel::Prolong,
+            Kernel::ObjectiveAlongCorrection(metric),
+            Kernel::SumAlongCorrection,
+            Kernel::MoveAlongCorrection,
+        ];
+        let has_guard = guard < NO_GUARD as f32;
+        if has_guard {
+            kernels.extend([Kernel::FindBroken, Kernel::ExcludeBroken]);
+        }
+        if hierarchy.levels().len() > 1 {
+            kernels.extend([Kernel::Chebyshev, Kernel::MatrixVector]);
+        }
+        // Compiled here with pauses, so that the listing finds every kernel compiled.
+        for kernel in kernels {
+            gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form())?;
+            pause().await;
+        }
         let mut listing = Listing {
             gpu,
             form: mesh.parts.form(),
@@ -345,10 +404,10 @@ impl Levels {
         let partial_sums = listing.vector(4 * partials as usize);
 
         let (values, [roots, diagonal]) =
-            listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
-        let (of_page, [aggregate_of]) = listing.structure.place([hierarchy.aggregate_of()])?;
+            listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()]).await?;
+        let (of_page, [aggregate_of]) = listing.structure.place([hierarchy.aggregate_of()]).await?;
         let (members_page, [member_starts, members]) =
-            listing.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
+            listing.structure.place([hierarchy.member_starts(), hierarchy.members()]).await?;
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
         let right = listing.vector(aggregates as usize);
         let free = problem.free_count() as u32;
@@ -414,13 +473,13 @@ impl Levels {
         let op = Op::Transfer(TransferOp { rows: aggregates, ..transfer });
         let bound = Bound::Transfer { part: 0, structure: members_page, values };
         correction.push(listing.step(Kernel::Restrict, bound, Groups::ForRows, op)?);
-        let solution = listing.solve(hierarchy.levels(), right, &mut correction)?;
+        let solution = listing.solve(hierarchy.levels(), right, &mut correction).await?;
         let op = TransferOp { solution, ..transfer };
         transfer_by_rings(&mut listing, &mut correction, Kernel::Prolong, op)?;
 
         let mut left_out = Vec::new();
         let (whole, everywhere) = (Bound::Fine { part: 0 }, Op::Fine(fine));
-        if guard < NO_GUARD as f32 {
+        if has_guard {
             // Between V-cycles, `vectors` from SUMS on holds nothing that is still needed.
             listing.vectors = listing.vectors.max(SUMS + free);
             fine_by_rings(&mut listing, &mut left_out, Kernel::FindBroken)?;
@@ -462,7 +521,7 @@ impl Levels {
             ops[at..at + op.len()].copy_from_slice(op);
         }
         let Uploaded { bind_groups, ops, vectors, gradient, direction } =
-            scoped(&gpu.device, || listing.upload(mesh, free, &dispatches.params, &ops))?;
+            listing.upload(mesh, free, &dispatches.params, &ops).await?;
         Ok(Self {
             bind_groups,
             ops,

@@ -4,8 +4,9 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::buffers::filled;
+use crate::gpu::device::buffers::filled_with_pauses;
 use crate::gpu::device::size::check_limit;
+use crate::parallel::pace::pause;
 
 /// Arrays, grouped into pages. Each page becomes a buffer.
 pub(crate) struct Pages<T> {
@@ -15,7 +16,7 @@ pub(crate) struct Pages<T> {
     pages: Vec<Vec<T>>,
 }
 
-impl<T: bytemuck::NoUninit> Pages<T> {
+impl<T: bytemuck::NoUninit + Sync> Pages<T> {
     /// Creates an empty set of pages. `what` names the content in labels and errors.
     pub(crate) fn new(gpu: &Gpu, what: &'static str) -> Self {
         let limits = gpu.device.limits();
@@ -28,7 +29,7 @@ impl<T: bytemuck::NoUninit> Pages<T> {
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the arrays together exceed a page.
-    pub(crate) fn place<const N: usize>(
+    pub(crate) async fn place<const N: usize>(
         &mut self,
         arrays: [&[T]; N],
     ) -> Result<(usize, [u32; N]), GpuError> {
@@ -42,33 +43,39 @@ impl<T: bytemuck::NoUninit> Pages<T> {
             last += 1;
         }
         let page = &mut self.pages[last];
-        let places = arrays.map(|array| {
-            let place = page.len() as u32;
+        let mut places = [0; N];
+        for (array, place) in arrays.into_iter().zip(&mut places) {
+            *place = page.len() as u32;
             page.extend_from_slice(array);
-            place
-        });
+            pause().await;
+        }
         Ok((last, places))
     }
 
-    /// Uploads the pages. To be called in an error scope.
-    pub(crate) fn upload(&self, gpu: &Gpu) -> Vec<wgpu::Buffer> {
-        self.pages.iter().map(|page| filled(gpu, self.what, page, Usage::STORAGE)).collect()
+    /// Uploads the pages.
+    pub(crate) async fn upload(&self, gpu: &Gpu) -> Result<Vec<wgpu::Buffer>, GpuError> {
+        let mut buffers = Vec::new();
+        for page in &self.pages {
+            buffers.push(filled_with_pauses(gpu, self.what, page, Usage::STORAGE).await?);
+        }
+        Ok(buffers)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parallel::pace::now;
 
     #[test]
     fn arrays_placed_together_are_in_one_page() {
         let mut pages = Pages { what: "numbers", most: 16, pages: vec![Vec::new()] };
-        assert_eq!(pages.place([&[1u32, 2][..], &[3]]).unwrap(), (0, [0, 2]));
-        assert_eq!(pages.place([&[4][..]]).unwrap(), (0, [3]));
-        assert_eq!(pages.place([&[5][..], &[6, 7, 8]]).unwrap(), (1, [0, 1]));
-        assert_eq!(pages.place([&[9][..]]).unwrap(), (2, [0]));
+        assert_eq!(now(pages.place([&[1u32, 2][..], &[3]])).unwrap(), (0, [0, 2]));
+        assert_eq!(now(pages.place([&[4][..]])).unwrap(), (0, [3]));
+        assert_eq!(now(pages.place([&[5][..], &[6, 7, 8]])).unwrap(), (1, [0, 1]));
+        assert_eq!(now(pages.place([&[9][..]])).unwrap(), (2, [0]));
         assert_eq!(pages.pages, [vec![1, 2, 3, 4], vec![5, 6, 7, 8], vec![9]]);
-        let error = pages.place([&[0; 3][..], &[0; 2]]).unwrap_err();
+        let error = now(pages.place([&[0; 3][..], &[0; 2]])).unwrap_err();
         assert!(matches!(error, GpuError::Limit { needed: 20, available: 16, .. }), "{error}");
     }
 }

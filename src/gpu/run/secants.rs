@@ -16,6 +16,7 @@ use crate::gpu::kernels::uniforms::{SecantOp, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::levels::Levels;
 use crate::gpu::scope::scoped;
+use crate::parallel::pace::pause;
 use crate::run::EngineState;
 
 /// Number of scalars in front of the partial sums in the buffer of sums, as in shaders/secants/common.wgsl.
@@ -43,7 +44,7 @@ pub(crate) struct Secants {
 
 impl Secants {
     /// Creates an empty set of pairs; `None` if the vectors of two pairs exceed a binding of the device.
-    pub(crate) fn new(
+    pub(crate) async fn new(
         gpu: &Gpu,
         mesh: &MeshBuffers,
         params: &wgpu::Buffer,
@@ -58,10 +59,15 @@ impl Secants {
         let positions = mesh.parts.form();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
         let close = pipeline(Kernel::CompletePair)?;
+        pause().await;
         let sum = pipeline(Kernel::SumSecants)?;
+        pause().await;
         let bend = pipeline(Kernel::BendGradient)?;
+        pause().await;
         let multiply = pipeline(Kernel::MultiplyCorrection)?;
+        pause().await;
         let open = pipeline(Kernel::BeginPair)?;
+        pause().await;
         let partials = objective_invocations(free as usize);
         // The first pair opens in the slot of the older pair.
         let op = SecantOp {

@@ -15,6 +15,8 @@ use crate::gpu::mesh::{MeshBuffers, RingPart};
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::scope::scoped;
 use crate::metric::Smoothing;
+use crate::parallel::pace::pause;
+use crate::parallel::paced;
 use crate::run::multilevel::NONE;
 
 /// Computes the square root of the stiffness at each of `free` vertices, with EDGE made smooth by `smoothing`; see
@@ -30,6 +32,7 @@ pub(crate) async fn roots(
     let form = mesh.parts.form();
     let kernel = Kernel::Stiffness(dispatches.plan.scheme.base());
     let pipeline = gpu.pipelines.get(&gpu.device, &kernel, form)?;
+    pause().await;
     let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
     let stride = (size_of::<FineOp>() as u32).next_multiple_of(alignment);
     let mut bytes = vec![0_u8; stride as usize * mesh.parts.rings.len()];
@@ -87,5 +90,5 @@ pub(crate) async fn roots(
         found
     })?;
     let roots: Vec<[f32; 2]> = readback::read(gpu, &found, free as usize, waiting).await?;
-    Ok(roots.into_iter().map(|[root, _]| root).collect())
+    Ok(paced::collect(roots.len(), |v| roots[v][0]).await)
 }

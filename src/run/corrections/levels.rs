@@ -6,7 +6,6 @@ use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
-use crate::run::yielding::yield_now;
 
 /// Number of corrections after which levels are fitted to a changed stiffness. Accelerated corrections fit the levels
 /// after every such change: vertices then move far, and unchanged levels gain little. A layer that opens up took three
@@ -80,7 +79,6 @@ impl Corrections {
         change: Change,
         now: usize,
     ) -> Result<bool, GpuError> {
-        yield_now().await;
         // Levels that are replaced are freed before new levels are built.
         let before = engine.take_hierarchy().filter(|_| change == Change::Fit);
         self.fitted = now;
@@ -89,18 +87,17 @@ impl Corrections {
         }
         if self.has_local_maps() {
             // The levels fit the stiffness in local coordinates, which follow the triangles.
-            self.problem.set_local_maps_at(&engine.positions().await?);
+            self.problem.set_local_maps_at(&engine.positions().await?).await;
             engine.set_maps(&self.problem)?;
             // Gains by other levels predict nothing.
             self.estimates = [f64::INFINITY; ESTIMATES];
         }
         let roots = engine.stiffness_roots(self.step(OMEGA_BETWEEN).smoothing()).await?;
         let hierarchy = match before {
-            Some(before) => before.fitted_to(&self.problem, roots),
-            None => Hierarchy::new(&self.problem, roots),
+            Some(before) => before.fitted_to(&self.problem, roots).await,
+            None => Hierarchy::new(&self.problem, roots).await,
         };
-        yield_now().await;
-        match engine.set_hierarchy(hierarchy) {
+        match engine.set_hierarchy(hierarchy).await {
             Err(error @ GpuError::Limit { .. }) => {
                 self.left_out = Some(error);
                 Ok(false)

@@ -44,7 +44,7 @@ impl Corrections {
         if self.was_reopened || !is_due || !is_left || history.stop().is_some() {
             return Ok(());
         }
-        let mut worst = worst_movable(&self.problem, &engine.positions().await?);
+        let mut worst = worst_movable(&self.problem, &engine.positions().await?).await;
         if worst <= FLAT {
             return Ok(());
         }
@@ -59,12 +59,12 @@ impl Corrections {
                 continue;
             }
             let last = worst;
-            worst = worst_movable(&self.problem, &engine.positions().await?);
+            worst = worst_movable(&self.problem, &engine.positions().await?).await;
             if worst <= FLAT {
                 break;
             }
             if worst > last * (1.0 - OPENS) || log.len() == MAX_SWEEPS as usize {
-                engine.restore(&before)?;
+                engine.restore(&before).await?;
                 return Ok(());
             }
         }

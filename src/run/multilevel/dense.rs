@@ -48,11 +48,12 @@ pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parallel::pace::now;
 
     #[test]
     fn the_inverse_times_the_matrix_is_the_identity() {
         let n = 12;
-        let matrix = Sparse::from_rows(n, |row, sum| {
+        let matrix = now(Sparse::from_rows(n, |row, sum| {
             for column in 0..n {
                 let apart = row.abs_diff(column);
                 sum.add(
@@ -60,7 +61,7 @@ mod tests {
                     if apart == 0 { 3.0 } else { -1.0 / (1 + apart * apart) as f32 },
                 );
             }
-        });
+        }));
         let inverse = inverse(&matrix);
         for i in 0..n {
             for j in 0..n {

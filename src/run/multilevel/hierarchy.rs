@@ -1,7 +1,8 @@
 //! The coarser levels of a mesh: aggregates of vertices, with graph Laplacians on the aggregates.
 
 use crate::layout::Problem;
-use crate::parallel::collect;
+use crate::parallel::pace::now;
+use crate::parallel::{collect, paced};
 use crate::run::multilevel::aggregate::{Aggregates, NONE};
 use crate::run::multilevel::dense;
 use crate::run::multilevel::sparse::Sparse;
@@ -59,28 +60,27 @@ pub(crate) enum Coarser {
 impl Hierarchy {
     /// Builds the levels. `roots` has the square root of the objective's stiffness at each free vertex. The weight of
     /// an edge is the product of the roots at its two ends.
-    pub(crate) fn new(problem: &Problem, roots: Vec<f32>) -> Self {
-        Self::with_roots(problem, |_| true, || usable(roots))
+    pub(crate) async fn new(problem: &Problem, roots: Vec<f32>) -> Self {
+        Self::with_roots(problem, |_| true, usable(roots)).await
     }
 
     /// Builds the levels for untangling, with the reciprocals of the target areas at the vertices as weights.
     /// Corrections move no free vertex that is `held`.
     pub(crate) fn of_sizes(problem: &Problem, areas: &[f64], held: &[bool]) -> Self {
         let root = |area: &f64| (0.5 / area).sqrt() as f32;
-        let roots = || areas[..problem.free_count()].iter().map(root).collect();
-        Self::with_roots(problem, |v| !held[v], roots)
+        let roots = collect(problem.free_count(), |v| root(&areas[v]));
+        now(Self::with_roots(problem, |v| !held[v], roots))
     }
 
-    /// Builds the levels from the square roots of stiffness that `roots` computes for the free vertices. Unknowns are
-    /// only the vertices for which `moves` returns true.
-    fn with_roots(
+    /// Builds the levels from the square roots of stiffness at the free vertices. Unknowns are only the vertices for
+    /// which `moves` returns true.
+    async fn with_roots(
         problem: &Problem,
-        moves: impl Fn(usize) -> bool + Sync,
-        roots: impl FnOnce() -> Vec<f32> + Send,
+        moves: impl Fn(usize) -> bool + Sync + Send,
+        root: Vec<f32>,
     ) -> Self {
-        // Aggregation is serial, so the roots are computed on another thread at the same time.
-        let (aggregates, root) = rayon::join(|| aggregates(problem, &moves), roots);
-        let (member_start, member) = aggregates.members();
+        let aggregates = aggregates(problem, &moves).await;
+        let (member_start, member) = aggregates.members().await;
         let mut hierarchy = Self {
             aggregates,
             member_start,
@@ -90,32 +90,35 @@ impl Hierarchy {
             inverse_diagonal: Vec::new(),
             levels: Vec::new(),
         };
-        hierarchy.inverse_diagonal = hierarchy.diagonal_inverted(problem);
-        hierarchy.levels = levels(hierarchy.first_coarse_operator(problem, &moves));
+        hierarchy.inverse_diagonal = hierarchy.diagonal_inverted(problem).await;
+        hierarchy.levels = levels(hierarchy.first_coarse_operator(problem, &moves).await).await;
         hierarchy
     }
 
     /// Fits the levels to new `roots`. Aggregates stay unchanged, and the couplings between aggregates are scaled by
     /// the average change of the roots of their members. Roots of neighboring aggregates change by nearly equal
     /// factors. Fitted levels are therefore close to Galerkin operators, for a small part of the work.
-    pub(crate) fn fitted_to(mut self, problem: &Problem, roots: Vec<f32>) -> Self {
+    pub(crate) async fn fitted_to(mut self, problem: &Problem, roots: Vec<f32>) -> Self {
         let root = usable(roots);
         let mean = |members: &[u32]| {
             let factor = |&v: &u32| root[v as usize] / self.root[v as usize];
             members.iter().map(factor).sum::<f32>() / members.len() as f32
         };
         let start = &self.member_start;
-        let mut factors = collect(start.len() - 1, |aggregate| {
+        let mut factors = paced::collect(start.len() - 1, |aggregate| {
             mean(&self.member[start[aggregate] as usize..start[aggregate + 1] as usize])
-        });
+        })
+        .await;
         let before = std::mem::replace(&mut self.root, root);
         self.earlier.push(before);
-        self.inverse_diagonal = self.diagonal_inverted(problem);
+        self.inverse_diagonal = self.diagonal_inverted(problem).await;
         for Level { operator, inverse_diagonal, coarser } in &mut self.levels {
-            operator.scale_couplings(&factors);
-            *inverse_diagonal = operator.diagonal_inverted();
+            operator.scale_couplings(&factors).await;
+            *inverse_diagonal = operator.diagonal_inverted().await;
             match coarser {
-                Coarser::Level { restriction, .. } => factors = restriction.means(&factors),
+                Coarser::Level { restriction, .. } => {
+                    factors = restriction.means(&factors).await;
+                }
                 Coarser::Direct(inverse) => *inverse = dense::inverse(operator),
                 Coarser::Nothing => {}
             }
@@ -130,28 +133,31 @@ impl Hierarchy {
     }
 
     /// Builds the levels of a [`build_log`](Self::build_log). `None` if the log is empty or from another mesh.
-    pub(crate) fn of_build_log(problem: &Problem, build_log: &[Vec<f32>]) -> Option<Self> {
+    pub(crate) async fn of_build_log(problem: &Problem, build_log: &[Vec<f32>]) -> Option<Self> {
         let (built_from, fitted_to) = build_log.split_first()?;
         if build_log.iter().any(|roots| roots.len() != problem.free_count()) {
             return None;
         }
-        let built = Self::new(problem, built_from.clone());
-        Some(fitted_to.iter().fold(built, |levels, roots| levels.fitted_to(problem, roots.clone())))
+        let mut levels = Self::new(problem, built_from.clone()).await;
+        for roots in fitted_to {
+            levels = levels.fitted_to(problem, roots.clone()).await;
+        }
+        Some(levels)
     }
 
     /// Returns the reciprocal of the diagonal entry of each free vertex, the sum of the weights of its edges.
-    fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
+    async fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
         let diagonal =
             |v: usize| neighbors(problem, v).map(|k| self.weight(v, k as usize)).sum::<f32>();
-        collect(problem.free_count(), |v| 1.0 / diagonal(v))
+        paced::collect(problem.free_count(), |v| 1.0 / diagonal(v)).await
     }
 
     /// Returns the Galerkin operator on the aggregates. The prolongation to the vertices is not stored, because
     /// aggregates and one-rings determine it.
-    fn first_coarse_operator(
+    async fn first_coarse_operator(
         &self,
         problem: &Problem,
-        moves: &(impl Fn(usize) -> bool + Sync),
+        moves: &(impl Fn(usize) -> bool + Sync + Send),
     ) -> Sparse {
         let free = problem.free_count();
         let of = &self.aggregates.of;
@@ -175,14 +181,16 @@ impl Hierarchy {
             for k in free_neighbors(v).filter(|&k| of[k] != NONE) {
                 sum.add(of[k], share * root[k]);
             }
-        });
-        let restriction = prolongation.transposed(self.aggregates.count);
+        })
+        .await;
+        let restriction = prolongation.transposed(self.aggregates.count).await;
         Sparse::galerkin(&prolongation, &restriction, |v, factor, sum| {
             sum.add(v as u32, factor / inverse_e(v));
             for k in free_neighbors(v) {
                 sum.add(k as u32, -factor);
             }
         })
+        .await
     }
 
     /// Returns the weight of the edge from a free vertex `v` to its neighbor `k`.
@@ -227,11 +235,11 @@ impl Hierarchy {
 }
 
 /// Builds the coarse levels, given the operator of the finest coarse level.
-fn levels(mut operator: Sparse) -> Vec<Level> {
+async fn levels(mut operator: Sparse) -> Vec<Level> {
     let mut levels = Vec::new();
     loop {
         let n = operator.rows();
-        let inverse_diagonal = operator.diagonal_inverted();
+        let inverse_diagonal = operator.diagonal_inverted().await;
         if n <= DIRECT {
             let coarser = Coarser::Direct(dense::inverse(&operator));
             levels.push(Level { operator, inverse_diagonal, coarser });
@@ -244,7 +252,7 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
             };
             operator.row(i).filter(strong).map(|(k, _)| k as u32)
         };
-        let groups = Aggregates::new(n, neighbors);
+        let groups = Aggregates::new(n, neighbors).await;
         if groups.count == 0 {
             levels.push(Level { operator, inverse_diagonal, coarser: Coarser::Nothing });
             return levels;
@@ -254,11 +262,13 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
                 let own = if k == i { 1.0 } else { 0.0 };
                 sum.add(groups.of[k], own - SMOOTHING * inverse_diagonal[i] * value);
             }
-        });
-        let restriction = prolongation.transposed(groups.count);
+        })
+        .await;
+        let restriction = prolongation.transposed(groups.count).await;
         let coarse = Sparse::galerkin(&prolongation, &restriction, |i, factor, sum| {
             operator.row(i).for_each(|(k, value)| sum.add(k as u32, factor * value));
-        });
+        })
+        .await;
         levels.push(Level {
             operator,
             inverse_diagonal,
@@ -272,7 +282,10 @@ fn levels(mut operator: Sparse) -> Vec<Level> {
 /// the geometric mean of the two degrees. A vertex with fifty neighbors therefore forms no aggregate with all
 /// neighbors. In such an aggregate, all vertices would share one correction, and the prolongation to the central vertex
 /// could not be smoothed.
-fn aggregates(problem: &Problem, moves: &(impl Fn(usize) -> bool + Sync)) -> Aggregates {
+async fn aggregates(
+    problem: &Problem,
+    moves: &(impl Fn(usize) -> bool + Sync + Send),
+) -> Aggregates {
     let free = problem.free_count();
     let degree = |v: u32| problem.ring_of(v).len() as f32;
     // A vertex that does not move has no free neighbors, and so belongs to no aggregate.
@@ -284,7 +297,7 @@ fn aggregates(problem: &Problem, moves: &(impl Fn(usize) -> bool + Sync)) -> Agg
         let most = 1.0 / (STRONG * STRONG * degree(v as u32));
         free_neighbors(v).filter(move |&k| degree(k) <= most)
     };
-    Aggregates::new(free, strong_neighbors).with_the_rest(free_neighbors)
+    Aggregates::new(free, strong_neighbors).await.with_the_rest(free_neighbors).await
 }
 
 /// Returns all neighbors of a free vertex, in the order of the one-ring.
@@ -307,9 +320,12 @@ fn usable(mut roots: Vec<f32>) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
     use crate::layout::prepare;
     use crate::mesh::Mesh;
+    use crate::parallel::pace::polled;
 
     #[test]
     fn a_vertex_of_high_degree_shares_its_aggregate_with_a_few() {
@@ -341,9 +357,36 @@ mod tests {
         let hub = (0..problem.free_count())
             .find(|&v| problem.ring_of(v as u32).len() == around as usize)
             .unwrap();
-        let groups = aggregates(&problem, &|_| true);
+        let groups = now(aggregates(&problem, &|_| true));
         assert!(groups.of.iter().all(|&group| group != NONE));
         let with_hub = groups.of.iter().filter(|&&group| group == groups.of[hub]).count();
         assert!(with_hub < around as usize / 2, "{with_hub} vertices");
+    }
+
+    /// Each loop over ten thousand vertices, on one thread, has a pause, whatever the number of threads.
+    #[test]
+    fn a_hierarchy_is_built_and_fitted_in_many_polls_to_the_same_bits() {
+        let side = 101u32;
+        let points = (0..side * side).map(|k| [f64::from(k % side), f64::from(k / side)]).collect();
+        let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
+        let triangles = cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]);
+        let mesh = Mesh { points, triangles: triangles.collect(), fixed: Vec::new() };
+        let problem = prepare(&mesh).unwrap().1;
+        let roots =
+            |scale: f32| (0..problem.free_count()).map(|v| 1.0 + scale * v as f32).collect();
+        let built = || Hierarchy::new(&problem, roots(1e-4));
+        let (paced, polls) = polled(Duration::ZERO, built());
+        assert!(polls >= 10, "{polls} polls");
+        let (fitted, polls) = polled(Duration::ZERO, paced.fitted_to(&problem, roots(2e-4)));
+        assert!(polls >= 2, "{polls} polls");
+        let at_once = now(async { built().await.fitted_to(&problem, roots(2e-4)).await });
+        assert_eq!(fitted.aggregate_of(), at_once.aggregate_of());
+        assert_eq!(fitted.members(), at_once.members());
+        assert_eq!(fitted.inverse_diagonal(), at_once.inverse_diagonal());
+        assert_eq!(fitted.levels().len(), at_once.levels().len());
+        for (level, expected) in fitted.levels().iter().zip(at_once.levels()) {
+            assert_eq!(level.operator.columns(), expected.operator.columns());
+            assert_eq!(level.operator.values(), expected.operator.values());
+        }
     }
 }

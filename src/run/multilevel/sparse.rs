@@ -1,6 +1,10 @@
 //! Sparse matrices of the coarse levels, in compressed rows.
 
-use crate::parallel::map_ranges;
+use crate::parallel::pace::pause;
+use crate::parallel::paced;
+
+/// Largest number of rows between two pauses.
+const ROWS: usize = 1 << 12;
 
 /// A sparse matrix in compressed rows.
 #[derive(Clone, Debug, Default)]
@@ -12,16 +16,19 @@ pub(crate) struct Sparse {
 
 impl Sparse {
     /// Builds a matrix of `rows` rows on all threads. `fill` adds the entries of a row to the given sum.
-    pub(crate) fn from_rows(rows: usize, fill: impl Fn(usize, &mut RowSum) + Sync) -> Self {
-        Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum))
+    pub(crate) async fn from_rows(
+        rows: usize,
+        fill: impl Fn(usize, &mut RowSum) + Sync + Send,
+    ) -> Self {
+        Self::from_rows_with(rows, || (), |row, (), sum| fill(row, sum)).await
     }
 
     /// Returns the Galerkin product Pᵀ A P, given P and its transpose. `row(i, factor, sum)` must add `factor` times
     /// row `i` of A to `sum`.
-    pub(crate) fn galerkin(
+    pub(crate) async fn galerkin(
         prolongation: &Self,
         restriction: &Self,
-        row: impl Fn(usize, f32, &mut RowSum) + Sync,
+        row: impl Fn(usize, f32, &mut RowSum) + Sync + Send,
     ) -> Self {
         // The product is computed row by row, so that A P is never stored.
         Self::from_rows_with(restriction.rows(), RowSum::default, |coarse, of_ap, sum| {
@@ -35,16 +42,17 @@ impl Sparse {
             }
             of_ap.clear();
         })
+        .await
     }
 
     /// Builds a matrix like [`Self::from_rows`], with scratch memory that the rows of one task share.
-    fn from_rows_with<S>(
+    async fn from_rows_with<S>(
         rows: usize,
-        scratch: impl Fn() -> S + Sync,
-        fill: impl Fn(usize, &mut S, &mut RowSum) + Sync,
+        scratch: impl Fn() -> S + Sync + Send,
+        fill: impl Fn(usize, &mut S, &mut RowSum) + Sync + Send,
     ) -> Self {
-        let chunk = rows.div_ceil(4 * rayon::current_num_threads()).max(64);
-        let parts: Vec<Sparse> = map_ranges(rows, chunk, |range| {
+        let chunk = rows.div_ceil(4 * rayon::current_num_threads()).clamp(64, ROWS);
+        let parts: Vec<Sparse> = paced::map_ranges(rows, chunk, |range| {
             let (mut scratch, mut sum) = (scratch(), RowSum::default());
             let mut matrix = Sparse::default();
             for row in range {
@@ -52,7 +60,8 @@ impl Sparse {
                 sum.drain_into(&mut matrix);
             }
             matrix
-        });
+        })
+        .await;
         let mut whole = Sparse { start: Vec::with_capacity(rows + 1), ..Sparse::default() };
         let entries = parts.iter().map(|part| part.column.len()).sum();
         whole.column.reserve_exact(entries);
@@ -63,6 +72,8 @@ impl Sparse {
             whole.start.extend(part.start.iter().map(|end| before + end));
             whole.column.extend_from_slice(&part.column);
             whole.value.extend_from_slice(&part.value);
+            drop(part);
+            pause().await;
         }
         whole
     }
@@ -96,35 +107,41 @@ impl Sparse {
     }
 
     /// Returns the reciprocal of the diagonal entry of each row.
-    pub(crate) fn diagonal_inverted(&self) -> Vec<f32> {
+    pub(crate) async fn diagonal_inverted(&self) -> Vec<f32> {
         let diagonal =
             |i: usize| self.row(i).find(|&(c, _)| c == i).map_or(0.0, |(_, value)| value);
-        (0..self.rows()).map(|i| 1.0 / diagonal(i)).collect()
+        paced::collect(self.rows(), |i| 1.0 / diagonal(i)).await
     }
 
     /// Multiplies each entry off the diagonal by the factors of its row and its column. Then adapts the diagonal, such
     /// that each row sum is multiplied by the square of the row's factor.
-    pub(crate) fn scale_couplings(&mut self, factors: &[f32]) {
-        for row in 0..self.rows() {
-            let range = self.start[row] as usize..self.start[row + 1] as usize;
-            let (mut of_constant, mut couplings) = (0.0, 0.0);
-            let mut diagonal = range.start;
-            for entry in range {
-                of_constant += self.value[entry];
-                match self.column[entry] as usize {
-                    column if column == row => diagonal = entry,
-                    column => {
-                        self.value[entry] *= factors[row] * factors[column];
-                        couplings += self.value[entry];
-                    }
+    pub(crate) async fn scale_couplings(&mut self, factors: &[f32]) {
+        paced::in_order(self.rows(), ROWS, |rows| {
+            rows.for_each(|row| self.scale_row(row, factors));
+        })
+        .await;
+    }
+
+    /// Does the work of [`Self::scale_couplings`] for a row.
+    fn scale_row(&mut self, row: usize, factors: &[f32]) {
+        let range = self.start[row] as usize..self.start[row + 1] as usize;
+        let (mut of_constant, mut couplings) = (0.0, 0.0);
+        let mut diagonal = range.start;
+        for entry in range {
+            of_constant += self.value[entry];
+            match self.column[entry] as usize {
+                column if column == row => diagonal = entry,
+                column => {
+                    self.value[entry] *= factors[row] * factors[column];
+                    couplings += self.value[entry];
                 }
             }
-            self.value[diagonal] = of_constant * factors[row] * factors[row] - couplings;
         }
+        self.value[diagonal] = of_constant * factors[row] * factors[row] - couplings;
     }
 
     /// Returns for each row the mean of `values` over its columns, weighted by the absolute values of its entries.
-    pub(crate) fn means(&self, values: &[f32]) -> Vec<f32> {
+    pub(crate) async fn means(&self, values: &[f32]) -> Vec<f32> {
         let mean = |row: usize| {
             let (mut sum, mut weights) = (0.0, 0.0);
             for (column, entry) in self.row(row) {
@@ -133,15 +150,18 @@ impl Sparse {
             }
             sum / weights
         };
-        (0..self.rows()).map(mean).collect()
+        paced::collect(self.rows(), mean).await
     }
 
     /// Returns the transpose of a matrix with `columns` columns. In each row of the transpose, columns ascend.
-    pub(crate) fn transposed(&self, columns: usize) -> Self {
+    pub(crate) async fn transposed(&self, columns: usize) -> Self {
         let mut start = vec![0u32; columns + 1];
-        for &column in &self.column {
-            start[column as usize + 1] += 1;
-        }
+        paced::in_order(self.column.len(), 8 * ROWS, |entries| {
+            for &column in &self.column[entries] {
+                start[column as usize + 1] += 1;
+            }
+        })
+        .await;
         for column in 0..columns {
             start[column + 1] += start[column];
         }
@@ -151,14 +171,17 @@ impl Sparse {
             column: vec![0; self.column.len()],
             value: vec![0.0; self.value.len()],
         };
-        for row in 0..self.rows() {
-            for (column, value) in self.row(row) {
-                let at = next[column] as usize;
-                transposed.column[at] = row as u32;
-                transposed.value[at] = value;
-                next[column] += 1;
+        paced::in_order(self.rows(), ROWS, |rows| {
+            for row in rows {
+                for (column, value) in self.row(row) {
+                    let at = next[column] as usize;
+                    transposed.column[at] = row as u32;
+                    transposed.value[at] = value;
+                    next[column] += 1;
+                }
             }
-        }
+        })
+        .await;
         transposed
     }
 }
@@ -241,6 +264,7 @@ impl RowSum {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parallel::pace::now;
 
     fn dense(matrix: &Sparse, columns: usize) -> Vec<Vec<f32>> {
         let mut dense = vec![vec![0.0; columns]; matrix.rows()];
@@ -252,12 +276,12 @@ mod tests {
 
     /// Returns a matrix of a thousand rows, which fill several chunks. The entries of each row are added in two parts.
     fn sample() -> Sparse {
-        Sparse::from_rows(1000, |row, sum| {
+        now(Sparse::from_rows(1000, |row, sum| {
             for k in 0..row % 5 {
                 sum.add(((row * 7 + k * 13) % 70) as u32, 1.0 + k as f32);
                 sum.add((row * 7 % 70) as u32, row as f32);
             }
-        })
+        }))
     }
 
     #[test]
@@ -273,7 +297,7 @@ mod tests {
 
     #[test]
     fn the_transpose_swaps_rows_and_columns() {
-        let (matrix, transposed) = (sample(), sample().transposed(70));
+        let (matrix, transposed) = (sample(), now(sample().transposed(70)));
         let (straight, swapped) = (dense(&matrix, 70), dense(&transposed, 1000));
         for row in 0..1000 {
             for column in 0..70 {
