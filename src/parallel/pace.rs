@@ -47,7 +47,7 @@ pub(crate) async fn paced<F: Future + ?Sized>(
     .await
 }
 
-/// Polls a future once, with the given end of the poll. Returns the output of a future that is done.
+/// Polls a future once, with the given end of the poll. `None` if the future is not done.
 pub(super) fn poll_until<F: Future>(
     until: Option<Instant>,
     future: Pin<&mut F>,
@@ -87,7 +87,7 @@ pub(crate) async fn pause() {
     .await;
 }
 
-/// Computes a future with the given budget for each poll. Returns its output and the number of polls.
+/// Computes a future with the given budget for each poll. Returns the output of the future and the number of polls.
 #[cfg(test)]
 pub(crate) fn polled<F: Future>(budget: Duration, future: F) -> (F::Output, usize) {
     let mut future = pin!(paced(budget, Box::pin(future)));

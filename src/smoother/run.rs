@@ -111,8 +111,8 @@ impl<'r> Run<'r> {
 
 /// A run that is awaited does not block the thread while a device works. The future completes only if the application
 /// polls the device meanwhile, as an application that draws frames does (`Device::poll` with `PollType::Poll` is enough).
-/// A poll computes for about 4 ms, and a run on the CPU completes after many polls. Dropping the future cancels the run without an outcome. The future is
-/// `Send`, except in a browser.
+/// While the run itself computes, also on the CPU, a poll ends at the first pause that comes 4 ms after its start or later.
+/// Dropping the future cancels the run without an outcome. The future is `Send`, except in a browser.
 impl<'r> IntoFuture for Run<'r> {
     type Output = Result<Outcome, SmoothError>;
     type IntoFuture = Running<'r>;
