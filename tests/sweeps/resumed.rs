@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gpu_smooth::{
-    Backend, Checkpoint, CheckpointPolicy, Goal, Mesh, Method, Metric, Options, Outcome, Progress,
+    Backend, Checkpoint, CheckpointPolicy, Goal, Method, Metric, Options, Outcome, Progress,
     Quality, Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, options::WorstBy,
 };
 
