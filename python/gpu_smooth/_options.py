@@ -44,6 +44,7 @@ class MeshOptions(TypedDict, total=False):
     rings: int | None
     target: Target | None
     target_rings: int | None
+    free_first_layer: bool | None
     target_of: Literal["vertex", "place"] | None
     surface: Surface | None
     untangle: bool | None

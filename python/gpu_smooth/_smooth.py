@@ -34,7 +34,8 @@ class Smoother:
         Vertices of each triangle, numbered from 0.
     **options
         Options that belong to the mesh: `fixed`, `lines`, `regions`, `slide`, `corner_angle`, `hausdorff`, `periodic`,
-        `only_bad`, `rings`, `target`, `target_rings`, `target_of`, `surface` and `untangle`. `smooth` describes each.
+        `only_bad`, `rings`, `target`, `target_rings`, `free_first_layer`, `target_of`, `surface` and `untangle`.
+        `smooth` describes each.
 
     Raises
     ------
@@ -142,6 +143,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     target_rings : int, optional
         With `"keep-size"` and `"keep-shape"`: number of rings over which sizes and shapes are averaged. The default is 0
         for sizes and 1 for shapes.
+    free_first_layer : bool, default False
+        With `"keep-shape"`: let the first layer of vertices at the boundary move too.
     target_of : {"vertex", "place"}, optional
         Whether targets move with the vertices, or belong to places. The default is "place" for targets of another mesh,
         else "vertex".

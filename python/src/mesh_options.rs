@@ -24,6 +24,7 @@ pub(crate) const NAMES: &[&str] = &[
     "rings",
     "target",
     "target_rings",
+    "free_first_layer",
     "target_of",
     "surface",
     "untangle",
@@ -62,6 +63,8 @@ pub(crate) struct MeshOptions {
     pub(crate) rings: Option<u32>,
     pub(crate) target: Target,
     pub(crate) target_rings: Option<u32>,
+    /// Whether the first layer of vertices at the boundary moves by the target `"keep-shape"` too.
+    pub(crate) frees_first_layer: bool,
     /// Whether targets belong to places.
     pub(crate) of_places: Option<bool>,
     pub(crate) surface: Surface,
@@ -82,6 +85,7 @@ impl MeshOptions {
             rings: None,
             target: Target::Equilateral,
             target_rings: None,
+            frees_first_layer: false,
             of_places: None,
             surface: Surface::Plane,
             untangles: false,
@@ -108,6 +112,7 @@ impl MeshOptions {
             "rings" => self.rings = Some(given.count(0, u32::MAX)?),
             "target" => self.target = target(given, vertices)?,
             "target_rings" => self.target_rings = Some(given.count(0, 1000)?),
+            "free_first_layer" => self.frees_first_layer = given.flag()?,
             "target_of" => {
                 self.of_places = Some(given.word(&[("vertex", false), ("place", true)])?)
             }
@@ -138,6 +143,10 @@ impl MeshOptions {
             (
                 self.target_rings.is_some() && !is_kept,
                 "target_rings needs target=\"keep-size\" or \"keep-shape\". Drop it, or pass one of them",
+            ),
+            (
+                self.frees_first_layer && !matches!(self.target, Target::KeepShape),
+                "free_first_layer needs target=\"keep-shape\". Drop it, or pass it",
             ),
             (
                 self.of_places == Some(true) && matches!(self.target, Target::Equilateral),

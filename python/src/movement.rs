@@ -48,13 +48,14 @@ pub(crate) fn fix(mesh: &mut Mesh, options: &MeshOptions) -> Result<Constraints,
     Ok(Constraints { lines, held })
 }
 
-/// Fixes the first layer of vertices at the boundary, if the target is `"keep-shape"` and all triangles can be smoothed.
+/// Fixes the first layer of vertices at the boundary, if the target is `"keep-shape"`, all triangles can be smoothed, and
+/// the options do not free the layer.
 pub(crate) fn fix_first_layer(
     mesh: &mut Mesh,
     options: &MeshOptions,
     constraints: &mut Constraints,
 ) -> Result<(), MeshError> {
-    if !matches!(options.target, Target::KeepShape) {
+    if options.frees_first_layer || !matches!(options.target, Target::KeepShape) {
         return Ok(());
     }
     let topology = Topology::new(mesh)?;

@@ -21,6 +21,9 @@ pub(crate) struct TargetArgs {
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 1 for keep-shape, 0 for keep-size]
     #[arg(long, value_name = "N", help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) target_rings: Option<u32>,
+    /// With keep-shape: let the first layer of vertices at the boundary move too
+    #[arg(long, help_heading = HEADING)]
+    pub(crate) free_first_layer: bool,
     /// Owner of targets: vertices, which carry them along, or places, so that targets are evaluated again at the new
     /// positions of vertices [default: place for a BACKGROUND, else vertex]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = HEADING)]

@@ -101,7 +101,8 @@ fn fix_first_layer(file: &mut LoadedMesh, rings: u32) -> Result<Option<String>, 
         n => format!("{n} vertices stay"),
     };
     Ok(Some(format!(
-        "--target keep-shape: {count} fixed in the first layer at the boundary, of {free} free ones, to keep the spacing there"
+        "--target keep-shape: {count} fixed in the first layer at the boundary, of {free} free ones, to keep the spacing there \
+         (--free-first-layer lets them move)"
     )))
 }
 

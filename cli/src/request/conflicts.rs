@@ -63,6 +63,9 @@ pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
     row(["--target-rings", "--target keep-size or keep-shape"], without, |a| {
         a.target.target_rings.is_some() && !a.target.keeps()
     }),
+    row(["--free-first-layer", "--target keep-shape"], without, |a| {
+        a.target.free_first_layer && a.target.target != Target::KeepShape
+    }),
     row(["--target-of", "another --target"], without, |a| {
         a.target.target_of.is_some() && a.target.target == Target::Equilateral
     }),
@@ -241,7 +244,7 @@ mod tests {
             ("several meshes", _) => "another".to_owned(),
             // The other side of the pair has no words.
             ("a view of gmsh" | "no run" | "edge in --scheme" | "another --target", _)
-            | ("--target keep-size or keep-shape", _) => String::new(),
+            | ("--target keep-size or keep-shape" | "--target keep-shape", _) => String::new(),
             (option, _) => option.to_owned(),
         };
         options.map(of).join(" ").split_whitespace().map(str::to_owned).collect()

@@ -173,9 +173,11 @@ impl TargetArgs {
         })
     }
 
-    /// Returns the number of rings of `--target keep-shape`; `None` for other targets.
+    /// Returns the number of rings of `--target keep-shape`, whose first layer of vertices is fixed. `None` for other
+    /// targets and with `--free-first-layer`.
     pub(crate) fn shape_rings(&self) -> Option<u32> {
-        (self.target == Target::KeepShape).then(|| self.rings_of(ElementProperty::Shape))
+        (self.target == Target::KeepShape && !self.free_first_layer)
+            .then(|| self.rings_of(ElementProperty::Shape))
     }
 
     /// Returns whether the target has sizes but no shapes. A metric that sees no sizes would ignore such a

@@ -93,6 +93,11 @@ fn keep_shape_fixes_the_first_layer_and_counts_it() {
     assert_holds(&run.err, &[&note]);
     let free = is_boundary.iter().filter(|on| !**on).count() - layer.len();
     assert_eq!(number(&folder.json("r.json")["mesh"]["free"]) as usize, free);
+    let line = "in free --engine cpu --target keep-shape --free-first-layer --report r.json";
+    folder.line(line).clean();
+    assert_eq!(number(&folder.json("r.json")["mesh"]["free"]) as usize, free + layer.len());
+    let after = folder.mesh("free.node").points;
+    assert!(layer.iter().any(|&v| after[v as usize] != mesh.points[v as usize]));
     // A mesh without further free vertices is smoothed all the same.
     let [node, ele] = node_ele(&support::perturb_random(&support::lattice(3, 3), 0.5, 2));
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
