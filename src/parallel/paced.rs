@@ -117,7 +117,7 @@ pub(crate) async fn map_futures<P: Send, F: Future<Output: Send> + Send>(
     make: impl Fn(P) -> F + Sync + Send,
 ) -> Vec<F::Output> {
     let made = parts.into_iter().map(|part| (Box::pin(make(part)), None));
-    let mut futures: Vec<(Pin<Box<F>>, Option<F::Output>)> = made.collect();
+    let mut futures: Vec<(Pin<Box<F>>, _)> = made.collect();
     loop {
         let until = deadline();
         for_each_part(futures.iter_mut().filter(|(_, output)| output.is_none()), |_, future| {
