@@ -25,7 +25,7 @@ impl NoDevice {
         match *self {}
     }
 
-    pub(crate) fn engine<'s>(
+    pub(crate) async fn engine<'s>(
         &self,
         _: &Problem,
         _: &[DVec2],
