@@ -127,8 +127,8 @@ impl Conversion {
         &self.losses
     }
 
-    /// Lists changes of names that the format cannot spell or cannot distinguish: one line for groups, one for data of
-    /// vertices and one for data of elements. Distinct groups and arrays stay distinct.
+    /// Lists changes of names that the format cannot spell or cannot distinguish: one line each for groups, groups of
+    /// vertices, data of vertices and data of elements. Distinct groups and arrays stay distinct.
     pub fn renamings(&self) -> &[String] {
         &self.renamings
     }

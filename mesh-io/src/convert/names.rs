@@ -1,20 +1,21 @@
 //! Respelling of the names of groups and data for a format. Conversions change names nowhere else.
 
 use crate::content::group_label::GroupLabel;
-use crate::export::capabilities::{Capabilities, join_first};
+use crate::export::capabilities::{Capabilities, GroupSupport, join_first};
 use crate::export::content::{Content, ContentGroup};
 use crate::export::group_numbers::GroupNumbers;
 use crate::export::name_rules::{NameRules, distinct};
-use crate::formats::ugrid;
+use crate::formats::{cgns, ugrid};
 use std::collections::HashMap;
 
-/// Respells the names that a format stores but cannot spell. Distinct names stay distinct. If the format identifies
-/// groups by names alone, later groups with an equal name get a suffix `_2`, `_3` and so on. Returns the changes: a
-/// line for groups, a line for data of vertices and a line for data of elements, each only if names change.
+/// Respells the names that a format stores but cannot spell, and names sets of vertices. Distinct names stay distinct.
+/// If the format identifies groups by names alone, later groups with an equal name get a suffix `_2`, `_3` and so on.
+/// Returns the changes: a line for groups, a line for groups of vertices, a line for data of vertices and a line for
+/// data of elements, each only if names change.
 pub(crate) fn fit(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     match holds.name_rules {
         NameRules::Any => Vec::new(),
-        _ => [groups(holds, content), data(holds, content)].concat(),
+        _ => [groups(holds, content), vertex_sets(holds, content), data(holds, content)].concat(),
     }
 }
 
@@ -31,14 +32,17 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     };
     let names: Vec<Option<String>> = content.groups.iter().enumerate().map(name).collect();
     // Lines and surfaces of equal kind, label and name share a new name, as formats without dimensions of groups have
-    // them in one group.
-    let mut places: HashMap<(&str, &GroupLabel, &str), usize> = HashMap::new();
+    // them in one group. Sections of CGNS have elements of one dimension.
+    let is_mixed = holds.groups != GroupSupport::Sections;
+    let mut places: HashMap<(&str, &GroupLabel, &str, u8), usize> = HashMap::new();
     let mut owners: Vec<usize> = Vec::new();
     let mut old: Vec<&str> = Vec::new();
     let mut place_of = vec![None; names.len()];
     for (owner, (group, name)) in content.groups.iter().zip(&names).enumerate() {
         let Some(name) = name else { continue };
-        let place = *places.entry((&group.kind, &group.label, name)).or_insert(old.len());
+        let dimension = if is_mixed { 0 } else { group.dimension };
+        let key = (group.kind.as_str(), &group.label, name.as_str(), dimension);
+        let place = *places.entry(key).or_insert(old.len());
         if place == old.len() {
             old.push(name);
             owners.push(owner);
@@ -46,7 +50,8 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
         place_of[owner] = Some(place);
     }
     let number = |place: usize| tags.number(owners[place] as u32).to_string();
-    let new = distinct(&old, holds.name_rules, &[], number);
+    let taken: &[&str] = if is_mixed { &[] } else { &cgns::write::NAMES };
+    let new = distinct(&old, holds.name_rules, taken, number);
     let changes = old.iter().zip(&new).zip(&owners).filter(|((old, new), _)| old != new);
     let told: Vec<String> = changes
         .map(|((old, new), &owner)| match content.groups[owner].label {
@@ -66,6 +71,39 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
         group.name = new;
     }
     line("groups", &told)
+}
+
+/// Gives a name to each group of vertices, if the format has named sets of vertices.
+fn vertex_sets(holds: &Capabilities, content: &mut Content) -> Vec<String> {
+    if !holds.vertex_sets {
+        return Vec::new();
+    }
+    // In CGNS, the boundary conditions of lines have names in the same list.
+    let tags = GroupNumbers::new(content, holds.allows_negative_numbers);
+    let of_lines = content.groups.iter().enumerate().filter(|(_, group)| group.dimension == 1);
+    let name = |(place, group): (usize, &ContentGroup)| {
+        group.name().map_or_else(|| tags.number(place as u32).to_string(), str::to_owned)
+    };
+    let taken: Vec<String> = match holds.groups {
+        GroupSupport::Sections => {
+            of_lines.map(name).chain([cgns::write::LINES.to_owned()]).collect()
+        }
+        _ => Vec::new(),
+    };
+    let taken: Vec<&str> = taken.iter().map(String::as_str).collect();
+    let name = |(group, _): &(ContentGroup, Vec<u32>)| match (group.name(), &group.label) {
+        (None, GroupLabel::Tag(tag)) => tag.to_string(),
+        (name, _) => name.unwrap_or_default().to_owned(),
+    };
+    let old: Vec<String> = content.vertex_groups.iter().map(name).collect();
+    let names: Vec<&str> = old.iter().map(String::as_str).collect();
+    let new = distinct(&names, holds.name_rules, &taken, |at| format!("set{}", at + 1));
+    let changes = old.iter().zip(&new).filter(|(old, new)| old != new);
+    let told: Vec<String> = changes.map(|(old, new)| format!("`{old}` to `{new}`")).collect();
+    for ((group, _), new) in content.vertex_groups.iter_mut().zip(new) {
+        group.name = Some(new);
+    }
+    line("groups of vertices", &told)
 }
 
 fn data(holds: &Capabilities, content: &mut Content) -> Vec<String> {

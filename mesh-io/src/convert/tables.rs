@@ -75,6 +75,7 @@ fn groups(groups: GroupSupport) -> &'static str {
         GroupSupport::Sets => "any number of sets",
         GroupSupport::Each => "one of every kind per element",
         GroupSupport::Blocks => "a block per element, side sets",
+        GroupSupport::Sections => "a section per element",
     }
 }
 

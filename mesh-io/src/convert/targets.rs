@@ -5,7 +5,7 @@ use crate::export::name_rules::NameRules;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::{
-    abaqus, exodus, gmsh, medit, ply, selafin, su2, triangle, ugrid, vtk, write_grids,
+    abaqus, cgns, exodus, gmsh, med, medit, ply, selafin, su2, triangle, ugrid, vtk, write_grids,
     write_surface, xdmf,
 };
 use crate::precision::Precision;
@@ -152,6 +152,39 @@ pub(crate) static TARGETS: &[Target] = &[
             ..Capabilities::TRIANGLES
         },
         write: WriteFunction::Binary(exodus::write::write_exodus),
+    },
+    Target {
+        format: Format::Med,
+        name: "med",
+        capabilities: Capabilities {
+            points: ElementSupport::All,
+            lines: ElementSupport::All,
+            quadrilaterals: true,
+            z: true,
+            groups: GroupSupport::Sets,
+            names: [true; 3],
+            name_rules: NameRules::Text80,
+            vertex_sets: true,
+            ..Capabilities::TRIANGLES
+        },
+        write: WriteFunction::Binary(med::write::write_med),
+    },
+    Target {
+        format: Format::Cgns,
+        name: "cgns",
+        capabilities: Capabilities {
+            points: ElementSupport::All,
+            lines: ElementSupport::All,
+            quadrilaterals: true,
+            z: true,
+            groups: GroupSupport::Sections,
+            names: [true; 3],
+            name_rules: NameRules::Node32,
+            vertex_sets: true,
+            point_data: DataSupport::Scalars,
+            ..Capabilities::TRIANGLES
+        },
+        write: WriteFunction::Binary(cgns::write::write_cgns),
     },
     Target {
         format: Format::Su2,

@@ -69,6 +69,8 @@ pub(crate) enum GroupSupport {
     Each,
     /// A block for the elements of each shape and group. Lines may be in side sets instead.
     Blocks,
+    /// A section for the elements of each shape and group.
+    Sections,
 }
 
 /// The data arrays that a format can store.
@@ -104,7 +106,7 @@ impl Capabilities {
             _ => {
                 self.groups.is_several()
                     && *kind != "entity"
-                    && !determines(content, dimension, main, kind)
+                    && !determines(content, dimension, main, kind, true)
             }
         };
         kinds.into_iter().filter(is_stored).collect()
@@ -147,8 +149,11 @@ impl Capabilities {
             lost.push("the vertices' own numbers, which are not consecutive".into());
         }
         self.group_losses(content, &mut lost);
-        if self.groups == GroupSupport::Blocks {
+        if matches!(self.groups, GroupSupport::Blocks | GroupSupport::Sections) {
             sides::lost_in_blocks(content, &mut lost);
+        }
+        if self.groups == GroupSupport::Blocks {
+            sides::lost_of_sides(content, &mut lost);
         } else {
             let names: Vec<_> = content.vertex_groups.iter().map(|(group, _)| group).collect();
             let names: Vec<_> = names.into_iter().filter(|group| group.name().is_some()).collect();
@@ -157,7 +162,17 @@ impl Capabilities {
                 lost.push(format!("names of groups of vertices, which become numbers: {names}"));
             }
         }
-        let is_negative = |group: &&ContentGroup| matches!(group.label, GroupLabel::Tag(..0));
+        let stored = [0, 1, 2].map(|dimension| self.stored_kinds(content, dimension));
+        // The numbers of groups that other groups determine are not written.
+        let is_left_out = |group: &ContentGroup| {
+            let stored = &stored[usize::from(group.dimension)];
+            self.groups.is_several()
+                && group.kind != "entity"
+                && !stored.contains(&group.kind.as_str())
+        };
+        let is_negative = |group: &&ContentGroup| {
+            matches!(group.label, GroupLabel::Tag(..0)) && !is_left_out(group)
+        };
         if !self.allows_negative_numbers && content.groups.iter().any(|group| is_negative(&group)) {
             let groups = group_names(content.groups.iter().filter(is_negative));
             lost.push(format!("negative numbers of groups, which become others: {groups}"));
@@ -249,21 +264,17 @@ impl Capabilities {
         for (dimension, of) in [(0, "points"), (1, "lines"), (2, "surfaces")] {
             let kinds = content.group_kinds(dimension);
             let Some(&main) = kinds.first() else { continue };
+            let is_apart = |kind: &str| {
+                let is_several = self.groups.is_several();
+                kind != main && !determines(content, dimension, main, kind, is_several)
+            };
             let dropped = |kind: &&str| match self.groups {
                 GroupSupport::None => true,
-                GroupSupport::One => *kind != main && !determines(content, dimension, main, kind),
-                GroupSupport::OneOfLines => {
-                    dimension != 1 || (*kind != main && !determines(content, 1, main, kind))
-                }
+                GroupSupport::One | GroupSupport::Sections => is_apart(kind),
+                GroupSupport::OneOfLines => dimension != 1 || is_apart(kind),
                 GroupSupport::Each | GroupSupport::PhysicalAndEntity => false,
-                GroupSupport::Sets => {
-                    *kind == "entity"
-                        && *kind != main
-                        && !determines(content, dimension, main, kind)
-                }
-                GroupSupport::Blocks => {
-                    *kind != main && *kind != "block" && !determines(content, dimension, main, kind)
-                }
+                GroupSupport::Sets => *kind == "entity" && is_apart(kind),
+                GroupSupport::Blocks => *kind != "block" && is_apart(kind),
             };
             let one = |kind: &str| {
                 let groups = content.groups.iter();

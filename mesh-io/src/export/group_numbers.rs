@@ -71,16 +71,32 @@ fn shared_kind<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str 
     groups.iter().find(|own| own.kind == group.kind).map_or("", |own| &own.kind)
 }
 
-/// Returns whether elements of the dimension with equal `main` groups have equal `other` groups, and no `other` group
-/// has a name. Leaving out `other` then loses only its numbers.
-pub(crate) fn determines(content: &Content, dimension: u8, main: &str, other: &str) -> bool {
-    let named = |group: &ContentGroup| group.dimension == dimension && group.name().is_some();
-    if content.groups.iter().any(|group| group.kind == other && named(group)) {
-        return false;
-    }
-    let (main, other) = (content.column(main), content.column(other));
-    let mut told: HashMap<Option<u32>, Option<u32>> = HashMap::new();
-    let cells =
-        (0..content.cells.len()).filter(|&cell| content.cells.kinds[cell].dimension() == dimension);
-    cells.into_iter().all(|cell| *told.entry(main[cell]).or_insert(other[cell]) == other[cell])
+/// Returns whether elements of the dimension with equal `main` groups have equal `other` groups, which have no names
+/// besides those of the `main` groups. Leaving out `other` then loses only its numbers. An element has its first group
+/// of each kind, and all its groups if `is_several`.
+pub(crate) fn determines(
+    content: &Content,
+    dimension: u8,
+    main: &str,
+    other: &str,
+    is_several: bool,
+) -> bool {
+    let of = |set: u32, kind: &str| -> Vec<u32> {
+        let all = content.sets[set as usize].iter().copied();
+        let own = all.filter(|&group| content.groups[group as usize].kind == kind);
+        let mut own: Vec<u32> = own.take(if is_several { usize::MAX } else { 1 }).collect();
+        own.sort_unstable();
+        own
+    };
+    let name = |group: u32| content.groups[group as usize].name();
+    let cells = content.cells.kinds.iter().zip(&content.cells.sets);
+    let own = cells.filter(|(kind, _)| kind.dimension() == dimension);
+    let sets: HashSet<u32> = own.map(|(_, &set)| set).collect();
+    let mut told: HashMap<Vec<u32>, Vec<u32>> = HashMap::new();
+    sets.into_iter().all(|set| {
+        let (main, other) = (of(set, main), of(set, other));
+        let is_named_so = |own: &str| main.iter().any(|&group| name(group) == Some(own));
+        other.iter().all(|&group| name(group).is_none_or(is_named_so))
+            && *told.entry(main).or_insert_with(|| other.clone()) == other
+    })
 }

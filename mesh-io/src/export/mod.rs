@@ -7,6 +7,7 @@ macro_rules! put {
     };
 }
 
+pub(crate) mod blocks;
 pub(crate) mod capabilities;
 pub(crate) mod content;
 pub(crate) mod content_builder;

@@ -16,17 +16,37 @@ pub(crate) enum NameRules {
     /// Word of ASCII letters, digits, underscores and hyphens that starts with a letter or an underscore. Capital and
     /// small letters are equal.
     Label,
+    /// Text of at most 80 bytes, without blanks at its ends. Names alone identify groups.
+    Text80,
+    /// Text of at most 32 bytes without slashes, and without blanks at its ends. Names alone identify groups and arrays.
+    Node32,
 }
 
 impl NameRules {
     /// Returns whether names alone identify groups and arrays, and must therefore be distinct.
     pub(crate) fn is_word(self) -> bool {
-        matches!(self, NameRules::Word | NameRules::Variable | NameRules::Label)
+        !matches!(self, NameRules::Any | NameRules::Quoted)
     }
 
     /// Returns a key that is equal for names that the format does not distinguish.
     fn key(self, name: &str) -> String {
         if self == NameRules::Label { name.to_ascii_lowercase() } else { name.to_owned() }
+    }
+
+    /// Returns the maximum length of a name in bytes.
+    fn limit(self) -> usize {
+        match self {
+            NameRules::Text80 => 80,
+            NameRules::Node32 => 32,
+            _ => usize::MAX,
+        }
+    }
+
+    /// Cuts a name to a length in bytes, and removes a blank at the new end.
+    fn cut(name: &str, limit: usize) -> &str {
+        let ends = (0..=limit.min(name.len())).rev();
+        let end = ends.into_iter().find(|&end| name.is_char_boundary(end));
+        name[..end.unwrap_or(0)].trim_end()
     }
 
     /// Returns a name in the format's spelling; empty or blank if no valid character remains.
@@ -57,6 +77,19 @@ impl NameRules {
                 {
                     true => word,
                     false => format!("_{word}"),
+                }
+            }
+            NameRules::Text80 | NameRules::Node32 => {
+                let held = |c: char| match c {
+                    '/' if self == NameRules::Node32 => '_',
+                    c if c.is_control() => ' ',
+                    c => c,
+                };
+                let text: String = name.chars().map(held).collect();
+                match NameRules::cut(text.trim(), self.limit()) {
+                    // These names of a node would be steps of a path.
+                    "." | ".." if self == NameRules::Node32 => "_".to_owned(),
+                    text => text.to_owned(),
                 }
             }
             NameRules::Label => {
@@ -102,9 +135,14 @@ pub(crate) fn distinct(
                 given.insert(key(&new), 2);
                 return new;
             };
-            let free = (next..).find(|end| !given.contains_key(&key(&format!("{new}_{end}"))));
+            let ended = |end: usize| {
+                let end = format!("_{end}");
+                let start = NameRules::cut(&new, spelling.limit().saturating_sub(end.len()));
+                format!("{start}{end}")
+            };
+            let free = (next..).find(|&end| !given.contains_key(&key(&ended(end))));
             let end = free.unwrap_or(next);
-            let other = format!("{new}_{end}");
+            let other = ended(end);
             given.insert(key(&new), end + 1);
             given.insert(key(&other), 2);
             other
@@ -140,6 +178,18 @@ mod tests {
         let names = ["Wall", "wall", "a b", "a,b", "7", "-x", "_5", "h\u{f6}he", "", "x"];
         let labels = ["Wall", "wall_2", "a_b", "a_b_2", "set7", "set-x", "_5", "h_he", "8", "x_2"];
         assert_eq!(spelled(&names, NameRules::Label), labels);
+    }
+
+    #[test]
+    fn long_names_are_cut_and_still_differ() {
+        let long = format!("{}\u{f6}", "a".repeat(31));
+        let names = [&long, &"a".repeat(40), &"a".repeat(31), "in/let", " b\t", "..", "", "x"];
+        let (cut, ended) = ("a".repeat(32), format!("{}_2", "a".repeat(30)));
+        let nodes = [&ended, &cut, &"a".repeat(31), "in_let", "b", "_", "6", "x_2"];
+        assert_eq!(spelled(&names, NameRules::Node32), nodes);
+        let texts = ["in/let", "\u{f6}".repeat(41).as_str(), ".."].map(str::to_owned);
+        let kept = ["in/let", "\u{f6}".repeat(40).as_str(), ".."].map(str::to_owned);
+        assert_eq!(spelled(&texts.each_ref().map(String::as_str), NameRules::Text80), kept);
     }
 
     /// Numbers identify groups besides quoted names, and therefore equal names stay.

@@ -29,7 +29,7 @@ pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
     content.cells.all(CellKind::Line).filter(is_side).collect()
 }
 
-/// Appends the losses of a mesh in element blocks to `lost`, one line each.
+/// Appends the losses of a mesh whose elements stand group by group to `lost`, one line each.
 pub(crate) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
     let tags = GroupNumbers::new(content, false);
     let group = |cell: usize| tags.group(content, cell);
@@ -47,7 +47,12 @@ pub(crate) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
     if quadrilaterals.iter().any(|group| group.is_some() && seen.contains(group)) {
         lost.push("that groups have triangles and quadrilaterals, which become blocks each".into());
     }
-    let sides = sides(content, group);
+}
+
+/// Appends the loss of data of lines that become sides to `lost`.
+pub(crate) fn lost_of_sides(content: &Content, lost: &mut Vec<String>) {
+    let tags = GroupNumbers::new(content, false);
+    let sides = sides(content, |cell| tags.group(content, cell));
     let has_value = |data: &&DataArray| {
         let each = data.components.max(1);
         let own = |&line: &usize| data.values[line * each..(line + 1) * each].iter();

@@ -123,6 +123,20 @@ impl<'a> WriterInput<'a> {
         name.unwrap_or_else(|| self.group_numbers.number(group).to_string())
     }
 
+    /// Returns whether all vertices have z = 0, so that a file can have two axes.
+    pub(crate) fn is_flat(&self) -> bool {
+        (0..self.content.points.len()).all(|vertex| self.content.z(vertex) == 0.0)
+    }
+
+    /// Returns a coordinate of every vertex; axis 2 is z.
+    pub(crate) fn axis(&self, axis: usize) -> impl Iterator<Item = f64> + '_ {
+        let content = self.content;
+        (0..content.points.len()).map(move |vertex| match axis {
+            2 => content.z(vertex),
+            _ => content.points[vertex][axis],
+        })
+    }
+
     /// Returns the tag of the first tagged vertex group of each vertex; 0 for vertices without tagged groups.
     pub(crate) fn vertex_group_numbers(&self) -> Vec<i64> {
         let mut tags = vec![0; self.content.points.len()];

@@ -52,7 +52,7 @@ impl Checksum {
 }
 
 /// Returns Bob Jenkins' hash lookup3 (2006) of bytes, with the initial value 0.
-fn lookup3(bytes: &[u8]) -> u32 {
+pub(super) fn lookup3(bytes: &[u8]) -> u32 {
     let start = 0xDEAD_BEEF_u32.wrapping_add(bytes.len() as u32);
     let [mut a, mut b, mut c] = [start; 3];
     let words = |bytes: &[u8]| {

@@ -1,5 +1,5 @@
 //! HDF5: the objects of a file by path, the chunks of a dataset with their byte ranges, and the edits that store new
-//! numbers in a dataset.
+//! numbers in a dataset. `write` makes new files.
 //!
 //! The format: <https://docs.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>. Supported are superblocks of
 //! versions 0 to 3; groups as symbol tables and as link messages; compact, contiguous and chunked datasets; the filters
@@ -25,6 +25,7 @@ mod strings;
 #[cfg(test)]
 mod tests;
 mod types;
+pub(crate) mod write;
 
 pub(crate) use dataset::{Dataset, DatasetArray};
 pub(crate) use encoding::Hdf5Arrays;

@@ -35,6 +35,7 @@ mod stl;
 mod strings;
 #[path = "../support/mod.rs"]
 mod support;
+mod to_hdf5;
 mod ugrid;
 mod vtu;
 mod words;

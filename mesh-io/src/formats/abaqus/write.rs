@@ -1,7 +1,5 @@
 //! Writes input files of Abaqus and CalculiX, `.inp`, with the mesh alone.
 
-use crate::content::group_label::GroupLabel;
-use crate::export::name_rules::{NameRules, distinct};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::precision::short_text;
@@ -49,19 +47,8 @@ pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
         put!(out, "*ELSET, ELSET={name}\n");
         rows(&elements, &mut out);
     }
-    let names: Vec<&str> =
-        content.vertex_groups.iter().map(|(group, _)| group.name().unwrap_or_default()).collect();
-    let number = |place: usize| {
-        let (group, _) = &content.vertex_groups[place];
-        match &group.label {
-            GroupLabel::Tag(tag) => tag.to_string(),
-            GroupLabel::Name(name) => name.clone(),
-        }
-    };
-    let names =
-        distinct(&names, NameRules::Label, &[], |place| NameRules::Label.of(&number(place)));
-    for ((_, vertices), name) in content.vertex_groups.iter().zip(names) {
-        put!(out, "*NSET, NSET={name}\n");
+    for (group, vertices) in &content.vertex_groups {
+        put!(out, "*NSET, NSET={}\n", group.name().unwrap_or_default());
         let ids: Vec<u64> = vertices.iter().map(|&v| input.vertex_id(v as usize)).collect();
         rows(&ids, &mut out);
     }

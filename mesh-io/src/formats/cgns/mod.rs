@@ -8,6 +8,7 @@ mod boundaries;
 mod file;
 mod periodic;
 mod sections;
+pub(crate) mod write;
 
 use crate::disk::source::Source;
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};

@@ -4,7 +4,8 @@
 //! The format: Sandia's report SAND92-2137, "Exodus: a finite element data model".
 
 use crate::content::group_label::GroupLabel;
-use crate::export::content::{Content, ContentGroup};
+use crate::export::blocks::{Block, blocks};
+use crate::export::content::ContentGroup;
 use crate::export::sides::{pair, sides};
 use crate::export::writer_input::WriterInput;
 use crate::netcdf::write::{NetCdfWriter, Values};
@@ -13,13 +14,6 @@ use std::collections::{HashMap, HashSet};
 
 /// Name of the dimension of time steps, the record dimension.
 const RECORDS: &str = "time_step";
-
-/// An element block: the cells of one kind and group.
-struct Block {
-    kind: CellKind,
-    group: Option<u32>,
-    cells: Vec<usize>,
-}
 
 /// A side set: the lines of a group, as sides of elements.
 struct SideSet {
@@ -54,7 +48,8 @@ fn group_of(input: &WriterInput<'_>, cell: usize) -> Option<u32> {
 pub(crate) fn write_exodus(input: &WriterInput<'_>) -> Vec<u8> {
     let content = input.content;
     let sides = sides(content, |cell| input.group_numbers.group(content, cell));
-    let blocks = blocks(input, &sides);
+    let cells = input.cells().filter(|cell| !sides.contains(cell));
+    let blocks = blocks(input.content, cells, |cell| group_of(input, cell));
     let side_sets = side_sets(input, &blocks, &sides);
     let names = || {
         let groups = content.groups.iter().chain(content.vertex_groups.iter().map(|(g, _)| g));
@@ -83,23 +78,6 @@ pub(crate) fn write_exodus(input: &WriterInput<'_>) -> Vec<u8> {
     out.bytes()
 }
 
-/// Sorts cells into blocks by kind and group. Blocks of triangles and quadrilaterals come first, then lines, then
-/// points; within a dimension, blocks are in the order of their first cell.
-fn blocks(input: &WriterInput<'_>, sides: &HashSet<usize>) -> Vec<Block> {
-    let mut blocks: Vec<Block> = Vec::new();
-    let mut places: HashMap<(u8, Option<u32>), usize> = HashMap::new();
-    for cell in input.cells().filter(|cell| !sides.contains(cell)) {
-        let (kind, group) = (input.content.cells.kinds[cell], group_of(input, cell));
-        let place = *places.entry((kind as u8, group)).or_insert(blocks.len());
-        if place == blocks.len() {
-            blocks.push(Block { kind, group, cells: Vec::new() });
-        }
-        blocks[place].cells.push(cell);
-    }
-    blocks.sort_by_key(|block| 2 - block.kind.dimension());
-    blocks
-}
-
 fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) -> Vec<SideSet> {
     let content = input.content;
     let mut wanted: HashMap<(u32, u32), (i32, i32)> = HashMap::new();
@@ -110,7 +88,7 @@ fn side_sets(input: &WriterInput<'_>, blocks: &[Block], sides: &HashSet<usize>) 
     }
     let mut element = 0;
     // In space, sides 1 and 2 of a triangle are its faces.
-    let faces = if is_flat(content) { 0 } else { 2 };
+    let faces = if input.is_flat() { 0 } else { 2 };
     for block in blocks {
         for &cell in &block.cells {
             element += 1;
@@ -151,23 +129,14 @@ fn text(name: &'static str, content: &str) -> (&'static str, Values) {
     (name, Values::Text(content.as_bytes().to_vec()))
 }
 
-/// Returns whether all vertices have z = 0, so that the file has two axes.
-fn is_flat(content: &Content) -> bool {
-    (0..content.points.len()).all(|vertex| content.z(vertex) == 0.0)
-}
-
 fn points(out: &mut NetCdfWriter, input: &WriterInput<'_>, width: usize) {
-    let content = input.content;
-    let count = content.points.len();
-    let axes = if is_flat(content) { 2 } else { 3 };
+    let count = input.content.points.len();
+    let axes = if input.is_flat() { 2 } else { 3 };
     out.dimension("num_dim", axes);
     out.dimension("num_nodes", count);
     for (axis, name) in ["coordx", "coordy", "coordz"].into_iter().enumerate().take(axes) {
-        let of = |vertex: usize| match axis {
-            2 => content.z(vertex),
-            _ => content.points[vertex][axis],
-        };
-        out.variable(name, &["num_nodes"], Vec::new(), Values::Real((0..count).map(of).collect()));
+        let numbers = Values::Real(input.axis(axis).collect());
+        out.variable(name, &["num_nodes"], Vec::new(), numbers);
     }
     let names = Values::names(["x", "y", "z"].into_iter().take(axes), width);
     out.variable("coor_names", &["num_dim", "len_name"], Vec::new(), names);

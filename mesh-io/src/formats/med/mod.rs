@@ -5,6 +5,7 @@
 //! family, a number that stands for groups.
 
 mod families;
+pub(crate) mod write;
 
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::number_field::NumberField;
