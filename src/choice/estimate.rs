@@ -60,8 +60,8 @@ pub(super) fn choose(
 /// The adapter kind with the highest assumed speed. Meshes too small for this kind start no driver.
 const FASTEST: &str = "discrete GPU";
 
-/// Returns the vertex updates per second of an adapter of this kind ([`AdapterSummary::kind`]). `None` for a software
-/// adapter, as the CPU engine is always faster.
+/// Returns the vertex updates per second of an adapter of this [kind](crate::adapter::AdapterSummary::kind). `None` for a
+/// software adapter, as the CPU engine is always faster.
 fn gpu_updates(kind: &str) -> Option<f64> {
     match kind {
         "discrete GPU" => Some(DISCRETE_UPDATES),

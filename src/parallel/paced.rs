@@ -1,4 +1,4 @@
-//! The loops of [`tasks`](super::tasks) for futures, which [pause](super::pace) between tasks.
+//! The loops of [`tasks`] for futures, which [pause](super::pace) between tasks.
 
 use std::ops::Range;
 use std::pin::Pin;
