@@ -17,7 +17,7 @@ use crate::gpu::run::levels::{Fitting, Levels};
 use crate::gpu::run::secants::Secants;
 use crate::gpu::run::stiffness;
 use crate::gpu::scope::scoped;
-use crate::layout::Problem;
+use crate::layout::{MapKind, Problem};
 use crate::metric::Smoothing;
 use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
@@ -239,8 +239,10 @@ impl Engine for GpuEngine<'_> {
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
         self.mesh.write_maps(self.gpu, problem)?;
-        // Secant pairs are in the coordinates of the earlier maps.
-        self.secants = None;
+        if problem.map_kind() == MapKind::Local {
+            // Secant pairs belong to levels in the coordinates of the earlier maps.
+            self.secants = None;
+        }
         self.dispatches.write_params(self.gpu, problem)
     }
 
