@@ -1,13 +1,7 @@
 //! Triangles so flat that single precision cannot distinguish them from inverted ones.
 
-use std::future::Future;
-use std::pin::pin;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::task::{Context, Poll, Wake, Waker};
-
 use crate::{backends, history, name, run, scheme, support, with_points};
-use gpu_smooth::{Backend, Gpu, Mesh, Method, Metric, Options, Quality, Smoother, Stop};
+use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Quality, Smoother, Stop};
 
 /// Makes a lattice with several vertices at distance `height` from an opposite edge.
 fn flattened(height: f64) -> Mesh {
@@ -108,42 +102,4 @@ fn a_triangle_as_flat_as_coordinates_allow_is_opened() {
             }
         }
     }
-}
-
-/// Counts the wake-ups that a future requests.
-#[derive(Default)]
-struct Wakes(AtomicUsize);
-
-impl Wake for Wakes {
-    fn wake(self: Arc<Self>) {
-        self.0.fetch_add(1, Ordering::SeqCst);
-    }
-}
-
-#[test]
-fn an_awaited_run_yields_between_the_sweeps_on_the_cpu() {
-    // A former defect: a single poll executed all of these sweeps.
-    let mesh = flattened(1e-12);
-    let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options::default();
-    // A separate device, which no other test polls.
-    let gpu = Gpu::open(None).unwrap();
-    let opening = run(&smoother, &options, &backends()[1]).opening_sweeps as usize;
-    assert!(opening > 1, "{opening} sweeps");
-    let wakes = Arc::new(Wakes::default());
-    let waker = Waker::from(Arc::clone(&wakes));
-    let backend = Backend::Gpu(gpu);
-    let mut future = pin!(smoother.run(&options).on(&backend).into_future());
-    let mut yields = 0;
-    loop {
-        let before = wakes.0.load(Ordering::SeqCst);
-        let polled = future.as_mut().poll(&mut Context::from_waker(&waker));
-        assert!(matches!(polled, Poll::Pending), "nobody polls the device, and the run ended");
-        // A future that did not wake itself waits for the device.
-        if wakes.0.load(Ordering::SeqCst) == before {
-            break;
-        }
-        yields += 1;
-    }
-    assert!(yields >= opening - 1, "{yields} yields in {opening} sweeps");
 }
