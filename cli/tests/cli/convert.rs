@@ -85,7 +85,7 @@ fn conversions_that_cannot_work_are_refused() {
         .refused(&["out.vtk: the ending belongs to legacy VTK, not to SU2", ".su2"]);
     assert!(!folder.path("out.vtk").exists());
     folder.line("convert in.2dm out.txt --to su2 --lossy -q").clean();
-    folder.line("convert in.2dm out.med").misused(&["out.med: its ending names no format"]);
+    folder.line("convert in.2dm out.stl").misused(&["out.stl: its ending names no format"]);
     folder.line("convert none.2dm out.msh").refused(&["none.2dm"]);
     folder.line("convert word out.msh").refused(&["word"]);
     let run = folder.line("convert in.2dm - --to triangle --lossy --quiet");
