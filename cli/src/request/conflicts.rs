@@ -243,7 +243,10 @@ mod tests {
             ("--picture-arrows", _) => "--picture p.png --picture-arrows".to_owned(),
             ("several meshes", _) => "another".to_owned(),
             // The other side of the pair has no words.
-            ("a view of gmsh" | "no run" | "edge in --scheme" | "another --target", _)
+            (
+                "a view of gmsh" | "no run" | "edge in --scheme" | "another --target" | "a MESH",
+                _,
+            )
             | ("--target keep-size or keep-shape" | "--target keep-shape", _) => String::new(),
             (option, _) => option.to_owned(),
         };
