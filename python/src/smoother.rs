@@ -109,7 +109,7 @@ impl Call {
 struct RunPlan {
     options: Options,
     backend: Backend,
-    /// Whether the run goes on on the CPU if the device fails: only where the caller has left the engine open.
+    /// Whether the run continues on the CPU if the device fails. True only with `engine="auto"`.
     falls_back: bool,
     checkpoints: Option<CheckpointPlan>,
     resumed: Option<Checkpoint>,

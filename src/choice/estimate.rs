@@ -24,7 +24,7 @@ const CORRECTED_SWEEPS: f64 = 20.0;
 const PLAIN_SWEEPS: f64 = 130.0;
 
 /// Returns the backend on which a run is estimated to end soonest, and the reason; see
-/// [`Backend::auto_tried`]. The adapter and its device are those of `kept`.
+/// [`Backend::auto_tried`]. `kept` has the adapter and its device.
 pub(super) fn choose(
     kept: &Kept,
     size: MeshSize,

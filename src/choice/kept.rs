@@ -25,8 +25,8 @@ impl Kept {
         Self(Mutex::new(None))
     }
 
-    /// Calls `choose` with the best adapter. The first call searches the machine for adapters, and so does a call after the
-    /// loss of the device. `try_drivers` is called before each search.
+    /// Calls `choose` with the best adapter. Searches the machine for adapters in the first call, and again after the loss
+    /// of the device. `try_drivers` is called before each search.
     ///
     /// # Errors
     /// The error of `try_drivers`, or [`GpuError::NoAdapter`].

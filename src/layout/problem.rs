@@ -177,8 +177,8 @@ impl Problem {
         if let Some(maps) = other.targets() {
             let of = |&v: &u32| maps[number[v as usize] as usize];
             self.maps = self.layout.vertices.iter().map(of).collect();
+            self.map_kind = MapKind::Targets;
         }
-        self.map_kind = other.map_kind;
         (self.is_stretched, self.mean_area) = (other.is_stretched, other.mean_area);
     }
 
@@ -239,7 +239,7 @@ impl Problem {
         self.map_kind.is_some().then_some(&self.maps)
     }
 
-    /// Returns the kind of the maps at the vertices.
+    /// Returns whether the vertices have target maps, local maps or no maps.
     #[inline(always)]
     pub(crate) fn map_kind(&self) -> MapKind {
         self.map_kind

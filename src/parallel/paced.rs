@@ -19,25 +19,7 @@ async fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
             let first = next.into_inner().min(count);
             return tasks::for_each(count - first, &|i| task(first + i));
         };
-        let work = || {
-            loop {
-                let i = next.fetch_add(1, Ordering::Relaxed);
-                if i >= count {
-                    break;
-                }
-                task(i);
-                if Instant::now() >= until {
-                    break;
-                }
-            }
-        };
-        // The calling thread does tasks too, as in the loop of blocking callers.
-        rayon::in_place_scope(|scope| {
-            for _ in 1..rayon::current_num_threads().min(count) {
-                scope.spawn(|_| work());
-            }
-            work();
-        });
+        tasks::share(&next, count, task, &|| Instant::now() >= until);
         if next.load(Ordering::Relaxed) >= count {
             return;
         }

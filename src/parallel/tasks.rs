@@ -18,9 +18,19 @@ pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
     if rayon::current_thread_index().is_some() {
         return (0..count).into_par_iter().for_each(task);
     }
+    share(&AtomicUsize::new(0), count, task, &|| false);
+}
+
+/// Calls `task` in parallel for the numbers from `next` to `count`, on rayon's threads and on the calling thread. Each
+/// thread stops once `is_over` is true after a task. Another call with the same `next` does the rest.
+pub(super) fn share(
+    next: &AtomicUsize,
+    count: usize,
+    task: &(dyn Fn(usize) + Sync),
+    is_over: &(dyn Fn() -> bool + Sync),
+) {
     // Rayon would do all tasks on its own threads while the calling thread waits. The calling thread does tasks too, so
     // it need not be woken when the other threads are done first.
-    let next = AtomicUsize::new(0);
     let work = || {
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
@@ -28,6 +38,9 @@ pub(crate) fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
                 break;
             }
             task(i);
+            if is_over() {
+                break;
+            }
         }
     };
     rayon::in_place_scope(|scope| {

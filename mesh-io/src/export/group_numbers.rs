@@ -72,8 +72,8 @@ fn shared_kind<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str 
 }
 
 /// Returns whether elements of the dimension with equal `main` groups have equal `other` groups, which have no names
-/// besides those of the `main` groups. Leaving out `other` then loses only its numbers. An element has its first group
-/// of each kind, and all its groups if `is_several`.
+/// besides those of the `main` groups. Leaving out `other` then loses only its numbers. The file stores all groups of
+/// an element if `is_several`, and otherwise the first group of each kind.
 pub(crate) fn determines(
     content: &Content,
     dimension: u8,

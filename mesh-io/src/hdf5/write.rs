@@ -89,12 +89,12 @@ impl Values {
         }
     }
 
-    /// Makes a scalar of an array with one number.
+    /// Converts an array of one number to a scalar.
     pub(crate) fn scalar(self) -> Values {
         Values { shape: Vec::new(), ..self }
     }
 
-    /// Gives an array another shape of as many numbers.
+    /// Changes the shape of an array. The number of numbers must stay the same.
     pub(crate) fn shaped(self, shape: &[usize]) -> Values {
         Values { shape: shape.to_vec(), ..self }
     }

@@ -22,8 +22,8 @@ const REBUILD_IF: f64 = 0.5;
 /// times the sweeps. With a fit after each doubling, they took slightly fewer sweeps.
 const REFIT_EVERY: u32 = 3;
 
-/// Number of corrections after which the levels of a strongly stretched mesh are built again, and then after each
-/// doubling of the number. f stays far above its lower limit on such a mesh, and its excess does not tell how far vertices
+/// The levels of a strongly stretched mesh are built again after this number of corrections, and after each doubling of
+/// the number. f stays far above its lower limit on such a mesh, and its excess does not tell how far vertices
 /// have moved and local maps have changed.
 const REBUILD_LOCAL_FROM: u32 = 4;
 

@@ -13,7 +13,7 @@ const STEP: &str = "-0000000000000000001-0000000000000000001";
 /// Length of a group name in bytes, padding included.
 const NAME_LENGTH: usize = 80;
 
-/// The types of elements in the order of the file, each with its name and number in MED.
+/// The types of elements, with their names and numbers in MED, in the order of the file.
 const TYPES: [(CellKind, &str, i64); 4] = [
     (CellKind::Point, "PO1", 1),
     (CellKind::Line, "SE2", 102),
@@ -21,7 +21,7 @@ const TYPES: [(CellKind, &str, i64); 4] = [
     (CellKind::Quadrilateral, "QU4", 204),
 ];
 
-/// Families, each of which stands for a set of groups.
+/// The families of a mesh. A family lists the groups of its elements.
 #[derive(Default)]
 struct Families {
     places: HashMap<Vec<String>, usize>,
@@ -125,7 +125,7 @@ fn whole(object: &mut NewObject, numbers: &[(&str, i64)]) {
     }
 }
 
-/// Adds the attributes of a list of all nodes or elements: the list has no profile, which would select some.
+/// Adds the attributes of a list of all nodes or elements. A list of some nodes or elements would have a profile.
 fn profiled(group: &mut NewObject) -> &mut NewObject {
     whole(group, &[("CGS", 1), ("CGT", 1)]);
     group.attribute("PFL", Values::text(b"MED_NO_PROFILE_INTERNAL", 65))

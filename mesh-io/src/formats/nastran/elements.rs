@@ -155,8 +155,8 @@ fn card(cursor: &mut Cursor<'_>) -> Result<Card, ReadError> {
     })
 }
 
-/// Returns the ids of all property cards (`PSHELL`, `PCOMP` and so on). A blank property stands for the property with the
-/// number of the element. If the file has no property with this number, the element has no property.
+/// Returns the ids of all property cards (`PSHELL`, `PCOMP` and so on). An element with a blank property has the
+/// property of the element's own number, or no property if no property card has this number.
 #[cold]
 fn property_ids(rows: &Cursor<'_>) -> HashSet<u64> {
     let cursor = &mut rows.clone();

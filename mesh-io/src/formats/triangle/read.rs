@@ -58,7 +58,7 @@ impl FormatReader for Triangle {
 /// The list of vertices of a `.node`.
 struct Vertices<'s> {
     numbers: VertexNumbering,
-    /// The number of coordinates and attributes of each vertex.
+    /// Number of coordinates plus number of attributes of a vertex.
     columns: u64,
     has_markers: bool,
     /// The cursor before the first vertex.
