@@ -57,7 +57,7 @@ impl BackendChooser {
     /// estimate always includes the start of the driver, so that a mesh does not get other bits because of earlier runs.
     ///
     /// `try_drivers` is called before each search for adapters: in the first choice that considers a GPU, and after the
-    /// loss of the device, which a new device replaces.
+    /// loss of the device, which a new device replaces. An error of `try_drivers` is kept, and later choices return the CPU.
     #[cfg(feature = "gpu")]
     pub fn choose(
         &self,

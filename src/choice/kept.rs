@@ -11,8 +11,9 @@ use crate::gpu::{Adapter, Gpu, ranked_adapters};
 #[derive(Default)]
 pub(super) struct Kept(Mutex<Option<Found>>);
 
-/// The result of a search for adapters: the first in order of preference, or `None` on a machine without adapters.
-type Found = Option<KeptAdapter>;
+/// The result of a search for adapters: the first in order of preference. The error is kept too, as the trial of a driver
+/// that hangs takes seconds.
+type Found = Result<KeptAdapter, GpuError>;
 
 /// An adapter, and its device once the device is open.
 pub(super) struct KeptAdapter {
@@ -36,20 +37,18 @@ impl Kept {
         choose: impl FnOnce(&mut KeptAdapter) -> T,
     ) -> Result<T, GpuError> {
         let mut found = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if found.as_ref().and_then(Option::as_ref).is_some_and(KeptAdapter::is_lost)
-            && let Some(Some(KeptAdapter { gpu: Some(gpu), .. })) = found.take()
+        if matches!(&*found, Some(Ok(adapter)) if adapter.is_lost())
+            && let Some(Ok(KeptAdapter { gpu: Some(gpu), .. })) = found.take()
         {
             gpu.discard();
         }
-        if found.is_none() {
-            try_drivers()?;
-        }
         let found = found.get_or_insert_with(|| {
-            let best = ranked_adapters().into_iter().next();
-            best.map(|adapter| KeptAdapter { adapter, gpu: None })
+            try_drivers()?;
+            let none = GpuError::NoAdapter { wanted: None, available: String::new() };
+            let best = ranked_adapters().into_iter().next().ok_or(none)?;
+            Ok(KeptAdapter { adapter: best, gpu: None })
         });
-        let none = || GpuError::NoAdapter { wanted: None, available: String::new() };
-        found.as_mut().map(choose).ok_or_else(none)
+        found.as_mut().map(choose).map_err(|error| error.clone())
     }
 }
 
@@ -69,5 +68,24 @@ impl KeptAdapter {
 
     fn is_lost(&self) -> bool {
         self.gpu.as_ref().is_some_and(Gpu::is_lost)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_trial_of_the_drivers_is_not_repeated() {
+        let (kept, mut trials) = (Kept::new(), 0);
+        for _ in 0..3 {
+            let mut fail = || {
+                trials += 1;
+                Err(GpuError::Crashed("in a trial".to_owned()))
+            };
+            let chosen = kept.best(&mut fail, |_| panic!("there is no adapter"));
+            assert!(matches!(chosen, Err(GpuError::Crashed(_))));
+        }
+        assert_eq!(trials, 1);
     }
 }
