@@ -171,9 +171,9 @@ async fn as_transformed(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
 }
 
 impl Engine for CpuEngine {
-    async fn sweep(&mut self, step: &SweepParams) -> Result<(), GpuError> {
+    async fn sweep(&mut self, step: &SweepParams) -> Result<Objectives, GpuError> {
         self.sweep_now(step).await;
-        Ok(())
+        self.objectives().await
     }
 
     async fn objectives(&mut self) -> Result<Objectives, GpuError> {
@@ -296,6 +296,11 @@ impl Engine for CpuEngine {
         })
         .await;
         Ok(())
+    }
+
+    async fn objectives_after_move(&mut self, length: f64) -> Result<Objectives, GpuError> {
+        self.move_along(length).await?;
+        self.objectives().await
     }
 
     async fn save(&mut self, whole: bool) -> Result<EngineState, GpuError> {

@@ -20,10 +20,10 @@ async fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
             return tasks::for_each(count - first, &|i| task(first + i));
         };
         tasks::share(&next, count, task, &|| Instant::now() >= until);
+        pause().await;
         if next.load(Ordering::Relaxed) >= count {
             return;
         }
-        pause().await;
     }
 }
 

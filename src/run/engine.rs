@@ -18,8 +18,12 @@ use crate::run::sweep_params::SweepParams;
 ///
 /// The caller decides which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {
-    /// Visits every free vertex once, by `step`.
-    fn sweep(&mut self, step: &SweepParams) -> impl Future<Output = Result<(), GpuError>> + Send;
+    /// Visits every free vertex once, by `step`, and evaluates the tracked objectives afterward. A device does both in one
+    /// submission: between two submissions, some drivers block the thread until the first is done.
+    fn sweep(
+        &mut self,
+        step: &SweepParams,
+    ) -> impl Future<Output = Result<Objectives, GpuError>> + Send;
 
     /// Evaluates the tracked objectives at the present positions.
     fn objectives(&mut self) -> impl Future<Output = Result<Objectives, GpuError>> + Send;
@@ -100,6 +104,12 @@ pub(crate) trait Engine: Send {
 
     /// Moves all free vertices by `length` times the correction.
     fn move_along(&mut self, length: f64) -> impl Future<Output = Result<(), GpuError>> + Send;
+
+    /// Moves all free vertices by `length` times the correction, and evaluates the tracked objectives afterward.
+    fn objectives_after_move(
+        &mut self,
+        length: f64,
+    ) -> impl Future<Output = Result<Objectives, GpuError>> + Send;
 
     /// Returns the present state, between two sweeps. If `whole`, a run that continues from the state computes the same
     /// bits. Otherwise the state has only the positions.

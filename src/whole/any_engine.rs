@@ -32,7 +32,7 @@ macro_rules! on {
 }
 
 impl Engine for AnyEngine<'_> {
-    async fn sweep(&mut self, step: &SweepParams) -> Result<(), GpuError> {
+    async fn sweep(&mut self, step: &SweepParams) -> Result<Objectives, GpuError> {
         on!(self, engine => engine.sweep(step).await)
     }
 
@@ -103,6 +103,10 @@ impl Engine for AnyEngine<'_> {
 
     async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
         on!(self, engine => engine.move_along(length).await)
+    }
+
+    async fn objectives_after_move(&mut self, length: f64) -> Result<Objectives, GpuError> {
+        on!(self, engine => engine.objectives_after_move(length).await)
     }
 
     async fn save(&mut self, whole: bool) -> Result<EngineState, GpuError> {

@@ -121,6 +121,20 @@ impl<'a> GpuEngine<'a> {
         control.first().copied().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
     }
 
+    /// Submits what `encode` encodes and an evaluation, and returns the evaluated objectives.
+    async fn objectives_after(
+        &self,
+        encode: impl FnOnce(&mut Passes<'_>) + Send,
+    ) -> Result<Objectives, GpuError> {
+        let evaluated = |passes: &mut Passes<'_>| {
+            encode(passes);
+            self.dispatches.encode_evaluation(passes);
+        };
+        let control = self.control_after(evaluated).await?;
+        let last = control.evaluated.saturating_sub(1) % HISTORY;
+        Ok(self.objectives_of(&control.history[last as usize]))
+    }
+
     /// Submits sweeps, preceded by an evaluation if the history is empty, and records the device's results.
     async fn batch(
         &mut self,
@@ -191,15 +205,12 @@ impl<'a> GpuEngine<'a> {
 }
 
 impl Engine for GpuEngine<'_> {
-    async fn sweep(&mut self, step: &SweepParams) -> Result<(), GpuError> {
-        self.submit(|passes| self.dispatches.encode_sweep(passes, step))
+    async fn sweep(&mut self, step: &SweepParams) -> Result<Objectives, GpuError> {
+        self.objectives_after(|passes| self.dispatches.encode_sweep(passes, step)).await
     }
 
     async fn objectives(&mut self) -> Result<Objectives, GpuError> {
-        let evaluation = |passes: &mut Passes<'_>| self.dispatches.encode_evaluation(passes);
-        let control = self.control_after(evaluation).await?;
-        let last = control.evaluated.saturating_sub(1) % HISTORY;
-        Ok(self.objectives_of(&control.history[last as usize]))
+        self.objectives_after(|_| {}).await
     }
 
     async fn sweeps(
@@ -348,6 +359,12 @@ impl Engine for GpuEngine<'_> {
         let Some(levels) = &self.levels else { return Ok(()) };
         levels.set_length(self.gpu, length as f32)?;
         self.submit(|passes| levels.encode_movement(passes))
+    }
+
+    async fn objectives_after_move(&mut self, length: f64) -> Result<Objectives, GpuError> {
+        let Some(levels) = &self.levels else { return self.objectives().await };
+        levels.set_length(self.gpu, length as f32)?;
+        self.objectives_after(|passes| levels.encode_movement(passes)).await
     }
 
     async fn save(&mut self, whole: bool) -> Result<EngineState, GpuError> {

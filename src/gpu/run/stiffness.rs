@@ -5,7 +5,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, uniform, zeroed};
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::readback::{self, Copied, Waiting};
 use crate::gpu::encode::sealed::Target;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::layouts::FineBindings;
@@ -56,17 +56,18 @@ pub(crate) async fn roots(
         let op = op.smoothed(smoothing);
         to[..size_of::<FineOp>()].copy_from_slice(bytemuck::bytes_of(&op));
     }
-    let found = scoped(&gpu.device, || {
+    let (ops, found, unused) = scoped(&gpu.device, || {
         let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
         let size = u64::from(free) * size_of::<[f32; 2]>() as u64;
         let found = zeroed(gpu, "stiffness", size, Usage::STORAGE | Usage::COPY_SRC);
         // The kernel does not use these two bindings of its layout.
-        let [direction, vectors] = ["no correction", "no vectors"]
+        let unused = ["no correction", "no vectors"]
             .map(|label| zeroed(gpu, label, size_of::<[f32; 2]>() as u64, Usage::STORAGE));
-        let label = "gpu-smooth stiffness";
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        let mut passes = encoder.passes(label);
+        (ops, found, unused)
+    })?;
+    let [direction, vectors] = &unused;
+    let encode = |encoder: &mut wgpu::CommandEncoder| {
+        let mut passes = encoder.passes("gpu-smooth stiffness");
         for (part, RingPart { vertices, .. }) in mesh.parts.rings.iter().enumerate() {
             let bindings = FineBindings {
                 params: dispatches.params.as_entire_binding(),
@@ -85,10 +86,9 @@ pub(crate) async fn roots(
                 dispatch(pass, vertices.end - vertices.start);
             });
         }
-        drop(passes);
-        gpu.queue.submit([encoder.finish()]);
-        found
-    })?;
-    let roots: Vec<[f32; 2]> = readback::read(gpu, &found, free as usize, waiting).await?;
+    };
+    let roots: Copied<'_, [f32; 2]> =
+        readback::submit_and_copy(gpu, encode, &found, free as usize)?;
+    let roots = roots.values(waiting).await?;
     Ok(paced::collect(roots.len(), |v| roots[v][0]).await)
 }

@@ -114,8 +114,7 @@ impl Corrections {
         until: usize,
     ) -> Result<Objectives, GpuError> {
         let done = history.f().len();
-        engine.sweep(&self.step_before(done - 1)).await?;
-        let objectives = engine.objectives().await?;
+        let objectives = engine.sweep(&self.step_before(done - 1)).await?;
         // If metrics alternate, the comparison is with the last sweep by the same metric.
         let period = self.turns().len();
         let last = self.excess(history, done.saturating_sub(period));
@@ -141,8 +140,7 @@ impl Corrections {
     /// Sweeps once in the stage after the last correction.
     async fn sweep_without(&self, engine: &mut impl Engine) -> Result<Objectives, GpuError> {
         let own = self.metric().properties().omega;
-        engine.sweep(&self.step(own)).await?;
-        engine.objectives().await
+        engine.sweep(&self.step(own)).await
     }
 
     /// Sweeps once, then computes a correction and applies it if it lowers the objective.
@@ -190,14 +188,21 @@ impl Corrections {
                 next = search.tried(length, engine.excess_along(length).await?);
             }
         }
-        let (excess, length, refused) = match search.best() {
-            Some((length, there)) => {
-                engine.move_along(length).await?;
-                self.taken += 1;
-                (there, length, if length < short { refused + 1 } else { 0 })
+        // If f may rise, the engine evaluates the objectives and stores the best state.
+        let is_evaluated = self.plan.track_all || !self.plan.is_monotone();
+        let (moved, excess) = search.best().map_or((None, here), |(by, there)| (Some(by), there));
+        let evaluated = match moved {
+            Some(by) if is_evaluated => Some(engine.objectives_after_move(by).await?),
+            None if is_evaluated => Some(engine.objectives().await?),
+            Some(by) => {
+                engine.move_along(by).await?;
+                None
             }
-            None => (here, last_length, refused + 1),
+            None => None,
         };
+        self.taken += u32::from(moved.is_some());
+        let refused = if moved.is_some_and(|by| by >= short) { 0 } else { refused + 1 };
+        let length = moved.unwrap_or(last_length);
         // Secant pairs may be the reason why a direction fails, so a refused correction drops them.
         let slow = self.slope.is_some_and(|before| slope < ACCELERATED_FROM * before);
         self.accelerated = (self.accelerated || slow) && refused == 0;
@@ -211,12 +216,10 @@ impl Corrections {
             _ => Stage::Correcting(Correcting { since, length, proposed, refused }),
         };
         self.lowered.push(ideal + excess);
-        // If f may rise, the engine evaluates the objectives and stores the best state.
-        if self.plan.track_all || !self.plan.is_monotone() {
-            return engine.objectives().await;
-        }
-        let mut objectives = Objectives::empty();
-        objectives.set(self.metric(), ideal + excess);
-        Ok(objectives)
+        Ok(evaluated.unwrap_or_else(|| {
+            let mut objectives = Objectives::empty();
+            objectives.set(self.metric(), ideal + excess);
+            objectives
+        }))
     }
 }

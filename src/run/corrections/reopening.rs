@@ -53,8 +53,7 @@ impl Corrections {
         let step = self.plan.step_with(metric, omega, self.sharpness);
         let mut log = Vec::new();
         loop {
-            engine.sweep(&step).await?;
-            log.push(engine.objectives().await?);
+            log.push(engine.sweep(&step).await?);
             if log.len() < SWEEPS as usize {
                 continue;
             }

@@ -5,6 +5,8 @@ use crate::parallel::paced;
 
 /// Largest number of rows between two pauses.
 const ROWS: usize = 1 << 12;
+/// Largest number of rows that a task builds. A row of a Galerkin product takes about a microsecond.
+const ROWS_OF_TASK: usize = 1 << 10;
 
 /// A sparse matrix in compressed rows.
 #[derive(Clone, Debug, Default)]
@@ -51,7 +53,7 @@ impl Sparse {
         scratch: impl Fn() -> S + Sync + Send,
         fill: impl Fn(usize, &mut S, &mut RowSum) + Sync + Send,
     ) -> Self {
-        let chunk = rows.div_ceil(4 * rayon::current_num_threads()).clamp(64, ROWS);
+        let chunk = rows.div_ceil(4 * rayon::current_num_threads()).clamp(64, ROWS_OF_TASK);
         let parts: Vec<Sparse> = paced::map_ranges(rows, chunk, |range| {
             let (mut scratch, mut sum) = (scratch(), RowSum::default());
             let mut matrix = Sparse::default();
