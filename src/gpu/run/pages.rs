@@ -6,7 +6,10 @@ use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::filled_with_pauses;
 use crate::gpu::device::size::check_limit;
-use crate::parallel::pace::pause;
+use crate::parallel::paced;
+
+/// Number of elements that are copied between two pauses.
+const CHUNK: usize = 1 << 16;
 
 /// Arrays, grouped into pages. Each page becomes a buffer.
 pub(crate) struct Pages<T> {
@@ -16,7 +19,7 @@ pub(crate) struct Pages<T> {
     pages: Vec<Vec<T>>,
 }
 
-impl<T: bytemuck::NoUninit + Sync> Pages<T> {
+impl<T: bytemuck::NoUninit + Send + Sync> Pages<T> {
     /// Creates an empty set of pages. `what` names the content in labels and errors.
     pub(crate) fn new(gpu: &Gpu, what: &'static str) -> Self {
         let limits = gpu.device.limits();
@@ -46,8 +49,8 @@ impl<T: bytemuck::NoUninit + Sync> Pages<T> {
         let mut places = [0; N];
         for (array, place) in arrays.into_iter().zip(&mut places) {
             *place = page.len() as u32;
-            page.extend_from_slice(array);
-            pause().await;
+            paced::in_order(array.len(), CHUNK, |range| page.extend_from_slice(&array[range]))
+                .await;
         }
         Ok((last, places))
     }
