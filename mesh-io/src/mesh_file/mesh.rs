@@ -49,6 +49,10 @@ impl MeshFile {
         source: Source,
     ) -> Result<MeshFile, ReadError> {
         if parsed.triangles.is_empty() {
+            if parsed.points.is_empty() {
+                let remedy = "Check that the file is a mesh in the format that its ending names";
+                return Err(source.error("neither vertices nor triangles were found", remedy));
+            }
             let problem = format!("{} vertices, but no triangle", parsed.points.len());
             let remedy = "Meshes are read by their triangles: mesh the surface with triangles, and save all its elements";
             return Err(source.error(problem, remedy));

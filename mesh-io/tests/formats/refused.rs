@@ -122,6 +122,15 @@ fn other_contents_of_known_formats_are_refused() {
 }
 
 #[test]
+fn files_without_a_vertex_are_refused_as_no_mesh() {
+    for name in ["a.2dm", "a.su2", "a.obj"] {
+        let parts =
+            ["a.", ": neither vertices nor triangles were found. Check that the file is a mesh"];
+        assert_refused(name, "minutes of the meeting\n", &parts);
+    }
+}
+
+#[test]
 fn damaged_meshes_of_coasts_are_refused_with_place_and_reason() {
     let head = "100079 1000 4 UTM-32\n1 0 0 0 1\n2 1 0 0 1\n3 1 1 0 1\n4 0 1 0 1\n";
     let mike =
