@@ -84,22 +84,27 @@ pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, byte
     }
 }
 
-/// Creates a buffer that holds `contents`, with pauses between its pieces.
+/// Creates a buffer that holds `arrays` one after the other, with pauses between its pieces. The size of `T` must be a
+/// multiple of [`wgpu::COPY_BUFFER_ALIGNMENT`].
 pub(crate) async fn filled_with_pauses<T: bytemuck::NoUninit + Sync>(
     gpu: &Gpu,
     label: &str,
-    contents: &[T],
+    arrays: &[&[T]],
     usage: Usage,
 ) -> Result<wgpu::Buffer, GpuError> {
-    let bytes: &[u8] = bytemuck::cast_slice(contents);
-    if bytes.len() <= SMALL {
-        return scoped(&gpu.device, || filled(gpu, label, contents, usage));
+    let size: usize = arrays.iter().map(|&array| size_of_val(array)).sum();
+    if size <= SMALL {
+        return scoped(&gpu.device, || filled(gpu, label, &arrays.concat(), usage));
     }
-    let size = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
-    let buffer = scoped(&gpu.device, || zeroed(gpu, label, size, usage | Usage::COPY_DST))?;
+    let usage = usage | Usage::COPY_DST;
+    let buffer = scoped(&gpu.device, || zeroed(gpu, label, size as u64, usage))?;
     // As in `write_by_pieces`, with smaller pieces.
     let mut under_way = VecDeque::new();
-    for (at, piece) in (0..).step_by(SMALL).zip(bytes.chunks(SMALL)) {
+    let pieces = arrays.iter().flat_map(|array| bytemuck::cast_slice::<T, u8>(array).chunks(SMALL));
+    let mut end = 0;
+    for piece in pieces {
+        let at = end;
+        end += piece.len() as u64;
         pause().await;
         let oldest = match under_way.len() == UNDER_WAY * (PIECE / SMALL) {
             true => under_way.pop_front(),
@@ -140,9 +145,11 @@ mod tests {
         for length in [1, piece, piece + 1, (UNDER_WAY + 1) * piece - 1] {
             let contents: Vec<u32> =
                 (0..length as u32).map(|i| i.wrapping_mul(0x9e37_79b1)).collect();
+            let (left, right) = contents.split_at(length / 3);
+            let parts = [left, &[], right];
             let usage = Usage::STORAGE | Usage::COPY_SRC;
             let buffer = scoped(&gpu.device, || filled(&gpu, "test", &contents, usage)).unwrap();
-            let paced = now(filled_with_pauses(&gpu, "test", &contents, usage)).unwrap();
+            let paced = now(filled_with_pauses(&gpu, "test", &parts, usage)).unwrap();
             for buffer in [&buffer, &paced] {
                 let read = readback::read::<u32>(&gpu, buffer, length, Waiting::Block);
                 assert!(pollster::block_on(read).unwrap() == contents, "{length} numbers");

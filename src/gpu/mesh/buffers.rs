@@ -40,12 +40,12 @@ impl MeshBuffers {
         let parts = Parts::new(problem, &gpu.device.limits())?;
         let positions = laid_out(positions, problem.maps(), parts.low_positions).await;
         let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
-        let positions = filled_with_pauses(gpu, "positions", &positions, usage).await?;
+        let positions = filled_with_pauses(gpu, "positions", &[&positions], usage).await?;
         let (starts, usage) = (problem.ring_start(), Usage::STORAGE | Usage::COPY_DST);
-        let ring_start = filled_with_pauses(gpu, "ring starts", starts, usage).await?;
+        let ring_start = filled_with_pauses(gpu, "ring starts", &[starts], usage).await?;
         let (ring, triangles) = (problem.ring(), problem.triangles());
-        let ring = filled_with_pauses(gpu, "one-rings", ring, Usage::STORAGE).await?;
-        let triangles = filled_with_pauses(gpu, "triangles", triangles, Usage::STORAGE).await?;
+        let ring = filled_with_pauses(gpu, "one-rings", &[ring], Usage::STORAGE).await?;
+        let triangles = filled_with_pauses(gpu, "triangles", &[triangles], Usage::STORAGE).await?;
         let changes = scoped(&gpu.device, || Changes::new(gpu))?;
         Ok(Self { positions, ring_start, ring, triangles, changes, parts })
     }

@@ -1,7 +1,5 @@
 //! Coarse levels of a mesh on the device, and the dispatches of a correction.
 
-use std::pin::Pin;
-
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
@@ -141,14 +139,14 @@ const SUMS: u32 = SEARCH_STATE;
 struct Listing<'g> {
     gpu: &'g Gpu,
     form: MeshForm,
-    structure: Pages<u32>,
-    values: Pages<f32>,
+    structure: Pages<'g, u32>,
+    values: Pages<'g, f32>,
     vectors: u32,
     bound: Vec<Bound>,
     listed: u32,
 }
 
-impl Listing<'_> {
+impl<'g> Listing<'g> {
     fn vector(&mut self, length: usize) -> u32 {
         let at = self.vectors;
         self.vectors += length as u32;
@@ -157,14 +155,14 @@ impl Listing<'_> {
 
     /// Stores a matrix and the reciprocals of its diagonal, an empty slice for none. Returns the pages and offsets of
     /// both.
-    async fn matrix(
+    fn matrix(
         &mut self,
-        matrix: &Sparse,
-        diagonal: &[f32],
+        matrix: &'g Sparse,
+        diagonal: &'g [f32],
     ) -> Result<(Bound, CoarseOp), GpuError> {
         let (structure, [starts, columns]) =
-            self.structure.place([matrix.starts(), matrix.columns()]).await?;
-        let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal]).await?;
+            self.structure.place([matrix.starts(), matrix.columns()])?;
+        let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal])?;
         let op = coarse_op(matrix.rows() as u32);
         let op = CoarseOp { starts, columns, entries, diagonal, ..op };
         Ok((Bound::Coarse { structure, values }, op))
@@ -190,19 +188,9 @@ impl Listing<'_> {
 
     /// Appends the dispatches of one V-cycle over the levels to `list`. `right` is the offset of the right-hand side in
     /// `vectors`. Returns the offset of the solution.
-    fn solve<'l>(
-        &'l mut self,
-        levels: &'l [Level],
-        right: u32,
-        list: &'l mut Vec<Dispatch>,
-    ) -> Pin<Box<dyn Future<Output = Result<u32, GpuError>> + Send + 'l>> {
-        Box::pin(self.solved(levels, right, list))
-    }
-
-    /// Does the work of [`Self::solve`], which makes the recursion finite in size.
-    async fn solved(
+    fn solve(
         &mut self,
-        levels: &[Level],
+        levels: &'g [Level],
         right: u32,
         list: &mut Vec<Dispatch>,
     ) -> Result<u32, GpuError> {
@@ -210,14 +198,14 @@ impl Listing<'_> {
         let rows = level.operator.rows();
         let x = self.vector(rows);
         if let Coarser::Direct(inverse) = &level.coarser {
-            let (values, [entries]) = self.values.place([&inverse[..]]).await?;
+            let (values, [entries]) = self.values.place([&inverse[..]])?;
             let op = CoarseOp { entries, right, out: x, ..coarse_op(rows as u32) };
             let bound = Bound::Coarse { structure: 0, values };
             list.push(self.step(Kernel::CoarsestSolve, bound, Groups::ForRows, Op::Coarse(op))?);
             return Ok(x);
         }
         let (other, last_step) = (self.vector(rows), self.vector(rows));
-        let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal).await?;
+        let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
         let smoother = CoarseOp { right, last_step, ..operator };
         // Lists two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, and one on to
         // `to`.
@@ -243,23 +231,23 @@ impl Listing<'_> {
         let residual = Op::Coarse(residual);
         list.push(self.step(Kernel::MatrixVector, bound, Groups::ForRows, residual)?);
         let below_right = self.vector(restriction.rows());
-        list.push(self.matrix_vector(restriction, other, NONE, below_right).await?);
-        let solution = self.solve(below, below_right, list).await?;
-        list.push(self.matrix_vector(prolongation, solution, x, other).await?);
+        list.push(self.matrix_vector(restriction, other, NONE, below_right)?);
+        let solution = self.solve(below, below_right, list)?;
+        list.push(self.matrix_vector(prolongation, solution, x, other)?);
         let end = self.vector(rows);
         smooth(self, list, [other, x, end])?;
         Ok(end)
     }
 
     /// Returns the dispatch of out = right + M x, with offsets in `vectors` for all three.
-    async fn matrix_vector(
+    fn matrix_vector(
         &mut self,
-        matrix: &Sparse,
+        matrix: &'g Sparse,
         x: u32,
         right: u32,
         out: u32,
     ) -> Result<Dispatch, GpuError> {
-        let (bound, op) = self.matrix(matrix, &[]).await?;
+        let (bound, op) = self.matrix(matrix, &[])?;
         let op = CoarseOp { x, right, out, right_factor: 1.0, product_factor: 1.0, ..op };
         self.step(Kernel::MatrixVector, bound, Groups::ForRows, Op::Coarse(op))
     }
@@ -404,10 +392,10 @@ impl Levels {
         let partial_sums = listing.vector(4 * partials as usize);
 
         let (values, [roots, diagonal]) =
-            listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()]).await?;
-        let (of_page, [aggregate_of]) = listing.structure.place([hierarchy.aggregate_of()]).await?;
+            listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
+        let (of_page, [aggregate_of]) = listing.structure.place([hierarchy.aggregate_of()])?;
         let (members_page, [member_starts, members]) =
-            listing.structure.place([hierarchy.member_starts(), hierarchy.members()]).await?;
+            listing.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
         let aggregates = hierarchy.member_starts().len() as u32 - 1;
         let right = listing.vector(aggregates as usize);
         let free = problem.free_count() as u32;
@@ -473,7 +461,7 @@ impl Levels {
         let op = Op::Transfer(TransferOp { rows: aggregates, ..transfer });
         let bound = Bound::Transfer { part: 0, structure: members_page, values };
         correction.push(listing.step(Kernel::Restrict, bound, Groups::ForRows, op)?);
-        let solution = listing.solve(hierarchy.levels(), right, &mut correction).await?;
+        let solution = listing.solve(hierarchy.levels(), right, &mut correction)?;
         let op = TransferOp { solution, ..transfer };
         transfer_by_rings(&mut listing, &mut correction, Kernel::Prolong, op)?;
 
