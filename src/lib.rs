@@ -41,7 +41,8 @@
 //! # Limits
 //!
 //! Triangles only; list vertices of other elements in [`Mesh::fixed`]. Vertices and triangle corners are
-//! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles.
+//! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles. A mesh in another plane of space than
+//! that of x and y is smoothed in the coordinates of its [`Plane`](plane::Plane).
 //!
 //! On a GPU, buffers that exceed the largest binding of a device are bound part by part, which changes no bit of the
 //! result. But every kernel needs all positions, in two bindings at most: a device with a largest binding of 128 MiB
@@ -64,6 +65,7 @@ pub mod outcome;
 mod parallel;
 mod patch;
 mod periodic;
+pub mod plane;
 pub mod precision;
 mod quality;
 mod resume;

@@ -12,7 +12,7 @@ from gpu_smooth import _native, _pyvista
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from gpu_smooth._options import Doubles, SmoothOptions, Surface
+    from gpu_smooth._options import Doubles, SmoothOptions, Surface, ThirdCoordinate
 
 
 class Accessor:
@@ -25,10 +25,12 @@ class Accessor:
         """Return a copy of the mesh with moved vertices; see `gpu_smooth.smooth` for the options and exceptions."""
         return _pyvista.smooth(self._mesh, dict(options))
 
-    def quality(self, measure: str = "imr", *, surface: Surface = "plane") -> Doubles:
+    def quality(
+        self, measure: str = "imr", *, surface: Surface = "plane", z: ThirdCoordinate = "coordinate"
+    ) -> Doubles:
         """Return the quality of each triangle, of shape (m,); see `gpu_smooth.quality`."""
         triangles = _pyvista.cells_of(self._mesh).triangles
-        return _native.quality(np.asarray(self._mesh.points), triangles, measure, surface)
+        return _native.quality(np.asarray(self._mesh.points), triangles, measure, surface, z)
 
 
 pyvista.register_dataset_accessor("gpu_smooth", pyvista.UnstructuredGrid)(Accessor)

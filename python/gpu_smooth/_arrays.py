@@ -9,25 +9,32 @@ from gpu_smooth import _native
 from gpu_smooth._native import Quality
 
 if TYPE_CHECKING:
-    from gpu_smooth._options import Array, Doubles, Floats, Surface
+    from gpu_smooth._options import Array, Doubles, Floats, Surface, ThirdCoordinate
     from gpu_smooth._progress import Progress
 
 
 def quality(
-    points: Array, triangles: Array, measure: str = "imr", *, surface: Surface = "plane"
+    points: Array,
+    triangles: Array,
+    measure: str = "imr",
+    *,
+    surface: Surface = "plane",
+    z: ThirdCoordinate = "coordinate",
 ) -> Doubles:
     """Return the quality of each triangle by a measure.
 
     Parameters
     ----------
     points : array_like of float, shape (n, 2) or (n, 3)
-        Positions of the vertices. A third coordinate is ignored.
+        Positions of the vertices.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0.
     measure : str, default "imr"
         Name of a measure or metric, such as `"min-angle"`; `measures` lists them with their sources.
     surface : {"plane", "sphere"}, default "plane"
         Meaning of the coordinates: lengths, or longitude and latitude in degrees.
+    z : {"coordinate", "data"}, default "coordinate"
+        Meaning of third coordinates, as in `smooth`.
 
     Returns
     -------
@@ -47,7 +54,7 @@ def quality(
     >>> gpu_smooth.quality([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]], "max-angle").tolist()
     [90.0]
     """
-    return _native.quality(points, triangles, measure, surface)
+    return _native.quality(points, triangles, measure, surface, z)
 
 
 def untangle(
@@ -55,6 +62,7 @@ def untangle(
     triangles: Array,
     *,
     fixed: Array | None = None,
+    z: ThirdCoordinate = "coordinate",
     keep_going: bool = False,
     time_limit: float | None = None,
     on_sweep: Callable[[Progress], object] | None = None,
@@ -71,6 +79,8 @@ def untangle(
         Vertices of each triangle, numbered from 0. Windings are made consistent first.
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
         Vertices that stay.
+    z : {"coordinate", "data"}, default "coordinate"
+        Meaning of third coordinates, as in `smooth`.
     keep_going : bool, default False
         Return the best points found if triangles stay inverted, in place of an exception.
     time_limit : float, optional
@@ -103,10 +113,17 @@ def untangle(
     >>> bool((gpu_smooth.quality(points, triangles, "scaled-jacobian") > 0).all())
     True
     """
-    return _native.untangle(points, triangles, fixed, keep_going, time_limit, on_sweep)
+    return _native.untangle(points, triangles, fixed, z, keep_going, time_limit, on_sweep)
 
 
-def interpolate(points: Array, triangles: Array, moved: Array, values: Array) -> Doubles:
+def interpolate(
+    points: Array,
+    triangles: Array,
+    moved: Array,
+    values: Array,
+    *,
+    z: ThirdCoordinate = "coordinate",
+) -> Doubles:
     """Return data of vertices at new positions of the vertices.
 
     The data are linear in each triangle of the mesh before the move. A vertex that has not moved keeps the bits of its
@@ -122,6 +139,8 @@ def interpolate(points: Array, triangles: Array, moved: Array, values: Array) ->
         New positions of the vertices.
     values : array_like of float, shape (n,) or (n, k)
         Data of the vertices, such as depths.
+    z : {"coordinate", "data"}, default "coordinate"
+        Meaning of third coordinates, as in `smooth`.
 
     Returns
     -------
@@ -142,7 +161,7 @@ def interpolate(points: Array, triangles: Array, moved: Array, values: Array) ->
     >>> gpu_smooth.interpolate(points, triangles, moved, [0, 2, 2, 0, 1.5]).tolist()
     [0.0, 2.0, 2.0, 0.0, 1.0]
     """
-    return _native.interpolate(points, triangles, moved, values)
+    return _native.interpolate(points, triangles, moved, values, z)
 
 
 class Spread(NamedTuple):
@@ -158,9 +177,9 @@ class Comparison(NamedTuple):
     """Difference between two states of a mesh."""
 
     vertices_moved: int
-    """Number of vertices whose x or y differ."""
+    """Number of vertices whose x or y differ, or whose coordinates in another plane differ."""
     z_changed: bool
-    """Whether third coordinates differ."""
+    """Whether z of a mesh in x and y differs, or a vertex has left the plane of a mesh in another plane."""
     moved: Spread
     """Displacement of vertices, divided by the mean length of their edges before."""
     size_change: Spread
@@ -172,7 +191,12 @@ class Comparison(NamedTuple):
 
 
 def compare(
-    before: Array, after: Array, triangles: Array, *, surface: Surface = "plane"
+    before: Array,
+    after: Array,
+    triangles: Array,
+    *,
+    surface: Surface = "plane",
+    z: ThirdCoordinate = "coordinate",
 ) -> Comparison:
     """Compare two states of a mesh: how far vertices moved, and how sizes and quality changed.
 
@@ -184,6 +208,8 @@ def compare(
         Vertices of each triangle, numbered from 0.
     surface : {"plane", "sphere"}, default "plane"
         Meaning of the coordinates.
+    z : {"coordinate", "data"}, default "coordinate"
+        Meaning of third coordinates, as in `smooth`.
 
     Returns
     -------
@@ -194,7 +220,7 @@ def compare(
     MeshError
         The arrays have a wrong shape or type, or are no mesh.
     """
-    found = _native.compare(before, after, triangles, surface)
+    found = _native.compare(before, after, triangles, surface, z)
     spreads = {name: Spread(*found[name]) for name in ("moved", "size_change")}
     return Comparison(**(found | spreads))
 

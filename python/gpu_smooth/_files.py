@@ -70,7 +70,7 @@ class MeshFile:
 
     @property
     def points(self) -> Doubles:
-        """Positions of the vertices, of shape (n, 2). The array is a copy."""
+        """Positions of the vertices, of shape (n, 2). The array is a copy. `data("z")` has third coordinates that differ."""
         return self._native.points
 
     @property
@@ -137,8 +137,8 @@ class MeshFile:
         ----------
         path : str or path-like
             File to write; may be the file that was read. A name that ends in .gz or .zst compresses the file.
-        points : array_like of float, shape (n, 2)
-            Positions of the vertices.
+        points : array_like of float, shape (n, 2) or (n, 3)
+            Positions of the vertices. If third coordinates of the file differ, those of the array replace them.
 
         Raises
         ------

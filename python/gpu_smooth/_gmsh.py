@@ -45,7 +45,7 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     GpuSmoothError
         No gmsh session is running.
     MeshError
-        The mesh has no triangles of three nodes, has volume elements, or is not in a plane of constant z.
+        The mesh has no triangles of three nodes, has volume elements, or does not lie in a plane.
     OptionError, DeviceError
         As `smooth` does.
     """
@@ -63,10 +63,9 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     if "fixed" in given:
         given["fixed"] = named(given["fixed"], _groups(gmsh, rows))
     given = cells.options(given, len(points))
-    if np.ptp(points[cells.triangles, 2]) != 0.0:
-        raise MeshError(
-            "mesh: the triangles are not in a plane of constant z. Rotate the model into the plane of x and y"
-        )
+    if np.ptp(points[cells.triangles, 2]) == 0.0:
+        # Nodes that no triangle has, such as centers of arcs, may have another z.
+        given["z"] = "data"
     if given.get("slide") and given.get("periodic") is None:
         given["periodic"] = _periodic(gmsh, rows)
     result = run(points, cells.triangles, **given)

@@ -23,6 +23,7 @@ Integers: TypeAlias = "npt.NDArray[np.int64]"
 Path: TypeAlias = "Union[str, PathLike[str]]"
 
 Surface: TypeAlias = Literal["plane", "sphere"]
+ThirdCoordinate: TypeAlias = Literal["coordinate", "data"]
 Target: TypeAlias = Union[
     Literal["equilateral", "keep-size", "keep-shape", "keep_size", "keep_shape"],
     "npt.ArrayLike",
@@ -47,6 +48,7 @@ class MeshOptions(TypedDict, total=False):
     free_first_layer: bool | None
     target_of: Literal["vertex", "place"] | None
     surface: Surface | None
+    z: ThirdCoordinate | None
     untangle: bool | None
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from gpu_smooth import _native
 
 if TYPE_CHECKING:
-    from gpu_smooth._options import Doubles, Floats, Integers
+    from gpu_smooth._options import Doubles, Integers
     from gpu_smooth._result import Result
 
 # Colors of shapes from good to bad: matplotlib's viridis_r at equal steps.
@@ -25,12 +25,12 @@ WIDTH = 360.0
 def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, Any]) -> Any:
     """Draw a result by matplotlib; see `Result.plot`."""
     plt = _pyplot()
-    states = {"before": result.points_before, "after": result.points}
+    states = flat_states(result)
     if which not in ("before", "after", "both"):
         raise _which_error(which)
     names = list(states) if which == "both" else [which]
     if ax is None:
-        width, height = np.ptp(result.points[np.unique(result.triangles), :2], axis=0)
+        width, height = np.ptp(states["after"][np.unique(result.triangles)], axis=0)
         each = 6.0 * min(max(height / max(width, np.finfo(float).tiny), 0.3), 2.0)
         figure, axes = plt.subplots(
             1,
@@ -46,13 +46,16 @@ def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, A
         figure, all_axes = ax.figure, [ax]
         names = names[-1:]
     values = {
-        name: _native.quality(states[name], result.triangles, measure, "plane") for name in names
+        name: _native.quality(states[name], result.triangles, measure, "plane", "data") for name in names
     }
     finite = np.concatenate([value[np.isfinite(value)] for value in values.values()])
-    chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2, "cmap": "viridis_r"}
+    row = next(row for row in _native.measures() if row["name"] == measure.lower().replace("_", "-"))
+    # Bad triangles are dark by every measure. A few very bad triangles would take all colors.
+    is_low_good = row["better"] == "lower"
+    colors, low, high = ("viridis_r", 0.0, 0.99) if is_low_good else ("viridis", 0.01, 1.0)
+    chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2, "cmap": colors}
     if finite.size:
-        # A few very bad triangles would take all colors.
-        chosen |= {"vmin": finite.min(), "vmax": np.quantile(finite, 0.99)}
+        chosen |= {"vmin": np.quantile(finite, low), "vmax": np.quantile(finite, high)}
     chosen |= options
     drawn = None
     for name, axis in zip(names, all_axes):
@@ -62,8 +65,16 @@ def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, A
         )
         axis.set_aspect("equal")
         axis.set_title(name)
-    figure.colorbar(drawn, ax=all_axes, label=measure)
+        if result.axes != ("x", "y"):
+            axis.set(xlabel=result.axes[0], ylabel=result.axes[1])
+    figure.colorbar(drawn, ax=all_axes, label=f"{measure} ({row['unit']})" if row["unit"] else measure)
     return figure
+
+
+def flat_states(result: Result) -> dict[str, Doubles]:
+    """Return the points before and after the run, of shape (n, 2), in the plane in which they were moved."""
+    outcome = result._outcome
+    return {"before": outcome.flat_points_before(), "after": outcome.flat_points()}
 
 
 def show(result: Result, which: str, measure: str, options: dict[str, Any]) -> None:
@@ -97,11 +108,10 @@ def html(result: Result) -> str:
     """Return a result as HTML: the mesh before and after the run, colored by shape, and a table."""
     pictures = ""
     if len(result.triangles) <= MOST_TRIANGLES:
-        states = (("before", result.points_before), ("after", result.points))
         pictures = "".join(
             f'<figure style="display:inline-block;margin:4px"><figcaption>{name}</figcaption>'
             f"{svg(points, result.triangles)}</figure>"
-            for name, points in states
+            for name, points in flat_states(result).items()
         )
     before, after = result.quality_before, result.quality_after
     metric = result.metric
@@ -121,15 +131,14 @@ def html(result: Result) -> str:
     )
 
 
-def svg(points: Floats, triangles: Integers) -> str:
-    """Return a mesh as an SVG picture, each triangle colored by its inverse mean ratio."""
+def svg(flat: Doubles, triangles: Integers) -> str:
+    """Return a mesh with points of shape (n, 2) as an SVG picture, each triangle colored by its inverse mean ratio."""
     used = np.unique(triangles)
-    flat = np.asarray(points[:, :2], dtype=float)
     low, high = flat[used].min(axis=0), flat[used].max(axis=0)
     size = np.maximum(high - low, np.finfo(float).tiny)
     scale = WIDTH / max(size[0], size[1])
     xy = np.round((flat - low) * [scale, -scale] + [0.0, scale * size[1]], 2)
-    quality = _native.quality(points, triangles, "imr", "plane")
+    quality = _native.quality(flat, triangles, "imr", "plane", "data")
     shares = np.nan_to_num((quality - 1.0) / (WORST - 1.0), nan=1.0, posinf=1.0)
     colors = np.clip(shares * len(COLORS), 0, len(COLORS) - 1).astype(int)
     paths = []

@@ -43,6 +43,15 @@ class Result:
         moved: Floats = self.points - self.points_before
         return moved
 
+    @property
+    def axes(self) -> tuple[str, str]:
+        """Names of the two coordinates in which vertices were moved.
+
+        `("x", "y")`, `("x", "z")` or `("y", "z")`; or `("u", "v")` in a tilted plane, where u and v are lengths from the
+        mean of all vertices.
+        """
+        return self._outcome.axes
+
     @functools.cached_property
     def histories(self) -> dict[str, Doubles]:
         """f before the first sweep and after each sweep, by each metric of the history; see the option `history`."""

@@ -34,7 +34,7 @@ class Smoother:
         Vertices of each triangle, numbered from 0.
     **options
         Options that belong to the mesh: `fixed`, `lines`, `regions`, `slide`, `corner_angle`, `hausdorff`, `periodic`,
-        `only_bad`, `rings`, `target`, `target_rings`, `free_first_layer`, `target_of`, `surface` and `untangle`.
+        `only_bad`, `rings`, `target`, `target_rings`, `free_first_layer`, `target_of`, `surface`, `z` and `untangle`.
         `smooth` describes each.
 
     Raises
@@ -109,10 +109,11 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     Parameters
     ----------
     points : array_like of float, shape (n, 2) or (n, 3); or a mesh
-        Positions of the vertices, in any unit. A third coordinate is kept. The result has the same shape, and is float32
-        if the array is. In place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid` or a `pyvista.PolyData`
-        may be passed. A mesh of the same kind is then returned, with all other cells, groups and data. Vertices of other
-        cells and between regions stay.
+        Positions of the vertices, in any unit. Vertices with three coordinates lie in one plane of any orientation, and
+        are moved in the plane; `z` makes exceptions. The result has the same shape, and is float32 if the array is. In
+        place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid` or a `pyvista.PolyData` may be passed. A
+        mesh of the same kind is then returned, with all other cells, groups and data. Vertices of other cells and
+        between regions stay.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0, in either winding.
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
@@ -138,7 +139,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         Wanted elements: `"equilateral"` of any size, `"keep-size"` or `"keep-shape"` as in the given mesh (with
         `"keep-shape"`, the first layer of vertices at the boundary is fixed, which keeps the spacing at walls); an array of
         shape (n,) with edge lengths, or of shape (n, 3) with tensors (xx, xy, yy) under which elements are equilateral
-        with edges of length 1; or a tuple (points, triangles, array) with such an array on another mesh. Only ratios of
+        with edges of length 1 (x and y are `Result.axes` in other planes); or a tuple (points, triangles, array) with such an array on another mesh. Only ratios of
         sizes matter.
     target_rings : int, optional
         With `"keep-size"` and `"keep-shape"`: number of rings over which sizes and shapes are averaged. The default is 0
@@ -150,6 +151,10 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         else "vertex".
     surface : {"plane", "sphere"}, default "plane"
         Meaning of the coordinates: lengths, or longitude and latitude in degrees.
+    z : {"coordinate", "data"}, default "coordinate"
+        Meaning of third coordinates that differ. "coordinate": the mesh lies in a plane of any orientation, is smoothed in
+        it, and a curved surface is refused. "data": z is data of a mesh in x and y, such as depths, and each vertex keeps
+        its z. On the sphere, z is data.
     untangle : bool, default False
         Untangle the mesh first if triangles are inverted or flat.
     scheme : str or sequence of str, optional

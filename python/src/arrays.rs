@@ -5,6 +5,7 @@
 //! threads may write to the arrays meanwhile. Exact predicates and bounds of indices then hold for the numbers that were
 //! read.
 
+use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
 use numpy::ndarray::ArrayView2;
 use numpy::{
@@ -17,28 +18,56 @@ use pyo3::prelude::*;
 use crate::error;
 
 /// Points of a mesh, and the form of their array.
+#[derive(Default)]
 pub(crate) struct Points {
     pub(crate) xy: Vec<[f64; 2]>,
     pub(crate) form: PointsForm,
 }
 
 /// The form of an array of points, in which results are returned.
-#[derive(Clone)]
+#[derive(Default)]
 pub(crate) struct PointsForm {
-    /// Third coordinates; `None` for an array of two columns.
-    z: Option<Vec<f64>>,
+    third: ThirdColumn,
     is_single: bool,
+}
+
+/// The third column of an array of points.
+#[derive(Default)]
+enum ThirdColumn {
+    /// The array has two columns.
+    #[default]
+    Missing,
+    /// Third coordinates, which the result keeps.
+    Kept(Vec<f64>),
+    /// The plane of three coordinates in which the points are moved.
+    InPlane(Plane),
 }
 
 impl PointsForm {
     /// Returns the precision of the numbers of the array.
-    pub(crate) fn precision(&self) -> Precision {
+    pub(crate) fn stored(&self) -> Precision {
         if self.is_single { Precision::Single } else { Precision::Double }
     }
 
-    /// Returns whether two arrays have the same third coordinates, or none.
-    pub(crate) fn has_equal_z(a: &Self, b: &Self) -> bool {
-        a.z == b.z
+    /// Returns the precision to which a run rounds points.
+    pub(crate) fn precision(&self) -> Precision {
+        self.plane().map_or(self.stored(), Plane::run_precision)
+    }
+
+    /// Returns the third coordinates that the result keeps; `None` for an array of two columns, and for points in a plane.
+    pub(crate) fn kept_z(&self) -> Option<&[f64]> {
+        match &self.third {
+            ThirdColumn::Kept(z) => Some(z),
+            ThirdColumn::Missing | ThirdColumn::InPlane(_) => None,
+        }
+    }
+
+    /// Returns the plane in which points of three coordinates are moved; `None` for the plane of x and y.
+    pub(crate) fn plane(&self) -> Option<&Plane> {
+        match &self.third {
+            ThirdColumn::InPlane(plane) => Some(plane),
+            ThirdColumn::Missing | ThirdColumn::Kept(_) => None,
+        }
     }
 
     /// Returns points as an array of this form.
@@ -48,21 +77,33 @@ impl PointsForm {
         points: Vec<[f64; 2]>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let rows = points.len();
-        match (&self.z, self.is_single) {
-            (None, false) => matrix(py, points.into_flattened(), [rows, 2]),
-            (None, true) => {
-                let numbers = points.as_flattened().iter().map(|&x| x as f32).collect();
-                matrix(py, numbers, [rows, 2])
-            }
-            (Some(z), false) => {
+        let (numbers, columns) = match &self.third {
+            ThirdColumn::Missing => (points.into_flattened(), 2),
+            ThirdColumn::Kept(z) => {
                 let rows_of = points.iter().zip(z).map(|(&[x, y], &z)| [x, y, z]);
-                matrix(py, rows_of.collect::<Vec<_>>().into_flattened(), [rows, 3])
+                (rows_of.collect::<Vec<_>>().into_flattened(), 3)
             }
-            (Some(z), true) => {
-                let rows_of = points.iter().zip(z).map(|(&[x, y], &z)| [x, y, z].map(|x| x as f32));
-                matrix(py, rows_of.collect::<Vec<_>>().into_flattened(), [rows, 3])
-            }
+            ThirdColumn::InPlane(plane) => (plane.in_space(&points).into_flattened(), 3),
+        };
+        match self.is_single {
+            false => matrix(py, numbers, [rows, columns]),
+            true => matrix(py, numbers.iter().map(|&x| x as f32).collect(), [rows, columns]),
         }
+    }
+}
+
+impl Points {
+    /// Returns x, y and z of the points; `None` for an array of two columns.
+    pub(crate) fn space(&self) -> Option<Vec<[f64; 3]>> {
+        let z = self.form.kept_z()?;
+        Some(self.xy.iter().zip(z).map(|(&[x, y], &z)| [x, y, z]).collect())
+    }
+
+    /// Returns the points in the coordinates of their plane.
+    pub(crate) fn in_plane(self, plane: Plane) -> Self {
+        let xy = plane.points().to_vec();
+        let is_single = self.form.is_single;
+        Self { xy, form: PointsForm { third: ThirdColumn::InPlane(plane), is_single } }
     }
 }
 
@@ -108,15 +149,15 @@ fn columns<T: Element + Copy>(
 ) -> PyResult<Points> {
     let view = array.try_readonly()?;
     let view = view.as_array();
-    let (xy, z) = match view.ncols() {
-        2 => (rows(view, |row: [T; 2]| row.map(&number)), None),
+    let (xy, third) = match view.ncols() {
+        2 => (rows(view, |row: [T; 2]| row.map(&number)), ThirdColumn::Missing),
         3 => {
             let xy = rows(view, |[x, y, _]: [T; 3]| [number(x), number(y)]);
-            (xy, Some(view.column(2).iter().map(|&z| number(z)).collect()))
+            (xy, ThirdColumn::Kept(view.column(2).iter().map(|&z| number(z)).collect()))
         }
         _ => return Err(of_shape(name, array.as_any(), POINTS)),
     };
-    Ok(Points { xy, form: PointsForm { z, is_single } })
+    Ok(Points { xy, form: PointsForm { third, is_single } })
 }
 
 /// Returns the rows of an array with `N` columns, each mapped by `to`.

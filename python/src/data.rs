@@ -2,6 +2,7 @@
 
 use gpu_smooth::interpolate::Interpolation;
 use gpu_smooth::measure::{Change, Distribution};
+use gpu_smooth::targets::Surface;
 use gpu_smooth::{Mesh, Quality as MeshQuality, Topology};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -10,29 +11,31 @@ use pyo3::types::PyDict;
 use crate::arrays::{self, Points, PointsForm};
 use crate::error;
 use crate::input::{self, Failure};
-use crate::measures::{self, Quality};
+use crate::measures::{self, Named, Quality};
 use crate::observer::RunObserver;
+use crate::plane;
 use crate::run_options::RunOptions;
 use crate::threads;
 
 /// Moves free vertices until no triangle is inverted or flat.
 #[pyfunction]
-#[pyo3(signature = (points, triangles, fixed, keep_going, time_limit, on_sweep))]
+#[pyo3(signature = (points, triangles, fixed, z, keep_going, time_limit, on_sweep))]
 pub(crate) fn untangle<'py>(
-    py: Python<'py>,
     points: &Bound<'py, PyAny>,
     triangles: &Bound<'py, PyAny>,
     fixed: &Bound<'py, PyAny>,
+    z: &Bound<'py, PyAny>,
     keep_going: bool,
     time_limit: &Bound<'py, PyAny>,
     on_sweep: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Points { xy, form } = arrays::points("points", points)?;
-    let triangles = arrays::triangles("triangles", triangles, xy.len())?;
-    let fixed = match fixed.is_none() {
-        true => Vec::new(),
-        false => arrays::vertex_set("fixed", fixed, xy.len())?,
-    };
+    let py = points.py();
+    let z = plane::third_coordinate(z)?;
+    let given = Named { name: "points", points };
+    let (mut mesh, form) = measures::mesh(given, triangles, z, Surface::Plane)?;
+    if !fixed.is_none() {
+        mesh.fixed = arrays::vertex_set("fixed", fixed, mesh.points.len())?;
+    }
     let options = PyDict::new(py);
     options.set_item("time_limit", time_limit)?;
     options.set_item("on_sweep", on_sweep)?;
@@ -41,14 +44,17 @@ pub(crate) fn untangle<'py>(
         run.set_named(&name, &value, "untangle")?;
     }
     let observer = RunObserver::new(&run);
-    let mesh = Mesh { points: xy, triangles, fixed };
     let stored = form.precision();
-    let done = threads::watched(py, &observer, || match keep_going {
-        true => {
+    let done = threads::watched(py, &observer, || {
+        if keep_going {
             let done = gpu_smooth::untangle(&mesh, stored, &mut input::observe(&observer))?;
-            Ok(Some(done.points))
+            return Ok(Some(done.points));
         }
-        false => input::untangled(&mesh, stored, &observer),
+        let mut done = input::untangled(&mesh, stored, &observer)?;
+        if let (Some(points), Some(plane)) = (&mut done, form.plane()) {
+            plane.certify_as_stored(&Topology::by_area(&mesh)?, &points.clone(), points)?;
+        }
+        Ok(done)
     })?;
     if let Some(raised) = observer.take_raised() {
         return Err(raised);
@@ -65,9 +71,12 @@ pub(crate) fn interpolate<'py>(
     triangles: &Bound<'py, PyAny>,
     moved: &Bound<'py, PyAny>,
     values: &Bound<'py, PyAny>,
+    z: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mesh = measures::mesh(points, triangles)?;
-    let moved = likewise("moved", moved, &mesh)?.xy;
+    let z = plane::third_coordinate(z)?;
+    let given = Named { name: "points", points };
+    let (mesh, form) = measures::mesh(given, triangles, z, Surface::Plane)?;
+    let moved = likewise("moved", moved, &mesh, &form)?.xy;
     let values = arrays::per_vertex("values", values, mesh.points.len())?;
     let taken = threads::detached(py, || {
         let topology = Topology::new(&mesh)?;
@@ -88,12 +97,12 @@ pub(crate) fn compare<'py>(
     after: &Bound<'py, PyAny>,
     triangles: &Bound<'py, PyAny>,
     on: &Bound<'py, PyAny>,
+    z: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let Points { xy, form } = arrays::points("before", before)?;
-    let triangles = arrays::triangles("triangles", triangles, xy.len())?;
-    let mesh = Mesh { points: xy, triangles, fixed: Vec::new() };
-    let Points { xy: after, form: other } = likewise("after", after, &mesh)?;
-    let surface = measures::surface(on)?;
+    let (surface, z) = (measures::surface(on)?, plane::third_coordinate(z)?);
+    let given = Named { name: "before", points: before };
+    let (mesh, form) = measures::mesh(given, triangles, z, surface)?;
+    let Points { xy: after, form: other } = likewise("after", after, &mesh, &form)?;
     let compared = threads::detached(py, || {
         let topology = Topology::new(&mesh)?;
         let change = Change::between(&topology, &mesh.points, &after)?;
@@ -105,7 +114,11 @@ pub(crate) fn compare<'py>(
     let moved = mesh.points.iter().zip(&after).filter(|(was, is)| was != is).count();
     let all = PyDict::new(py);
     all.set_item("vertices_moved", moved)?;
-    all.set_item("z_changed", !PointsForm::has_equal_z(&form, &other))?;
+    let z_changed = match (form.plane(), other.plane()) {
+        (Some(plane), Some(other)) => !plane.strays(other).is_empty(),
+        _ => form.kept_z() != other.kept_z(),
+    };
+    all.set_item("z_changed", z_changed)?;
     all.set_item("moved", spread(change.moved))?;
     all.set_item("size_change", spread(change.size))?;
     all.set_item("least_altitude", (change.least_altitude[0], change.least_altitude[1]))?;
@@ -114,12 +127,17 @@ pub(crate) fn compare<'py>(
     Ok(all)
 }
 
-/// Reads points, one row per vertex of a mesh.
-fn likewise(name: &str, value: &Bound<'_, PyAny>, mesh: &Mesh) -> PyResult<Points> {
+/// Reads points, one row per vertex of a mesh, in the plane of points of the form `of`.
+fn likewise(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+    mesh: &Mesh,
+    of: &PointsForm,
+) -> PyResult<Points> {
     let points = arrays::points(name, value)?;
     let (given, expected) = (points.xy.len(), mesh.points.len());
     match given == expected {
-        true => Ok(points),
+        true => plane::lay_out_likewise(value.py(), name, points, of),
         false => {
             let text = format!(
                 "{name}: {given} points are given for the {expected} vertices of the mesh. Pass one row per vertex"

@@ -2,6 +2,7 @@
 //! remedy.
 
 use gpu_smooth::options::{Feature, OptionError};
+use gpu_smooth::plane::NotPlanar;
 use gpu_smooth::{GpuError, MeshError, SmoothError};
 use mesh_io::{ReadError, WriteError};
 use pyo3::intern;
@@ -135,6 +136,26 @@ pub(crate) fn tangled(py: Python<'_>, text: &str, triangles: Vec<usize>) -> PyEr
 pub(crate) fn of_mesh(py: Python<'_>, error: &MeshError) -> PyErr {
     let (triangles, vertex) = indices(error);
     with_indices(py, mesh(py, &explained(error)), triangles, vertex)
+}
+
+/// Returns the exception of points that do not lie in one plane.
+pub(crate) fn not_planar(py: Python<'_>, name: &str, refused: &NotPlanar) -> PyErr {
+    let NotPlanar { vertex, distance } = *refused;
+    let text = format!(
+        "{name}[{vertex}]: the mesh is not planar: the vertex is at a distance of {distance:.6} from the plane nearest to all \
+         vertices. If z is data of a mesh in x and y, such as the depth of water, pass z=\"data\". Curved surfaces are not \
+         smoothed"
+    );
+    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+}
+
+/// Returns the exception of a third coordinate that is not finite.
+pub(crate) fn third_coordinate(py: Python<'_>, name: &str, vertex: usize, z: f64) -> PyErr {
+    let text = format!(
+        "{name}[{vertex}, 2]: the third coordinate is {z}. Replace NaN and infinity, or pass z=\"data\" if z is data of a \
+         mesh in x and y"
+    );
+    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
 }
 
 /// Sets the attributes of an exception that name triangles and a vertex.

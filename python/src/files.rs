@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use mesh_io::{Conversion, Encoding, MeshFile as File, ReadOptions};
+use mesh_io::{
+    Conversion, Encoding, FieldError, MeshFile as File, ReadError, ReadOptions, WriteError,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,6 +18,13 @@ use crate::values::Given;
 /// A mesh file in memory.
 #[pyclass(frozen, module = "gpu_smooth._native")]
 pub(crate) struct MeshFile(Arc<File>);
+
+/// The reason why a file cannot be written with other points.
+enum Refused {
+    Reading(ReadError),
+    Field(FieldError),
+    Writing(WriteError),
+}
 
 #[pymethods]
 impl MeshFile {
@@ -129,11 +138,25 @@ impl MeshFile {
         }
     }
 
-    /// Writes the file with its vertices at other points.
+    /// Writes the file with its vertices at other points. Third coordinates are written if those of the file differ.
     fn write(&self, py: Python<'_>, path: PathBuf, points: &Bound<'_, PyAny>) -> PyResult<()> {
-        let points = arrays::points("points", points)?.xy;
-        let written = threads::detached(py, || self.0.write(&path, &points))?;
-        written.map_err(|error| error::of_writing(py, &error))
+        let points = arrays::points("points", points)?;
+        let z = points.form.kept_z().filter(|_| self.0.has_third_coordinates());
+        let written = threads::detached(py, || {
+            let mut fields = Vec::new();
+            if let Some(z) = z {
+                fields = self.0.point_fields(Some(&["z".to_owned()])).map_err(Refused::Reading)?;
+                for field in &mut fields {
+                    field.set(z.to_vec()).map_err(Refused::Field)?;
+                }
+            }
+            self.0.write_with_fields(&path, &points.xy, &fields).map_err(Refused::Writing)
+        })?;
+        written.map_err(|refused| match refused {
+            Refused::Reading(error) => error::of_reading(py, &error),
+            Refused::Field(error) => error::mesh(py, &format!("points: {error}")),
+            Refused::Writing(error) => error::of_writing(py, &error),
+        })
     }
 
     /// Returns the first difference to another file apart from coordinates, None without one.

@@ -198,7 +198,7 @@ impl Layout {
             },
             Target::Background { points: background, triangles, values } => {
                 let mesh = Mesh {
-                    points: background.clone(),
+                    points: background.xy.clone(),
                     triangles: triangles.clone(),
                     fixed: vec![],
                 };

@@ -14,6 +14,7 @@ mod mesh_options;
 mod movement;
 mod observer;
 mod outcome;
+mod plane;
 mod prepared;
 mod recovery;
 mod run_options;

@@ -6,10 +6,11 @@ use gpu_smooth::{Mesh, Metric, Quality as MeshQuality, Topology};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays;
+use crate::arrays::{self, Points, PointsForm};
 use crate::error;
+use crate::plane;
 use crate::threads;
-use crate::values::Given;
+use crate::values::{Given, ThirdCoordinate};
 
 /// Returns the surface of a word.
 pub(crate) fn surface(value: &Bound<'_, PyAny>) -> PyResult<Surface> {
@@ -17,11 +18,24 @@ pub(crate) fn surface(value: &Bound<'_, PyAny>) -> PyResult<Surface> {
     given.word(&[("plane", Surface::Plane), ("sphere", Surface::Sphere)])
 }
 
-/// Returns the mesh of two arrays.
-pub(crate) fn mesh(points: &Bound<'_, PyAny>, triangles: &Bound<'_, PyAny>) -> PyResult<Mesh> {
-    let points = arrays::points("points", points)?.xy;
-    let triangles = arrays::triangles("triangles", triangles, points.len())?;
-    Ok(Mesh { points, triangles, fixed: Vec::new() })
+/// The name of an argument, and points that the argument has.
+pub(crate) struct Named<'a, 'py> {
+    pub(crate) name: &'a str,
+    pub(crate) points: &'a Bound<'py, PyAny>,
+}
+
+/// Returns the mesh of two arrays, in the plane in which the points lie, and the form of the points.
+pub(crate) fn mesh(
+    given: Named<'_, '_>,
+    triangles: &Bound<'_, PyAny>,
+    z: ThirdCoordinate,
+    surface: Surface,
+) -> PyResult<(Mesh, PointsForm)> {
+    let Named { name, points } = given;
+    let read = arrays::points(name, points)?;
+    let triangles = arrays::triangles("triangles", triangles, read.xy.len())?;
+    let Points { xy, form } = plane::lay_out(points.py(), name, read, z, surface)?;
+    Ok((Mesh { points: xy, triangles, fixed: Vec::new() }, form))
 }
 
 /// Returns the value of a measure for each triangle.
@@ -32,9 +46,11 @@ pub(crate) fn quality<'py>(
     triangles: &Bound<'py, PyAny>,
     measure: &str,
     on: &Bound<'py, PyAny>,
+    z: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let mesh = mesh(points, triangles)?;
     let surface = surface(on)?;
+    let z = plane::third_coordinate(z)?;
+    let (mesh, _) = mesh(Named { name: "points", points }, triangles, z, surface)?;
     let measure: Measure =
         measure.parse().map_err(|unknown: gpu_smooth::measure::UnknownMeasure| {
             error::option(py, &format!("measure: {unknown}"))

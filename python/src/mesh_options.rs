@@ -6,10 +6,10 @@ use gpu_smooth::targets::Surface;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
-use crate::arrays::{self, PerVertex};
+use crate::arrays::{self, PerVertex, Points};
 use crate::error;
 use crate::run_options::{self, RunOptions};
-use crate::values::{self, Given};
+use crate::values::{self, Given, ThirdCoordinate};
 
 /// Names of the options of a mesh.
 pub(crate) const NAMES: &[&str] = &[
@@ -27,6 +27,7 @@ pub(crate) const NAMES: &[&str] = &[
     "free_first_layer",
     "target_of",
     "surface",
+    "z",
     "untangle",
 ];
 
@@ -39,7 +40,7 @@ pub(crate) enum Target {
     Given(PerVertex),
     /// Sizes or tensors of the vertices of another mesh.
     Background {
-        points: Vec<[f64; 2]>,
+        points: Box<Points>,
         triangles: Vec<[u32; 3]>,
         values: PerVertex,
     },
@@ -68,6 +69,8 @@ pub(crate) struct MeshOptions {
     /// Whether targets belong to places.
     pub(crate) of_places: Option<bool>,
     pub(crate) surface: Surface,
+    /// Meaning of third coordinates.
+    pub(crate) z: ThirdCoordinate,
     pub(crate) untangles: bool,
 }
 
@@ -88,6 +91,7 @@ impl MeshOptions {
             frees_first_layer: false,
             of_places: None,
             surface: Surface::Plane,
+            z: ThirdCoordinate::Coordinate,
             untangles: false,
         }
     }
@@ -120,6 +124,7 @@ impl MeshOptions {
                 let surfaces = [("plane", Surface::Plane), ("sphere", Surface::Sphere)];
                 self.surface = given.word(&surfaces)?;
             }
+            "z" => self.z = given.third_coordinate()?,
             "untangle" => self.untangles = given.flag()?,
             _ => return Ok(false),
         }
@@ -200,10 +205,10 @@ fn target(given: Given<'_, '_>, vertices: usize) -> PyResult<Target> {
         else {
             return Err(given.refused("a tuple of points, triangles and sizes or tensors"));
         };
-        let points = arrays::points("target[0]", &points)?.xy;
-        let triangles = arrays::triangles("target[1]", &triangles, points.len())?;
-        let values =
-            checked("target[2]", arrays::per_vertex("target[2]", &values, points.len())?, value)?;
+        let points = Box::new(arrays::points("target[0]", &points)?);
+        let count = points.xy.len();
+        let triangles = arrays::triangles("target[1]", &triangles, count)?;
+        let values = checked("target[2]", arrays::per_vertex("target[2]", &values, count)?, value)?;
         return Ok(Target::Background { points, triangles, values });
     }
     Ok(Target::Given(checked(name, arrays::per_vertex(name, value, vertices)?, value)?))

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use gpu_smooth::plane::Plane;
 use gpu_smooth::{Backend, Metric, Outcome as RunOutcome, Quality as MeshQuality};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays;
 use crate::error;
 use crate::measures::Quality;
 use crate::prepared::Prepared;
@@ -43,6 +45,12 @@ impl Outcome {
     }
 }
 
+/// Returns points of the plane as an array of shape (n, 2).
+fn flat(py: Python<'_>, points: Vec<[f64; 2]>) -> PyResult<Bound<'_, PyAny>> {
+    let rows = points.len();
+    arrays::matrix(py, points.into_flattened(), [rows, 2])
+}
+
 #[pymethods]
 impl Outcome {
     /// Returns the points after the run, in the form of the points that were passed.
@@ -55,6 +63,22 @@ impl Outcome {
     fn points_before<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let points = self.prepared.points_before().to_vec();
         self.prepared.form.array(py, self.prepared.given(points))
+    }
+
+    /// Returns the points after the run by their two coordinates in the plane in which they were moved, for pictures.
+    fn flat_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        flat(py, self.prepared.given(self.outcome.points.clone()))
+    }
+
+    /// Returns the points before the run by their two coordinates in the plane, for pictures.
+    fn flat_points_before<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        flat(py, self.prepared.given(self.prepared.points_before().to_vec()))
+    }
+
+    /// The names of the two coordinates in the plane in which the points were moved.
+    #[getter]
+    fn axes(&self) -> (&'static str, &'static str) {
+        self.prepared.form.plane().map_or(["x", "y"], Plane::axes).into()
     }
 
     /// Returns f before the first sweep and after each sweep, by each metric that was evaluated.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use gpu_smooth::options::Feature;
+use gpu_smooth::plane::Plane;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::{Backend, Checkpoint, Mesh, Options, Smoother as PreparedMesh};
 use pyo3::prelude::*;
@@ -12,9 +13,10 @@ use crate::arrays::{self, Points, PointsForm};
 use crate::engine;
 use crate::error;
 use crate::input::{Coordinates, Failure, Input};
-use crate::mesh_options::{CallOptions, MeshOptions};
+use crate::mesh_options::{CallOptions, MeshOptions, Target};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
+use crate::plane;
 use crate::prepared::{Prepared, given};
 use crate::recovery::{self, Recovery};
 use crate::run_options::{CheckpointPlan, EngineChoice, RunOptions};
@@ -96,31 +98,39 @@ impl Call {
         triangles: &Bound<'_, PyAny>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let Points { xy, form } = arrays::points("points", points)?;
-        let triangles = arrays::triangles("triangles", triangles, xy.len())?;
-        let size = [xy.len(), triangles.len()];
-        let options = CallOptions::of_call(points.py(), options, size)?;
+        let py = points.py();
+        let read = arrays::points("points", points)?;
+        let triangles = arrays::triangles("triangles", triangles, read.xy.len())?;
+        let size = [read.xy.len(), triangles.len()];
+        let mut options = CallOptions::of_call(py, options, size)?;
+        let CallOptions { mesh: MeshOptions { z, surface, target, .. }, .. } = &mut options;
+        let Points { xy, form } = plane::lay_out(py, "points", read, *z, *surface)?;
+        if let Target::Background { points, .. } = target {
+            **points = plane::lay_out_likewise(py, "target[0]", std::mem::take(points), &form)?;
+        }
         let mesh = Mesh { points: xy, triangles, fixed: Vec::new() };
         Ok(Self { mesh, form, options })
     }
 }
 
 /// The options, the engine and the checkpoints of a run.
-struct RunPlan {
+struct RunPlan<'a> {
     options: Options,
     backend: Backend,
     /// Whether the run continues on the CPU if the device fails. True only with `engine="auto"`.
     falls_back: bool,
     checkpoints: Option<CheckpointPlan>,
     resumed: Option<Checkpoint>,
+    /// The plane in which the points are moved; `None` for the plane of x and y.
+    plane: Option<&'a Plane>,
 }
 
-impl RunPlan {
+impl<'a> RunPlan<'a> {
     fn new(
         py: Python<'_>,
         run: &RunOptions,
         mesh: &MeshOptions,
-        form: &PointsForm,
+        form: &'a PointsForm,
         smoother: &PreparedMesh<'_>,
     ) -> PyResult<Self> {
         let options = run.library(form.precision(), mesh.default_metric());
@@ -137,7 +147,7 @@ impl RunPlan {
             _ => engine::open(py, &engine, smoother.size(), &options)?,
         };
         let falls_back = engine == EngineChoice::Auto;
-        Ok(Self { options, backend, falls_back, checkpoints, resumed })
+        Ok(Self { options, backend, falls_back, checkpoints, resumed, plane: form.plane() })
     }
 
     fn run(
@@ -148,7 +158,11 @@ impl RunPlan {
         let observe = |progress: &gpu_smooth::Progress| observer.sweep(progress);
         let recovery = Recovery::new(self.checkpoints.as_ref(), self.falls_back, observer);
         let run = smoother.run(&self.options).on(&self.backend).observe(observe);
-        let outcome = run.checkpoints(recovery).resume(&self.resumed).block()?;
+        let mut outcome = run.checkpoints(recovery).resume(&self.resumed).block()?;
+        if let Some(plane) = self.plane {
+            let before = &smoother.mesh().points;
+            plane.certify_as_stored(smoother.topology(), before, &mut outcome.points)?;
+        }
         recovery::clear(self.checkpoints.as_ref(), outcome.stop);
         Ok(outcome)
     }

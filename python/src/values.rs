@@ -10,6 +10,15 @@ use pyo3::types::{PyBool, PyString};
 
 use crate::error;
 
+/// Meaning of third coordinates that differ.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ThirdCoordinate {
+    /// A coordinate of a mesh that lies in any plane of space, and is smoothed in it.
+    Coordinate,
+    /// Data of a mesh in x and y, such as depths.
+    Data,
+}
+
 /// An option that a caller passed: its name and its value.
 #[derive(Clone, Copy)]
 pub(crate) struct Given<'a, 'py> {
@@ -70,6 +79,11 @@ impl Given<'_, '_> {
                 Err(self.refused(&names.join(" or ")))
             }
         }
+    }
+
+    /// Returns the meaning of third coordinates.
+    pub(crate) fn third_coordinate(&self) -> PyResult<ThirdCoordinate> {
+        self.word(&[("coordinate", ThirdCoordinate::Coordinate), ("data", ThirdCoordinate::Data)])
     }
 
     /// Returns a duration that is given in seconds.

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -26,6 +28,18 @@ def lattice(side: int, seed: int = 1, by: float = 0.24) -> tuple[Points, Triangl
     moves = np.random.default_rng(seed).uniform(-by, by, points.shape)
     moves[~is_inner] = 0.0
     return points + moves, np.concatenate([lower, upper])
+
+
+def written(path: Path, points: npt.NDArray[Any], triangles: Triangles) -> Path:
+    """Write a mesh as a VTK file of the type of the points, with all digits. Points of two coordinates get z = 0."""
+    kind = {"float64": "double", "float32": "float"}[points.dtype.name]
+    rows = [" ".join(map(str, row)) + " 0" * (3 - len(row)) for row in points.tolist()]
+    cells = ["3 " + " ".join(map(str, row)) for row in triangles.tolist()]
+    head = "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+    lines = [f"POINTS {len(rows)} {kind}", *rows, f"CELLS {len(cells)} {4 * len(cells)}", *cells]
+    lines += [f"CELL_TYPES {len(cells)}", *["5"] * len(cells)]
+    path.write_text(head + "\n".join(lines) + "\n")
+    return path
 
 
 def command_line(*words: str | Path) -> subprocess.CompletedProcess[str]:

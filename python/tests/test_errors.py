@@ -213,7 +213,9 @@ def test_random_arguments_raise_exceptions_of_python() -> None:
             points.flat[random.integers(points.size)] = random.choice(value)
         slide, untangle = random.random() < 0.5, random.random() < 0.3
         try:
-            gpu_smooth.smooth(points, triangles, slide=bool(slide), untangle=bool(untangle), max_sweeps=5)
+            gpu_smooth.smooth(
+                points, triangles, slide=bool(slide), untangle=bool(untangle), max_sweeps=5, z="data" if slide else None
+            )
             accepted += 1
         except MeshError:
             pass

@@ -81,7 +81,12 @@ def test_a_result_is_plotted(mesh: Mesh) -> None:
     result = gpu_smooth.run(*mesh)
     figure = result.plot()
     assert [axes.get_title() for axes in figure.axes[:2]] == ["before", "after"]
-    assert [axes.get_title() for axes in result.plot("after", "min-angle").axes[:1]] == ["after"]
+    # Bad triangles are dark by each measure, and angles have their unit.
+    for measure, label, is_low_dark in (("imr", "imr", False), ("min_angle", "min_angle (°)", True), ("shape", "shape", True)):
+        mesh_axes, bar = result.plot("after", measure).axes
+        assert mesh_axes.get_title() == "after" and bar.get_ylabel() == label
+        dark, light = (colors(k)[:3] for colors in [mesh_axes.collections[0].cmap] for k in (0.0, 1.0))
+        assert (sum(dark) < sum(light)) == is_low_dark, measure
     with pytest.raises(gpu_smooth.OptionError, match="which: the value is 'then'"):
         result.plot("then")  # type: ignore[arg-type]
     pyplot.close("all")

@@ -8,24 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Points, Triangles, command_line, lattice
+from conftest import Points, Triangles, command_line, lattice, written
 
 import gpu_smooth
 from gpu_smooth import MeshError, OptionError
 
 Mesh = tuple[Points, Triangles]
 METRICS = [metric.name for metric in gpu_smooth.metrics()]
-
-
-def written(path: Path, points: Points, triangles: Triangles) -> Path:
-    """Write a mesh as a VTK file, with all digits."""
-    rows = [f"{float(x)!r} {float(y)!r} 0" for x, y in points]
-    cells = ["3 " + " ".join(map(str, row)) for row in triangles.tolist()]
-    head = "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n"
-    lines = [f"POINTS {len(rows)} double", *rows, f"CELLS {len(cells)} {4 * len(cells)}", *cells]
-    lines += [f"CELL_TYPES {len(cells)}", *["5"] * len(cells)]
-    path.write_text(head + "\n".join(lines) + "\n")
-    return path
 
 
 @pytest.mark.parametrize("engine", ["cpu", "gpu"])
@@ -103,11 +92,11 @@ def test_the_form_of_points_is_kept(mesh: Mesh) -> None:
     points, triangles = mesh
     smoothed = gpu_smooth.smooth(points, triangles)
     depths = np.arange(float(len(points)))
-    in_space = gpu_smooth.smooth(np.column_stack([points, depths]), triangles)
+    in_space = gpu_smooth.smooth(np.column_stack([points, depths]), triangles, z="data")
     assert in_space.dtype == np.float64
     assert np.array_equal(in_space, np.column_stack([smoothed, depths]))
     single = np.column_stack([points, depths]).astype(np.float32)
-    of_single = gpu_smooth.smooth(single, triangles)
+    of_single = gpu_smooth.smooth(single, triangles, z="data")
     assert of_single.dtype == np.float32 and np.array_equal(of_single[:, 2], single[:, 2])
     assert np.abs(of_single[:, :2] - smoothed).max() < 1e-3
 

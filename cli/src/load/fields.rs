@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::load::plane::z_field;
 use crate::request::FieldsRequest;
 use gpu_smooth::{Topology, interpolate::Interpolation};
 use mesh_io::PointField;
@@ -120,7 +121,7 @@ impl InterpolatedFields {
     ) -> Result<Vec<String>, CliError> {
         let mut remarks = Vec::new();
         if let Some(plane) = file.plane() {
-            self.fields.extend(plane.z_field(&file.source, points)?);
+            self.fields.extend(z_field(plane, &file.source, points)?);
         }
         if file.source.has_parameters() {
             let new = if file.plane().is_some() { points.into() } else { file.given(points) };

@@ -1,13 +1,13 @@
 //! A mesh file together with the mesh to smooth.
 
 use crate::error::CliError;
-use crate::load::plane::Plane;
+use crate::load::plane::{likewise, of_file, remark};
 use gpu_smooth::{
     Mesh, MeshError, Topology,
     interpolate::Chart,
+    plane::Plane,
     precision::{Precision, Rounding},
     slide::Periodic,
-    topology::certify,
 };
 use mesh_io::{MeshFile, PointField, SourceLocation, WriteError};
 use std::borrow::Cow;
@@ -84,10 +84,7 @@ impl LoadedMesh {
     /// Returns the precision with which the file stores the coordinates of the mesh. Coordinates in a tilted plane are
     /// not stored, so that a run does not round them.
     pub(crate) fn precision(&self) -> Precision {
-        match self.plane().is_some_and(Plane::is_tilted) {
-            true => Precision::Double,
-            false => precision(self.source.precision()),
-        }
+        self.plane().map_or_else(|| precision(self.source.precision()), Plane::run_precision)
     }
 
     /// Returns the vertices of the file by which options select vertices: x and y, or positions in the plane of the
@@ -101,10 +98,10 @@ impl LoadedMesh {
     /// # Errors
     /// Returns an error if the vertices do not lie in a plane.
     pub(crate) fn lay_out_in_plane(&mut self) -> Result<Vec<String>, CliError> {
-        let plane = Plane::of(&self.source)?;
-        let remark = plane.as_ref().and_then(Plane::remark);
+        let plane = of_file(&self.source, precision(self.source.precision()))?;
+        let remarks = plane.as_ref().and_then(remark).into_iter().collect();
         self.take_plane(plane);
-        Ok(remark.into_iter().collect())
+        Ok(remarks)
     }
 
     fn take_plane(&mut self, plane: Option<Plane>) {
@@ -122,24 +119,9 @@ impl LoadedMesh {
         before: &[[f64; 2]],
         points: &mut [[f64; 2]],
     ) -> Result<(), MeshError> {
-        let Some(plane) = self.plane().filter(|plane| plane.is_tilted()) else { return Ok(()) };
-        let stored = self.source.precision();
-        let bits = |point: [f64; 2]| point.map(f64::to_bits);
-        let old = plane.as_stored(before, stored);
-        loop {
-            let rounded = plane.as_stored(points, stored);
-            let mut certified = rounded.clone();
-            certify(topology, &old, &mut certified)?;
-            let mut is_done = true;
-            for (v, (rounded, certified)) in rounded.iter().zip(&certified).enumerate() {
-                if bits(*rounded) != bits(*certified) {
-                    points[v] = before[v];
-                    is_done = false;
-                }
-            }
-            if is_done {
-                return Ok(());
-            }
+        match self.plane() {
+            Some(plane) => plane.certify_as_stored(topology, before, points),
+            None => Ok(()),
         }
     }
 
@@ -165,7 +147,7 @@ impl LoadedMesh {
     /// Returns an error if the third coordinates of `other` cannot be read.
     pub(crate) fn lay_out_likewise(&self, other: &mut LoadedMesh) -> Result<(), CliError> {
         if let Some(plane) = self.plane() {
-            other.take_plane(Some(plane.likewise(&other.source)?));
+            other.take_plane(Some(likewise(plane, &other.source)?));
         }
         let Some(chart) = self.chart() else { return Ok(()) };
         if other.chart.is_none() && other.mesh.points.len() == chart.original().points.len() {

@@ -3,7 +3,6 @@
 pub(crate) mod explain;
 mod fields;
 mod fixed;
-mod frame;
 mod mesh;
 mod movable;
 pub(crate) mod overwrite;
@@ -18,5 +17,5 @@ pub(crate) use fields::InterpolatedFields;
 pub(crate) use fixed::FixedBy;
 pub(crate) use mesh::LoadedMesh;
 pub(crate) use movable::MovableSelection;
-pub(crate) use plane::Plane;
+pub(crate) use plane::axes_legend;
 pub(crate) use surface::{as_in_file, lay_out};

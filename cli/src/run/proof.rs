@@ -52,7 +52,7 @@ impl Proof {
             let differ = |&(_, (old, new)): &(u32, (&[f64; 2], &[f64; 2]))| bits(old) != bits(new);
             moved = (0..).zip(old.iter().zip(new)).filter(differ).map(|(v, _)| v).collect();
             let strays = match (before.plane(), after.plane()) {
-                (Some(plane), Some(other)) => plane.strays(other, before.source.precision()),
+                (Some(plane), Some(other)) => plane.strays(other),
                 _ => Vec::new(),
             };
             held = moved.iter().copied().filter(|&v| !topology.free()[v as usize]).collect();

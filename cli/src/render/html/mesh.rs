@@ -1,7 +1,7 @@
 //! The mesh data for the page's script: the whole mesh, or a picture and the triangles around the worst ones.
 
 use crate::error::CliError;
-use crate::load::{LoadedMesh, Plane};
+use crate::load::{LoadedMesh, axes_legend};
 use std::collections::HashSet;
 
 use base64::Engine;
@@ -155,7 +155,7 @@ pub(crate) fn viewer_mesh(
         "spots": corners,
     });
     let mut caption = caption(topology.triangles().len(), &faces, is_whole);
-    if let Some(axes) = file.plane().and_then(Plane::legend) {
+    if let Some(axes) = file.plane().and_then(axes_legend) {
         caption += &format!(" Axes: {axes}.");
     }
     Ok(ViewerMesh { caption, faces: faces.name(), data })

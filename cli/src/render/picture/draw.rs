@@ -1,7 +1,7 @@
 //! The picture of `--picture`: a mesh colored by quality, before and after a run.
 
 use crate::error::CliError;
-use crate::load::{LoadedMesh, Plane};
+use crate::load::{LoadedMesh, axes_legend};
 use crate::render::picture::{color, png, svg};
 use crate::request::{PictureFormat, PictureRequest};
 
@@ -148,7 +148,7 @@ fn panel<'a>(
             all.filter(|(t, _)| has_middle(*t)).take(CANDIDATES).collect()
         }
     };
-    let axes = mesh.file.plane().and_then(Plane::legend);
+    let axes = mesh.file.plane().and_then(axes_legend);
     let title = match axes {
         Some(axes) => format!("{}; {axes}", state.title),
         None => state.title.clone(),

@@ -1,6 +1,6 @@
 //! Coordinates in the plane of a mesh: the plane of two axes, or a tilted plane.
 
-use mesh_io::Precision;
+use crate::precision::Precision;
 
 /// Largest distance of vertices from their plane, relative to the extent of the mesh. Files of six digits round
 /// coordinates by up to half of this distance.
@@ -43,7 +43,10 @@ impl Frame {
         }
         let frame = fitted(points);
         match frame.farthest(points) {
-            Some(farthest) if farthest.distance > tolerance => Err(farthest),
+            // The distance is not a number if a coordinate is not finite.
+            Some(farthest) if farthest.distance > tolerance || farthest.distance.is_nan() => {
+                Err(farthest)
+            }
             _ => Ok(frame),
         }
     }
