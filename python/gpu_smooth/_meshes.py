@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 
 def smooth(mesh: Any, options: dict[str, Any]) -> Any:
     """Smooth a mesh of meshio or PyVista, and return a mesh of the same kind."""
+    if isinstance(mesh, (str, os.PathLike)):
+        raise TypeError(
+            "points and triangles are needed, not the name of a file. gpu_smooth.MeshFile reads a file, and "
+            "gpu_smooth.smooth_file smooths one"
+        )
     # The package of a mesh is imported already, so that no package is imported for a wrong argument.
     module = type(mesh).__module__.partition(".")[0]
     if module == "meshio":

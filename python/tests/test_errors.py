@@ -172,6 +172,8 @@ def test_arrays_of_options_must_fit_the_mesh(options: dict[str, Any], message: s
 def test_unknown_options_are_refused_with_the_most_similar_name() -> None:
     with pytest.raises(TypeError, match="tolerence: smoothing has no option.*Did you mean tolerance"):
         gpu_smooth.smooth(POINTS, TRIANGLES, tolerence=1)  # type: ignore[call-overload]
+    with pytest.raises(TypeError, match="MeshFile reads a file"):
+        gpu_smooth.smooth("part.msh")
     with pytest.raises(TypeError, match="points and triangles are needed"):
         gpu_smooth.smooth(3)
 
