@@ -15,7 +15,8 @@ use crate::metric::{Metric, Smoothing, TargetMap};
 use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{
-    CPU, EXCLUSION_PASSES, Engine, EngineState, History, Objectives, Plan, Proposal, SweepParams,
+    CPU, EXCLUSION_PASSES, Engine, EngineState, History, NOISE, Objectives, Plan, Proposal,
+    SweepParams,
 };
 
 /// Number of vertices that one task handles.
@@ -171,6 +172,10 @@ async fn as_transformed(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
 }
 
 impl Engine for CpuEngine {
+    fn noise(&self) -> f64 {
+        NOISE
+    }
+
     async fn sweep(&mut self, step: &SweepParams) -> Result<Objectives, GpuError> {
         self.sweep_now(step).await;
         self.objectives().await

@@ -18,6 +18,9 @@ use crate::run::sweep_params::SweepParams;
 ///
 /// The caller decides which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {
+    /// Returns the relative error of an evaluated f. Gains below the error do not decay.
+    fn noise(&self) -> f64;
+
     /// Visits every free vertex once, by `step`, and evaluates the tracked objectives afterward. A device does both in one
     /// submission: between two submissions, some drivers block the thread until the first is done.
     fn sweep(

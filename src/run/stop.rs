@@ -106,11 +106,18 @@ impl StopRule {
         if last < window.saturating_mul(2) {
             return None;
         }
+        let of_windows = [window, window.div_ceil(2)].map(|w| self.remaining_over(history, w));
+        of_windows[0].zip(of_windows[1]).map(|(long, short)| long.max(short))
+    }
+
+    /// Estimates the gain that remains as [`remaining`](Self::remaining) does, from a single window. `None` if `history`
+    /// is shorter than two windows, or if the gains do not decay.
+    pub(crate) fn remaining_over(&self, history: &[f64], window: usize) -> Option<f64> {
+        let last = history.len().checked_sub(1)?;
+        let start = last.checked_sub(window.saturating_mul(2))?;
         let gain = |from: usize, to: usize| history[from] - history[to];
-        let remaining =
-            |w: usize| remaining_gain(gain(last - 2 * w, last - w), gain(last - w, last));
-        let scale = history[last].max(MIN_SCALE);
-        let left = 2.0 * remaining(window).max(remaining(window.div_ceil(2))) / scale;
+        let left = remaining_gain(gain(start, last - window), gain(last - window, last));
+        let left = 2.0 * left / history[last].max(MIN_SCALE);
         Some(left).filter(|left| left.is_finite())
     }
 }

@@ -32,6 +32,10 @@ macro_rules! on {
 }
 
 impl Engine for AnyEngine<'_> {
+    fn noise(&self) -> f64 {
+        on!(self, engine => engine.noise())
+    }
+
     async fn sweep(&mut self, step: &SweepParams) -> Result<Objectives, GpuError> {
         on!(self, engine => engine.sweep(step).await)
     }

@@ -3,7 +3,7 @@
 use super::plan_steps::{
     OMEGA_ALTERNATING, OMEGA_BEFORE, OMEGA_BETWEEN, exponents, reopening_sweep,
 };
-use super::state::{Correcting, Corrections, Stage};
+use super::state::{Correcting, Corrections, SWEPT, Stage};
 use crate::error::GpuError;
 use crate::metric::Metric;
 use crate::run::engine::{Engine, Proposal};
@@ -33,9 +33,6 @@ const MAX_REFUSED: u32 = 2;
 const SWEEPS_BETWEEN: usize = 5;
 /// Largest number of times that corrections begin. If corrections are refused the last time, sweeps alone end the run.
 const ATTEMPTS: u32 = 5;
-
-/// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
-const SWEPT: f64 = 0.1;
 
 /// Ratio of the slopes along two successive corrections above which corrections are accelerated. On most meshes, the
 /// slope falls to a sixth or less each time, and acceleration gains nothing.
@@ -68,7 +65,7 @@ impl Corrections {
     ) -> Result<(), GpuError> {
         if history.is_empty() {
             let start = engine.objectives().await?;
-            self.record(start, history);
+            self.record(start, history, engine.noise());
         }
         for _ in 0..sweeps {
             if history.stop().is_some() {
@@ -80,7 +77,7 @@ impl Corrections {
                 Stage::Without { .. } => self.sweep_without(engine).await?,
             };
             let before = self.sharpness;
-            self.record(objectives, history);
+            self.record(objectives, history, engine.noise());
             self.reopen(engine, history, self.sharpness > before).await?;
             if std::mem::take(&mut self.anew) {
                 engine.forget();

@@ -6,6 +6,7 @@ mod levels;
 pub(crate) mod plan_steps;
 mod record;
 mod reopening;
+mod slow_decay;
 mod state;
 mod words;
 

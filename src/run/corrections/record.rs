@@ -1,6 +1,7 @@
 //! The log of a run with corrections, and the stop rule for each stage of such a run.
 
-use super::state::{Correcting, Corrections, ESTIMATES, Stage};
+use super::slow_decay::{WINDOW, remaining_over_windows};
+use super::state::{Correcting, Corrections, ESTIMATES, SWEPT, Stage};
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
 use crate::run::stop::{JITTER, MIN_SCALE, NOISE, Stop, StopRule};
@@ -11,11 +12,6 @@ const NO_ESTIMATE: usize = 1 << 30;
 /// Number of successive estimates that end a run by EDGE if all are below the tolerance. Fewer than [`ESTIMATES`]
 /// suffice, as the estimates are of a p-norm near f.
 const ESTIMATES_FOR_EDGE: usize = 2;
-/// Number of sweeps in the longer window of estimates, for runs with more than twice as many corrections. In a slow
-/// decay, the gains of several successive sweeps may be small by chance.
-const WINDOW: usize = 8;
-/// Share of the tolerance that the gain over the longer window must exceed, or the estimate of the window is ignored.
-const SMALL: f64 = 0.2;
 /// Ratio of two successive gains of f, below which f decays steadily and a single estimate suffices.
 const STEADY: f64 = 0.3;
 /// Factor on the estimates. In some runs, each correction gained half as much as the previous one, and modes remained
@@ -25,8 +21,8 @@ const CAUTION: f64 = 1.5;
 
 impl Corrections {
     /// Records the objectives of a sweep, applies the stop rule to the present stage, and doubles EDGE's exponent if
-    /// due.
-    pub(super) fn record(&mut self, objectives: Objectives, history: &mut History) {
+    /// due. `noise` is the relative error of f on the engine.
+    pub(super) fn record(&mut self, objectives: Objectives, history: &mut History, noise: f64) {
         history.add(objectives);
         // The decay is extrapolated only from the present stage, and only with the last exponent. With corrections, a
         // window of one sweep is enough, as corrections leave no slow modes.
@@ -62,23 +58,21 @@ impl Corrections {
             judged = if most <= rule.tolerance { window } else { NO_ESTIMATE };
         }
         let is_decay = self.metric().is_smooth() && !self.is_staged;
+        let mut is_slow = false;
         if is_decay && self.taken as usize > 2 * WINDOW {
-            let f = history.f();
-            let over_window = rule.remaining(f, WINDOW);
-            let last = f[f.len() - 1];
-            let gained = (f[f.len() - 1 - WINDOW] - last) / last.max(MIN_SCALE);
-            // On a device, gains below the jitter are errors of single precision, which do not decay.
-            if gained > (SMALL * rule.tolerance).max(JITTER) {
-                let left = over_window.unwrap_or(f64::INFINITY);
+            // Without a tolerance, only the end of a run toward a goal depends on the windows.
+            let noise = if rule.tolerance > 0.0 { noise } else { JITTER };
+            if let Some(left) = remaining_over_windows(&rule, history.f(), noise) {
                 remaining = remaining.map(|least| least.max(left)).filter(|left| left.is_finite());
-                if left > rule.tolerance {
-                    judged = NO_ESTIMATE;
-                }
+                is_slow = left > rule.tolerance;
+                judged = if is_slow { NO_ESTIMATE } else { judged };
             }
         }
         let mut of_decay = rule.judge(of_stage, least(of_stage), judged);
-        if self.settled && self.is_sharpest() {
-            remaining = Some(NOISE);
+        let is_settled = self.settled && self.is_sharpest() && !is_slow;
+        if is_settled {
+            // Another sweep may gain as much as the last.
+            remaining = Some((SWEPT * rule.tolerance).max(NOISE));
             of_decay = of_decay.or(match (rule.target, rule.tolerance > 0.0) {
                 (Some(_), _) => Some(Stop::Stalled),
                 (None, true) => Some(Stop::Converged),
@@ -92,7 +86,10 @@ impl Corrections {
         let bound = Some(above_least.max(NOISE))
             .filter(|&most| asked > 0.0 && most <= asked && f.is_finite());
         of_decay = of_decay.or(bound.filter(|_| target.is_none()).map(|_| Stop::Converged));
-        let remaining = remaining.map(|left| left + self.above());
+        // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
+        let is_extrapolated = of_decay == Some(Stop::Converged) && !is_settled;
+        let least_left = if is_extrapolated { history.rule().tolerance } else { 0.0 };
+        let remaining = remaining.map(|left| (left + self.above()).max(least_left));
         let remaining = remaining.into_iter().chain(bound).reduce(f64::min);
         let stop = match of_f {
             Some(Stop::Reached) => of_f,

@@ -13,6 +13,9 @@ use crate::run::sweep_params::SweepParams;
 /// `record.rs`).
 pub(super) const ESTIMATES: usize = 4;
 
+/// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
+pub(super) const SWEPT: f64 = 0.1;
+
 /// The state of a run with corrections from coarser levels.
 pub(crate) struct Corrections {
     pub(super) problem: Problem,
