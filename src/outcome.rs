@@ -36,10 +36,14 @@ pub struct Outcome {
     pub history: Vec<Objectives>,
     /// Estimated gain of further sweeps, as a share of f (of 1e-6 if f is smaller). The estimate extrapolates the decay
     /// of f in the last sweeps, but never beyond the ideal of f. After a run by EDGE with corrections, the estimate
-    /// includes the distance between the minima of f and of EDGE's p-norm. If the run with corrections has converged by
-    /// the estimate, the estimate is at least the tolerance, or a tenth of it after a correction without a gain. The estimate is at least the error of the f that the run was
-    /// judged by, which a device computes in single precision. `None` after too few sweeps, or if gains per sweep do not
-    /// decay.
+    /// includes the distance between the minima of f and of EDGE's p-norm.
+    ///
+    /// The estimate has lower bounds. After a run that has converged by the estimate, the bound is the tolerance, or a
+    /// tenth of the tolerance if the last correction gained nothing. After a run that has converged because f is level
+    /// up to rounding, the bound is the variation of f over the last sweeps. On a device, the bound is the error of the f
+    /// that the run was judged by, in single precision.
+    ///
+    /// `None` if the run has not converged, and either did too few sweeps or gained no less from sweep to sweep.
     pub remaining: Option<f64>,
     /// Number of vertices that a guard kept from moving further at the end of a run. Computed only if the run has
     /// converged or has done [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. If the number is above 0, a

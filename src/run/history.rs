@@ -81,6 +81,9 @@ impl History {
         let is_best = self.add(objectives);
         self.stop = self.rule.judge(&self.f, self.best, self.window);
         self.remaining = self.rule.remaining(&self.f, self.window);
+        if self.stop == Some(Stop::Converged) && self.remaining.is_none() {
+            self.remaining = Some(self.rule.level(&self.f, self.window));
+        }
         is_best
     }
 

@@ -120,6 +120,18 @@ impl StopRule {
         let left = 2.0 * left / history[last].max(MIN_SCALE);
         Some(left).filter(|left| left.is_finite())
     }
+
+    /// Returns the gain that rounding errors of f may hide after a run that has converged because f is level, as a share
+    /// of f. The gain is the difference of the largest and the smallest value in the last two windows, and at least the
+    /// tolerance.
+    pub(crate) fn level(&self, history: &[f64], window: usize) -> f64 {
+        let start = history.len().saturating_sub(window.saturating_mul(2).saturating_add(1));
+        let last = &history[start..];
+        let most = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let least = last.iter().copied().fold(f64::INFINITY, f64::min);
+        let spread = last.last().map_or(0.0, |f| (most - least) / f.max(MIN_SCALE));
+        spread.max(self.tolerance)
+    }
 }
 
 /// Returns the remaining gain of a geometric decay, given the gains of two successive windows. Infinite if the gains do
@@ -176,6 +188,10 @@ mod tests {
             (0..40).map(|k| 1.5 + if k == 4 { 0.0 } else { 1e-8 + jumps(k) }).collect();
         let at = |best: usize| rule(None, 1e-6).judge(&history[..21], best, 8);
         assert_eq!(at(4), Some(Stop::Converged));
+        // No decay is left to extrapolate, but the jumps bound the gain.
+        assert_eq!(rule(None, 1e-6).remaining(&history, 8), None);
+        assert!((rule(None, 1e-9).level(&history, 8) - 4e-7 / 1.5).abs() < 1e-8);
+        assert_eq!(rule(None, 1e-6).level(&history, 8), 1e-6);
         assert_eq!(rule(Some(1.0), 0.0).judge(&history[..21], 4, 8), Some(Stop::Stalled));
     }
 

@@ -114,6 +114,7 @@ impl PeriodRule {
             Some(_) if self.estimates >= ESTIMATES => judged,
             _ => period.is_last.then_some(Stop::MaxSweeps),
         };
-        Judgment { stop, remaining: self.rule.remaining(&self.f, 1) }
+        let level = (stop == Some(Stop::Converged)).then(|| self.rule.level(&self.f, 1));
+        Judgment { stop, remaining: self.rule.remaining(&self.f, 1).or(level) }
     }
 }

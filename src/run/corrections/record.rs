@@ -69,6 +69,9 @@ impl Corrections {
             }
         }
         let mut of_decay = rule.judge(of_stage, least(of_stage), judged);
+        if of_decay == Some(Stop::Converged) && remaining.is_none() {
+            remaining = Some(rule.level(of_stage, judged));
+        }
         let is_settled = self.settled && self.is_sharpest() && !is_slow;
         if is_settled {
             // Another sweep may gain as much as the last.
