@@ -19,80 +19,61 @@ const STEADY: f64 = 0.3;
 /// starts estimated too little, by up to a third.
 const CAUTION: f64 = 1.5;
 
+/// The state of the stop rule after a sweep.
+struct Judged {
+    /// Estimate of the remaining gain as a share of f. `None` without an estimate.
+    remaining: Option<f64>,
+    /// Window in sweeps, over which the stop rule extrapolates the decay.
+    window: usize,
+}
+
 impl Corrections {
     /// Records the objectives of a sweep, applies the stop rule to the present stage, and doubles EDGE's exponent if
     /// due. `noise` is the relative error of f on the engine.
     pub(super) fn record(&mut self, objectives: Objectives, history: &mut History, noise: f64) {
         history.add(objectives);
-        // The decay is extrapolated only from the present stage, and only with the last exponent. With corrections, a
-        // window of one sweep is enough, as corrections leave no slow modes.
-        let (of_stage, window) = match self.stage {
-            Stage::Before { .. } => (history.f(), NO_ESTIMATE),
-            // A refused correction gains little, even if much is left to gain.
-            Stage::Correcting(Correcting { refused: 1.., .. }) => (&self.lowered[..], NO_ESTIMATE),
-            Stage::Correcting(_) => (&self.lowered[..], 1),
-            Stage::Without { since } => {
-                (&history.f()[since..], StopRule::window(&self.metric().into()) as usize)
-            }
-        };
-        let window = if self.is_sharpest() { window } else { NO_ESTIMATE };
+        let whole = history.rule();
         // Corrections may lower another objective than f, but the goal and the number of sweeps refer to f.
-        let rule = history.rule();
-        let of_f = StopRule { tolerance: 0.0, ..rule }.judge(history.f(), 0, NO_ESTIMATE);
-        let target = rule.target.map(|_| f64::NEG_INFINITY);
-        let tolerance = self.tolerance_of_norm(rule.tolerance);
-        let rule = StopRule { target, tolerance, max_sweeps: u32::MAX };
-        let mut remaining = rule.remaining(of_stage, window);
-        let mut judged = window;
+        let of_f = StopRule { tolerance: 0.0, ..whole }.judge(history.f(), 0, NO_ESTIMATE);
+        let rule = StopRule {
+            target: whole.target.map(|_| f64::NEG_INFINITY),
+            tolerance: self.tolerance_of_norm(whole.tolerance),
+            max_sweeps: u32::MAX,
+        };
+        let (of_stage, window) = self.values_of_stage(history);
+        let mut judged = Judged { remaining: rule.remaining(&of_stage, window), window };
         if self.accelerated {
-            self.estimates.rotate_left(1);
-            self.estimates[ESTIMATES - 1] = remaining.map_or(f64::INFINITY, |left| CAUTION * left);
-            let asked = match self.metric().is_smooth() {
-                // New levels on a strongly stretched mesh gain much at first, and slow modes remain.
-                _ if decays_steadily(of_stage) && !self.has_local_maps() => 1,
-                true => ESTIMATES,
-                false => ESTIMATES_FOR_EDGE,
-            };
-            let most = self.estimates.iter().rev().take(asked).copied().fold(0.0, f64::max);
-            remaining = Some(most).filter(|most| most.is_finite());
-            judged = if most <= rule.tolerance { window } else { NO_ESTIMATE };
+            judged = self.confirmed(judged, &of_stage, &rule);
         }
-        let is_decay = self.metric().is_smooth() && !self.is_staged;
-        let mut is_slow = false;
-        if is_decay && self.taken as usize > 2 * WINDOW {
-            // Without a tolerance, only the end of a run toward a goal depends on the windows.
-            let noise = if rule.tolerance > 0.0 { noise } else { JITTER };
-            if let Some(left) = remaining_over_windows(&rule, history.f(), noise) {
-                remaining = remaining.map(|least| least.max(left)).filter(|left| left.is_finite());
-                is_slow = left > rule.tolerance;
-                judged = if is_slow { NO_ESTIMATE } else { judged };
-            }
+        let slow = self.slow_decay(&rule, history, noise);
+        let is_slow = slow.is_some_and(|left| left > rule.tolerance);
+        if let Some(left) = slow {
+            judged.remaining =
+                judged.remaining.map(|least| least.max(left)).filter(|left| left.is_finite());
         }
-        let mut of_decay = rule.judge(of_stage, least(of_stage), judged);
-        if of_decay == Some(Stop::Converged) && remaining.is_none() {
-            remaining = Some(rule.level(of_stage, judged));
+        if is_slow {
+            judged.window = NO_ESTIMATE;
+        }
+        let mut of_decay = rule.judge(&of_stage, least(&of_stage), judged.window);
+        if of_decay == Some(Stop::Converged) && judged.remaining.is_none() {
+            judged.remaining = Some(rule.level(&of_stage, judged.window));
         }
         let is_settled = self.settled && self.is_sharpest() && !is_slow;
         if is_settled {
             // Another sweep may gain as much as the last.
-            remaining = Some((SWEPT * rule.tolerance).max(NOISE));
+            judged.remaining = Some((SWEPT * rule.tolerance).max(NOISE));
             of_decay = of_decay.or(match (rule.target, rule.tolerance > 0.0) {
                 (Some(_), _) => Some(Stop::Stalled),
                 (None, true) => Some(Stop::Converged),
                 (None, false) => None,
             });
         }
-        // f cannot fall below its lower limit, so near the limit the distance is known without an estimate.
-        let f = history.last();
-        let above_least = (f - self.least_objective()) / f.max(MIN_SCALE);
-        let asked = history.rule().tolerance;
-        let bound = Some(above_least.max(NOISE))
-            .filter(|&most| asked > 0.0 && most <= asked && f.is_finite());
-        of_decay = of_decay.or(bound.filter(|_| target.is_none()).map(|_| Stop::Converged));
+        let bound = self.bound(history);
+        of_decay = of_decay.or(bound.filter(|_| rule.target.is_none()).map(|_| Stop::Converged));
         // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
         let is_extrapolated = of_decay == Some(Stop::Converged) && !is_settled;
-        let least_left = if is_extrapolated { history.rule().tolerance } else { 0.0 };
-        let remaining = remaining.map(|left| (left + self.above()).max(least_left));
+        let least_left = if is_extrapolated { whole.tolerance } else { 0.0 };
+        let remaining = judged.remaining.map(|left| (left + self.above()).max(least_left));
         let remaining = remaining.into_iter().chain(bound).reduce(f64::min);
         let stop = match of_f {
             Some(Stop::Reached) => of_f,
@@ -102,6 +83,62 @@ impl Corrections {
             self.raise_exponent(history.f().len() - 1);
         }
         history.end(stop, remaining);
+    }
+
+    /// Returns the values of the objective in the present stage, and the window in sweeps over which the stop rule
+    /// extrapolates their decay. With corrections, a window of one sweep is enough, as corrections leave no slow modes.
+    fn values_of_stage(&self, history: &History) -> (Vec<f64>, usize) {
+        let (values, window) = match self.stage {
+            Stage::Before { .. } => (history.f(), NO_ESTIMATE),
+            // A refused correction gains little, even if much is left to gain.
+            Stage::Correcting(Correcting { refused: 1.., .. }) => (&self.lowered[..], NO_ESTIMATE),
+            Stage::Correcting(_) => (&self.lowered[..], 1),
+            Stage::Without { since } => {
+                (&history.f()[since..], StopRule::window(&self.metric().into()) as usize)
+            }
+        };
+        // Only with the last exponent is a decay of EDGE's p-norm the decay to the end of the run.
+        (values.to_vec(), if self.is_sharpest() { window } else { NO_ESTIMATE })
+    }
+
+    /// Records an estimate of a run with accelerated corrections, whose gains are irregular. Returns the largest of the
+    /// latest estimates, and no window for the stop rule if that estimate is above the tolerance.
+    fn confirmed(&mut self, judged: Judged, of_stage: &[f64], rule: &StopRule) -> Judged {
+        self.estimates.rotate_left(1);
+        self.estimates[ESTIMATES - 1] =
+            judged.remaining.map_or(f64::INFINITY, |left| CAUTION * left);
+        let asked = match self.metric().is_smooth() {
+            // New levels on a strongly stretched mesh gain much at first, and slow modes remain.
+            _ if decays_steadily(of_stage) && !self.has_local_maps() => 1,
+            true => ESTIMATES,
+            false => ESTIMATES_FOR_EDGE,
+        };
+        let most = self.estimates.iter().rev().take(asked).copied().fold(0.0, f64::max);
+        Judged {
+            remaining: Some(most).filter(|most| most.is_finite()),
+            window: if most <= rule.tolerance { judged.window } else { NO_ESTIMATE },
+        }
+    }
+
+    /// Returns the remaining gain by the windows of a slow decay. `None` before many corrections, and where f is no
+    /// decay: by EDGE, and with stages between sweeps.
+    fn slow_decay(&self, rule: &StopRule, history: &History, noise: f64) -> Option<f64> {
+        let is_decay = self.metric().is_smooth() && !self.is_staged;
+        if !is_decay || self.taken as usize <= 2 * WINDOW {
+            return None;
+        }
+        // Without a tolerance, only the end of a run toward a goal depends on the windows.
+        let noise = if rule.tolerance > 0.0 { noise } else { JITTER };
+        remaining_over_windows(rule, history.f(), noise)
+    }
+
+    /// Returns the distance of f from its lower limit as a share of f, if the distance is within the tolerance of the
+    /// run. f cannot fall below the limit, so no estimate is needed there.
+    fn bound(&self, history: &History) -> Option<f64> {
+        let (f, tolerance) = (history.last(), history.rule().tolerance);
+        let above_least = (f - self.least_objective()) / f.max(MIN_SCALE);
+        let is_within = tolerance > 0.0 && above_least.max(NOISE) <= tolerance && f.is_finite();
+        is_within.then_some(above_least.max(NOISE))
     }
 }
 
