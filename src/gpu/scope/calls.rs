@@ -5,9 +5,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::error::GpuError;
 use crate::gpu::scope::watched::WatchedDevice;
 
-/// Runs wgpu calls that may panic. In a program built with `panic = "abort"`, a panic ends the program. wgpu panics if a driver reports a failure for which wgpu has no error: a device lost
+/// Runs wgpu calls that may panic. wgpu panics if a driver reports a failure for which wgpu has no error: a device lost
 /// during a wait, or memory that runs out while wgpu encodes. The work of the calls is dropped, so nothing half done
-/// remains. The error is wgpu's message on one line.
+/// remains. The error is wgpu's message on one line. In a program built with `panic = "abort"`, a panic ends the
+/// program.
 pub(crate) fn caught<T>(calls: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(calls)).map_err(|payload| {
         let text = match (payload.downcast_ref::<String>(), payload.downcast_ref::<&str>()) {
@@ -69,37 +70,49 @@ pub(crate) fn scoped_to_buffer<T>(
 }
 
 /// Runs wgpu calls in error scopes. `refusal` makes an error of the text of a refusal.
-#[cfg(target_arch = "wasm32")]
 fn scoped_as<T>(
     device: &WatchedDevice,
     calls: impl FnOnce() -> T,
     refusal: fn(String) -> GpuError,
 ) -> Result<T, GpuError> {
-    let (value, [memory, internal, validation]) = in_scopes(device, calls);
+    let (mut calls, mut value) = (Some(calls), None);
+    run_scoped(device, &mut || value = calls.take().map(|calls| calls()), refusal)?;
+    value.ok_or_else(|| refusal("the calls did not run".into()))
+}
+
+/// Does the work of [`scoped_as`]. Compiled once, whatever the calls return.
+#[cfg(target_arch = "wasm32")]
+fn run_scoped(
+    device: &WatchedDevice,
+    calls: &mut dyn FnMut(),
+    refusal: fn(String) -> GpuError,
+) -> Result<(), GpuError> {
+    let ((), [memory, internal, validation]) = in_scopes(device, calls);
     device.reports().expect(async move {
         let (memory, internal, validation) = (memory.await, internal.await, validation.await);
         error_of(memory, internal.or(validation), refusal)
     });
-    Ok(value)
+    Ok(())
 }
 
-/// Runs wgpu calls in error scopes. `refusal` makes an error of the text of a refusal.
+/// Does the work of [`scoped_as`]. Compiled once, whatever the calls return.
 #[cfg(not(target_arch = "wasm32"))]
-fn scoped_as<T>(
+fn run_scoped(
     device: &WatchedDevice,
-    calls: impl FnOnce() -> T,
+    calls: &mut dyn FnMut(),
     refusal: fn(String) -> GpuError,
-) -> Result<T, GpuError> {
-    let (value, reports) = in_scopes(device, || caught(calls));
+) -> Result<(), GpuError> {
+    let (done, reports) = in_scopes(device, || caught(calls));
     let [memory, internal, validation] = reports.map(pollster::block_on);
     match error_of(memory, internal.or(validation), refusal) {
         Some(error @ GpuError::OutOfMemory(_)) => Err(error),
         // For a lost device wgpu reports only the consequences: "... is invalid".
         Some(_) if is_lost(device) => Err(GpuError::Lost("no buffer can be created".into())),
         Some(error) => Err(error),
-        None => value.map_err(|text| failed(device, text)),
+        None => done.map_err(|text| failed(device, text)),
     }
 }
+
 /// Runs wgpu calls in error scopes. Returns their result, and the errors that wgpu reports: a lack of memory, an internal
 /// error, and a refusal.
 fn in_scopes<T, C: FnOnce() -> T>(
