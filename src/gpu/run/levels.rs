@@ -1,30 +1,24 @@
 //! Coarse levels of a mesh on the device, and the dispatches of a correction.
 
-use wgpu::BufferUsages as Usage;
-
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::buffers::{filled, uniform, zeroed};
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
-use crate::gpu::kernels::form::MeshForm;
-use crate::gpu::kernels::layouts::{CoarseBindings, FineBindings, TransferBindings};
-use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::kernels::uniforms::{
-    CoarseOp, FineOp, NO_GUARD, SEARCH_STATE, TransferOp, WORKGROUP,
-};
+use crate::gpu::kernels::uniforms::{CoarseOp, FineOp, NO_GUARD, TransferOp, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
 use crate::gpu::run::dispatches::Dispatches;
-use crate::gpu::run::pages::Pages;
+use crate::gpu::run::listing::{
+    Bound, Dispatch, Groups, Listing, Op, SUMS, TOTALS, Uploaded, coarse_op,
+};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::metric::Smoothing;
+use crate::metric::{Metric, Smoothing};
 use crate::parallel::pace::pause;
 use crate::run::EXCLUSION_PASSES;
-use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
+use crate::run::multilevel::{Hierarchy, NONE};
 
 /// A hierarchy bound to a mesh on the device. The methods encode corrections and submit nothing.
 pub(crate) struct Levels {
@@ -59,289 +53,6 @@ pub(crate) enum Fitting {
     EachTime,
 }
 
-struct Dispatch {
-    pipeline: Pipeline,
-    op: Op,
-    /// Index of the dispatch's uniform.
-    number: u32,
-    /// Index of the dispatch's bind group.
-    bind_group: usize,
-    groups: Groups,
-}
-
-/// The uniform of a dispatch, by bind layout.
-#[derive(Clone, Copy)]
-enum Op {
-    Fine(FineOp),
-    Transfer(TransferOp),
-    Coarse(CoarseOp),
-}
-
-impl Op {
-    fn rows(&self) -> u32 {
-        match self {
-            Op::Fine(op) => op.rows,
-            Op::Transfer(op) => op.rows,
-            Op::Coarse(op) => op.rows,
-        }
-    }
-
-    fn bytes(&self) -> &[u8] {
-        match self {
-            Op::Fine(op) => bytemuck::bytes_of(op),
-            Op::Transfer(op) => bytemuck::bytes_of(op),
-            Op::Coarse(op) => bytemuck::bytes_of(op),
-        }
-    }
-}
-
-/// Returns an operation on a coarse level, without its vectors and factors.
-fn coarse_op(rows: u32) -> CoarseOp {
-    CoarseOp {
-        rows,
-        starts: 0,
-        columns: 0,
-        entries: 0,
-        diagonal: 0,
-        x: NONE,
-        right: NONE,
-        last_step: NONE,
-        out: NONE,
-        last_step_factor: 0.0,
-        residual_factor: 0.0,
-        right_factor: 0.0,
-        product_factor: 0.0,
-        partial_sums: NONE,
-        totals: NONE,
-        padding: 0,
-    }
-}
-
-enum Groups {
-    ForRows,
-    Just(u32),
-}
-
-/// Indices of a bind group's resources: mesh part, structure page and value page.
-#[derive(Clone, Copy, PartialEq)]
-enum Bound {
-    Fine { part: usize },
-    Transfer { part: usize, structure: usize, values: usize },
-    Coarse { structure: usize, values: usize },
-}
-
-/// Offset of the four totals in `vectors`: 0, as readbacks copy the start of the buffer.
-const TOTALS: u32 = 0;
-/// Offset of the partial sums in `vectors`. The vectors of the coarse levels follow the sums.
-const SUMS: u32 = SEARCH_STATE;
-
-/// The content of the kernels' arrays, collected while the dispatches are listed.
-struct Listing<'g> {
-    gpu: &'g Gpu,
-    form: MeshForm,
-    structure: Pages<'g, u32>,
-    values: Pages<'g, f32>,
-    vectors: u32,
-    bound: Vec<Bound>,
-    listed: u32,
-}
-
-impl<'g> Listing<'g> {
-    fn vector(&mut self, length: usize) -> u32 {
-        let at = self.vectors;
-        self.vectors += length as u32;
-        at
-    }
-
-    /// Stores a matrix and the reciprocals of its diagonal, an empty slice for none. Returns the pages and offsets of
-    /// both.
-    fn matrix(
-        &mut self,
-        matrix: &'g Sparse,
-        diagonal: &'g [f32],
-    ) -> Result<(Bound, CoarseOp), GpuError> {
-        let (structure, [starts, columns]) =
-            self.structure.place([matrix.starts(), matrix.columns()])?;
-        let (values, [entries, diagonal]) = self.values.place([matrix.values(), diagonal])?;
-        let op = coarse_op(matrix.rows() as u32);
-        let op = CoarseOp { starts, columns, entries, diagonal, ..op };
-        Ok((Bound::Coarse { structure, values }, op))
-    }
-
-    fn step(
-        &mut self,
-        kernel: Kernel,
-        bound: Bound,
-        groups: Groups,
-        op: Op,
-    ) -> Result<Dispatch, GpuError> {
-        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.form)?;
-        let known = self.bound.iter().position(|&known| known == bound);
-        let bind_group = known.unwrap_or(self.bound.len());
-        if known.is_none() {
-            self.bound.push(bound);
-        }
-        let number = self.listed;
-        self.listed += 1;
-        Ok(Dispatch { pipeline, op, number, bind_group, groups })
-    }
-
-    /// Appends the dispatches of one V-cycle over the levels to `list`. `right` is the offset of the right-hand side in
-    /// `vectors`. Returns the offset of the solution.
-    fn solve(
-        &mut self,
-        levels: &'g [Level],
-        right: u32,
-        list: &mut Vec<Dispatch>,
-    ) -> Result<u32, GpuError> {
-        let Some((level, below)) = levels.split_first() else { return Ok(right) };
-        let rows = level.operator.rows();
-        let x = self.vector(rows);
-        if let Coarser::Direct(inverse) = &level.coarser {
-            let (values, [entries]) = self.values.place([&inverse[..]])?;
-            let op = CoarseOp { entries, right, out: x, ..coarse_op(rows as u32) };
-            let bound = Bound::Coarse { structure: 0, values };
-            list.push(self.step(Kernel::CoarsestSolve, bound, Groups::ForRows, Op::Coarse(op))?);
-            return Ok(x);
-        }
-        let (other, last_step) = (self.vector(rows), self.vector(rows));
-        let (bound, operator) = self.matrix(&level.operator, &level.inverse_diagonal)?;
-        let smoother = CoarseOp { right, last_step, ..operator };
-        // Lists two steps of Chebyshev's iteration: one from the vector `from` (NONE for zero) to `over`, and one on to
-        // `to`.
-        let smooth = |listing: &mut Self, list: &mut Vec<Dispatch>, [from, over, to]: [u32; 3]| {
-            let [first, again, now] = CHEBYSHEV;
-            let one = CoarseOp { x: from, out: over, residual_factor: first, ..smoother };
-            let two = CoarseOp {
-                x: over,
-                out: to,
-                last_step_factor: again,
-                residual_factor: now,
-                ..smoother
-            };
-            for op in [one, two].map(Op::Coarse) {
-                list.push(listing.step(Kernel::Chebyshev, bound, Groups::ForRows, op)?);
-            }
-            Ok::<(), GpuError>(())
-        };
-        smooth(self, list, [NONE, other, x])?;
-        let Coarser::Level { prolongation, restriction } = &level.coarser else { return Ok(x) };
-        let residual =
-            CoarseOp { x, out: other, right_factor: 1.0, product_factor: -1.0, ..smoother };
-        let residual = Op::Coarse(residual);
-        list.push(self.step(Kernel::MatrixVector, bound, Groups::ForRows, residual)?);
-        let below_right = self.vector(restriction.rows());
-        list.push(self.matrix_vector(restriction, other, NONE, below_right)?);
-        let solution = self.solve(below, below_right, list)?;
-        list.push(self.matrix_vector(prolongation, solution, x, other)?);
-        let end = self.vector(rows);
-        smooth(self, list, [other, x, end])?;
-        Ok(end)
-    }
-
-    /// Returns the dispatch of out = right + M x, with offsets in `vectors` for all three.
-    fn matrix_vector(
-        &mut self,
-        matrix: &'g Sparse,
-        x: u32,
-        right: u32,
-        out: u32,
-    ) -> Result<Dispatch, GpuError> {
-        let (bound, op) = self.matrix(matrix, &[])?;
-        let op = CoarseOp { x, right, out, right_factor: 1.0, product_factor: 1.0, ..op };
-        self.step(Kernel::MatrixVector, bound, Groups::ForRows, Op::Coarse(op))
-    }
-
-    /// Creates the buffers, and the bind groups of the listed dispatches. `params` is the uniform of the run on `mesh`.
-    async fn upload(
-        &self,
-        mesh: &MeshBuffers,
-        free: u32,
-        params: &wgpu::Buffer,
-        ops: &[u8],
-    ) -> Result<Uploaded, GpuError> {
-        let gpu = self.gpu;
-        let structure = self.structure.upload(gpu).await?;
-        let values = self.values.upload(gpu).await?;
-        scoped(&gpu.device, || self.bound(mesh, free, params, ops, [structure, values]))
-    }
-
-    /// Does the work of [`Self::upload`] after the pages of structure and values. To be called in an error scope.
-    fn bound(
-        &self,
-        mesh: &MeshBuffers,
-        free: u32,
-        params: &wgpu::Buffer,
-        ops: &[u8],
-        [structure, values]: [Vec<wgpu::Buffer>; 2],
-    ) -> Uploaded {
-        let gpu = self.gpu;
-        let ops = filled(gpu, "level steps", ops, Usage::UNIFORM | Usage::COPY_DST);
-        let pairs = |label, length: u64| {
-            let usage = Usage::STORAGE | Usage::COPY_SRC;
-            zeroed(gpu, label, length * size_of::<[f32; 2]>() as u64, usage)
-        };
-        let vectors = pairs("level vectors", self.vectors.into());
-
-        let [gradient, direction] =
-            ["gradient", "correction"].map(|label| pairs(label, free.into()));
-        let bind_groups = self.bound.iter().map(|&bound| {
-            let params = params.as_entire_binding();
-            let vectors = vectors.as_entire_binding();
-            match bound {
-                Bound::Fine { part } => {
-                    let bindings = FineBindings {
-                        params,
-                        op: uniform::<FineOp>(&ops),
-                        positions: mesh.bind_positions(),
-                        ring_start: mesh.ring_start.as_entire_binding(),
-                        ring: mesh.bind_ring(part),
-                        triangles: mesh.bind_triangles(part),
-                        gradient: gradient.as_entire_binding(),
-                        direction: direction.as_entire_binding(),
-                        vectors,
-                    };
-                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
-                }
-                Bound::Transfer { part, structure: page, values: of_values } => {
-                    let bindings = TransferBindings {
-                        params,
-                        op: uniform::<TransferOp>(&ops),
-                        ring_start: mesh.ring_start.as_entire_binding(),
-                        ring: mesh.bind_ring(part),
-                        structure: structure[page].as_entire_binding(),
-                        values: values[of_values].as_entire_binding(),
-                        gradient: gradient.as_entire_binding(),
-                        direction: direction.as_entire_binding(),
-                        vectors,
-                    };
-                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
-                }
-                Bound::Coarse { structure: page, values: of_values } => {
-                    let bindings = CoarseBindings {
-                        params,
-                        op: uniform::<CoarseOp>(&ops),
-                        structure: structure[page].as_entire_binding(),
-                        values: values[of_values].as_entire_binding(),
-                        vectors,
-                    };
-                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
-                }
-            }
-        });
-        let bind_groups = bind_groups.collect();
-        Uploaded { bind_groups, ops, vectors, gradient, direction }
-    }
-}
-
-struct Uploaded {
-    bind_groups: Vec<wgpu::BindGroup>,
-    ops: wgpu::Buffer,
-    vectors: wgpu::Buffer,
-    gradient: wgpu::Buffer,
-    direction: wgpu::Buffer,
-}
-
 impl Levels {
     /// Uploads a hierarchy and creates the pipelines for corrections of a run by its base metric.
     ///
@@ -357,37 +68,13 @@ impl Levels {
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
-        let mut kernels = vec![
-            Kernel::Gradient(metric),
-            Kernel::SmoothGradient,
-            Kernel::Restrict,
-            Kernel::CoarsestSolve,
-            Kernel::Prolong,
-            Kernel::ObjectiveAlongCorrection(metric),
-            Kernel::SumAlongCorrection,
-            Kernel::MoveAlongCorrection,
-        ];
         let has_guard = guard < NO_GUARD as f32;
-        if has_guard {
-            kernels.extend([Kernel::FindBroken, Kernel::ExcludeBroken]);
-        }
-        if hierarchy.levels().len() > 1 {
-            kernels.extend([Kernel::Chebyshev, Kernel::MatrixVector]);
-        }
         // Compiled here with pauses, so that the listing finds every kernel compiled.
-        for kernel in kernels {
+        for kernel in kernels(metric, has_guard, hierarchy) {
             gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form())?;
             pause().await;
         }
-        let mut listing = Listing {
-            gpu,
-            form: mesh.parts.form(),
-            structure: Pages::new(gpu, "structure of the coarse levels"),
-            values: Pages::new(gpu, "matrices of the coarse levels"),
-            vectors: SUMS,
-            bound: Vec::new(),
-            listed: 0,
-        };
+        let mut listing = Listing::new(gpu, mesh.parts.form());
         let partials = objective_invocations(problem.triangles().len());
         let partial_sums = listing.vector(4 * partials as usize);
 
@@ -498,16 +185,8 @@ impl Levels {
         let bound = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         check_limit("max_storage_buffer_binding_size", bound, &what, bytes)?;
 
-        let alignment = limits.min_uniform_buffer_offset_alignment;
-        let largest = size_of::<FineOp>().max(size_of::<TransferOp>()).max(size_of::<CoarseOp>());
-        let stride = (largest as u32).next_multiple_of(alignment);
-        let mut ops = vec![0u8; (stride * listing.listed) as usize];
         let listed = find_gradient.iter().chain(&correction).chain(&left_out).chain(&objective);
-        for step in listed.chain([&sum, &movement]) {
-            let at = (step.number * stride) as usize;
-            let op = step.op.bytes();
-            ops[at..at + op.len()].copy_from_slice(op);
-        }
+        let (stride, ops) = uniforms(gpu, listed.chain([&sum, &movement]), listing.listed);
         let Uploaded { bind_groups, ops, vectors, gradient, direction } =
             listing.upload(mesh, free, &dispatches.params, &ops).await?;
         Ok(Self {
@@ -607,4 +286,44 @@ impl Levels {
             }
         });
     }
+}
+
+/// Returns the kernels of corrections by a metric.
+fn kernels(metric: Metric, has_guard: bool, hierarchy: &Hierarchy) -> Vec<Kernel> {
+    let mut kernels = vec![
+        Kernel::Gradient(metric),
+        Kernel::SmoothGradient,
+        Kernel::Restrict,
+        Kernel::CoarsestSolve,
+        Kernel::Prolong,
+        Kernel::ObjectiveAlongCorrection(metric),
+        Kernel::SumAlongCorrection,
+        Kernel::MoveAlongCorrection,
+    ];
+    if has_guard {
+        kernels.extend([Kernel::FindBroken, Kernel::ExcludeBroken]);
+    }
+    if hierarchy.levels().len() > 1 {
+        kernels.extend([Kernel::Chebyshev, Kernel::MatrixVector]);
+    }
+    kernels
+}
+
+/// Returns the uniforms of `count` listed dispatches as one buffer's bytes, and the distance in bytes between two
+/// successive uniforms.
+fn uniforms<'d>(
+    gpu: &Gpu,
+    listed: impl Iterator<Item = &'d Dispatch>,
+    count: u32,
+) -> (u32, Vec<u8>) {
+    let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+    let largest = size_of::<FineOp>().max(size_of::<TransferOp>()).max(size_of::<CoarseOp>());
+    let stride = (largest as u32).next_multiple_of(alignment);
+    let mut ops = vec![0u8; (stride * count) as usize];
+    for step in listed {
+        let at = (step.number * stride) as usize;
+        let op = step.op.bytes();
+        ops[at..at + op.len()].copy_from_slice(op);
+    }
+    (stride, ops)
 }

@@ -3,6 +3,7 @@
 mod dispatches;
 mod engine;
 mod levels;
+mod listing;
 mod pages;
 mod secants;
 pub(crate) mod stiffness;
