@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import time
 from pathlib import Path
 from typing import Any
@@ -84,7 +85,7 @@ def test_every_option_is_one_of_the_command_line() -> None:
     assert set(of_run) == set(RunOptions.__annotations__)
     for name in {*of_mesh, *of_run} - only_here:
         assert f"--{name.replace('_', '-')}" in known, name
-        assert f"\n    {name} : " in str(gpu_smooth.smooth.__doc__), name
+        assert f"\n{name} : " in str(inspect.getdoc(gpu_smooth.smooth)), name
     assert only_here <= {*of_mesh, *of_run}
 
 
