@@ -187,7 +187,8 @@ fn every_command_has_a_page() {
 #[test]
 fn help_has_examples_for_each_command_with_options() {
     let folder = Folder::new(&[]);
-    for command in ["quality", "try", "groups", "compare", "bench", "completions", "man"] {
+    for command in ["quality", "try", "groups", "compare", "convert", "bench", "completions", "man"]
+    {
         let help = folder.line(&format!("{command} --help")).clean().out;
         assert!(help.contains("Example"), "{command}");
         assert_holds(&help, &[&format!("  gpu-smooth {command} ")]);
