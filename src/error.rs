@@ -296,3 +296,24 @@ fn lacking(wanted: Option<&str>, available: &str) -> String {
         Some(name) => format!(" has '{name}' in its name; there are: {available}"),
     }
 }
+
+/// Error of bytes that [`Checkpoint::from_bytes`](crate::Checkpoint::from_bytes) cannot decode.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckpointError {
+    /// The bytes are no checkpoint.
+    #[error("the file is not a checkpoint of gpu-smooth")]
+    Foreign,
+    /// The checkpoint has another version of the format than the checkpoints of this library.
+    #[error("gpu-smooth {} does not read checkpoints that {writer} wrote", env!("CARGO_PKG_VERSION"))]
+    Version {
+        /// Name and version of the library that wrote the checkpoint, such as `gpu-smooth 0.1.0`.
+        writer: String,
+    },
+    /// Bytes of the checkpoint were changed or cut off.
+    #[error("the checkpoint, written by {writer}, is damaged")]
+    Damaged {
+        /// Name and version of the library that wrote the checkpoint, such as `gpu-smooth 0.1.0`.
+        writer: String,
+    },
+}

@@ -88,7 +88,7 @@ mod embedding {}
 #[doc(hidden)]
 pub mod internal;
 
-pub use error::{GpuError, MeshError, SmoothError};
+pub use error::{CheckpointError, GpuError, MeshError, SmoothError};
 #[cfg(feature = "gpu")]
 pub use gpu::Gpu;
 pub use mesh::{Mesh, MeshSize};

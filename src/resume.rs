@@ -234,7 +234,7 @@ mod tests {
                 }
                 let sum = crc32(&hostile);
                 hostile.extend(sum.to_le_bytes());
-                let Some(from) = Checkpoint::from_bytes(&hostile) else {
+                let Ok(from) = Checkpoint::from_bytes(&hostile) else {
                     refused += 1;
                     continue;
                 };

@@ -1,5 +1,6 @@
 //! Detection of a file's format, first by its content, then by its extension.
 
+use crate::compress::file::beginning;
 use crate::disk::source::{Source, file_name};
 use crate::error::ReadError;
 use crate::format::Format;
@@ -65,7 +66,7 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
 /// Returns the problem and the remedy for a file that a program stored in place of a mesh, or in an encoding that no
 /// format of meshes has; `None` for any other content. Files with the extension of a mesh may have such content.
 fn other_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
-    let text = bytes.trim_ascii_start();
+    let text = head(bytes, b"");
     let starts =
         |word: &[u8]| text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word));
     if starts(b"version https://git-lfs.github.com/spec/") {
@@ -96,10 +97,8 @@ fn other_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
 /// Detects the format of a file of plain numbers by the counts of numbers in its first rows.
 fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError> {
     let [first, second, _] = first_rows(source, Syntax::PLAIN);
-    let numbers =
-        |row: &[&[u8]]| row.iter().map(|token| integer(token)).collect::<Option<Vec<_>>>();
     let outline = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
-    match numbers(&first).as_deref() {
+    match integers(&first).as_deref() {
         Some([_, 2, _, 0..=1]) if outline => {
             let problem = "a .poly holds the outline of a mesh, not its triangles";
             return Err(source.error(problem, "Name the mesh itself, its .node or .ele"));
@@ -123,13 +122,8 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
         }
         _ => {}
     }
-    if numbers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
-        return reader_of(source, &FREEFEM);
-    }
-    let [_, second, third] = first_rows(source, Syntax::FORTRAN);
-    let counts = second.get(..2).and_then(numbers);
-    if counts.is_some() && third.len() >= 4 && integer(third[0]).is_some() {
-        return reader_of(source, &ADCIRC);
+    if let Some(family) = freefem_or_adcirc(source) {
+        return reader_of(source, family);
     }
     // Unsupported formats without magic bytes are detected by their extension.
     match REGISTRY.iter().find(|family| !family.is_read() && family.matches_extension(&source.path))
@@ -140,6 +134,23 @@ fn detect_by_rows(source: &Source) -> Result<&'static ReaderFunctions, ReadError
             Err(source.error("the format is not recognized", remedy))
         }
     }
+}
+
+/// Returns the entry of FreeFem or ADCIRC by the counts of numbers in the first rows of a file.
+fn freefem_or_adcirc(source: &Source) -> Option<&'static FormatEntry> {
+    let [first, second, _] = first_rows(source, Syntax::PLAIN);
+    if integers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
+        return Some(&FREEFEM);
+    }
+    let [_, second, third] = first_rows(source, Syntax::FORTRAN);
+    let counts = second.get(..2).and_then(integers);
+    let is_adcirc = counts.is_some() && third.len() >= 4 && integer(third[0]).is_some();
+    is_adcirc.then_some(&ADCIRC)
+}
+
+/// Returns the integers of a row; `None` if a word of the row is no integer.
+fn integers(row: &[&[u8]]) -> Option<Vec<u64>> {
+    row.iter().map(|token| integer(token)).collect()
 }
 
 /// Returns the name of the format with the extension of `path`, supported or not; `None` if no format has the
@@ -179,11 +190,36 @@ impl Format {
         }
     }
 
-    /// Returns the name of the format whose magic bytes start `head`, the beginning of a file. Unsupported formats have
-    /// names too. `None` also for formats without magic bytes, such as Triangle.
+    /// Returns the name of the format whose magic bytes or first rows of numbers start `head`, the beginning of a file,
+    /// which may be compressed. Unsupported formats have names too. `None` also for formats that only an extension
+    /// identifies, such as STL in binary.
     pub fn name_of_content(head: &[u8]) -> Option<&'static str> {
-        detect_by_magic(head).next().map(|family| family.name)
+        let decompressed = beginning(head);
+        let head = decompressed.as_deref().unwrap_or(head);
+        let family = detect_by_magic(head).next().copied();
+        family.or_else(|| family_of_rows(head)).map(|family| family.name)
     }
+}
+
+/// Returns the entry of a format without magic bytes by the beginning of a file, independent of its name.
+fn family_of_rows(head: &[u8]) -> Option<&'static FormatEntry> {
+    let source = Source::new(Path::new(""), head.to_vec()).ok()?;
+    let [first, second, _] = first_rows(&source, Syntax::PLAIN);
+    let is_of_triangle = match integers(&first).as_deref() {
+        Some([_, 2, _, 0..=1]) => second.len() > 2,
+        Some([_, 3 | 6, _]) => second.len() > 3 && integers(&second).is_some(),
+        _ => false,
+    };
+    if is_of_triangle {
+        return Some(&TRIANGLE);
+    }
+    if nastran::is_nastran(&source) {
+        return Some(&NASTRAN);
+    }
+    if mike::is_mike(&first, &second) {
+        return Some(&MIKE);
+    }
+    freefem_or_adcirc(&source)
 }
 
 /// Returns the entries whose magic bytes start a content, in the order of the registry.
@@ -353,10 +389,25 @@ mod tests {
         assert_eq!(name(b"$MeshFormat\n4.1 0 8\n"), Some("gmsh"));
         assert_eq!(name(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Unst"), Some("VTK XML"));
         assert_eq!(name(b"# made by hand\n*NODE\n"), Some("Abaqus"));
+        for (head, format) in [
+            ("5 2 0 0\n1 0 0\n", "Triangle .node/.ele"),
+            ("4 3 0\n1 1 2 5\n", "Triangle .node/.ele"),
+            ("5 4 4\n0 0 1\n1 0 1\n", "FreeFem"),
+            ("a bay\n4 5\n1 0 0 3.5\n", "ADCIRC or SCHISM grid"),
+            ("$ by hand\nGRID,1,,0.,0.,0.\n", "Nastran"),
+        ] {
+            assert!(name(head.as_bytes()).is_some_and(|own| own.contains(format)), "{head}");
+        }
         assert_eq!(Format::name_of_extension(Path::new("a.vtu.gz")), Some("VTK XML"));
-        for head in
-            [&b"{ \"engine\": 1 }"[..], b"\x89PNG\r\n", b"<svg xmlns", b"<!DOCTYPE html><html>"]
-        {
+        for head in [
+            &b"{ \"engine\": 1 }"[..],
+            b"1\n2\n3\n",
+            b"mesh,f\n1,2\n",
+            b"",
+            b"\x89PNG\r\n",
+            b"<svg xmlns",
+            b"<!DOCTYPE html><html>",
+        ] {
             assert_eq!(name(head), None);
         }
         assert_eq!(name(b"gpu-smooth checkpoint 1\n"), None);

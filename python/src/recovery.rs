@@ -22,11 +22,9 @@ pub(crate) fn resumed(py: Python<'_>, path: &Path) -> PyResult<Checkpoint> {
             &format!("resume: {}: {error}. A completed run removes its checkpoint", path.display()),
         )
     })?;
-    Checkpoint::from_bytes(&bytes).ok_or_else(|| {
-        let text = format!(
-            "resume: {}: not a checkpoint of this version of gpu-smooth, or damaged. Without resume, the run starts anew",
-            path.display()
-        );
+    Checkpoint::from_bytes(&bytes).map_err(|problem| {
+        let path = path.display();
+        let text = format!("resume: {path}: {problem}. Without resume, the run starts anew");
         error::file(py, &text)
     })
 }

@@ -60,7 +60,7 @@ def test_other_files_and_other_runs_are_refused(large: tuple[Points, Triangles],
     text.write_text("notes")
     with pytest.raises(gpu_smooth.FileError, match="checkpoint: .*notes exists and is no checkpoint"):
         gpu_smooth.smooth(*large, checkpoint=text)
-    with pytest.raises(gpu_smooth.FileError, match="resume: .*notes: not a checkpoint"):
+    with pytest.raises(gpu_smooth.FileError, match="resume: .*notes: the file is not a checkpoint"):
         gpu_smooth.smooth(*large, resume=text)
     with pytest.raises(gpu_smooth.FileError, match="resume: .*none.*A completed run removes its checkpoint"):
         gpu_smooth.smooth(*large, resume=tmp_path / "none")

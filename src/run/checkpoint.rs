@@ -1,5 +1,6 @@
 //! Checkpoints: the state of a run as bytes, from which the run can continue later.
 
+use crate::error::CheckpointError;
 use crate::run::checksum::crc32;
 use crate::run::opening::DoublePrelude;
 use crate::run::records::{Reader, Writer};
@@ -34,8 +35,12 @@ pub(crate) struct RunFingerprint {
 impl Checkpoint {
     /// First bytes of a checkpoint file in every version of the format.
     pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
-    /// Version of the format that the library reads and writes. The version follows [`Self::MAGIC`].
-    const VERSION: &[u8; 2] = b"2\n";
+    /// Version of the format that the library reads and writes. The version follows [`Self::MAGIC`], on the same line.
+    const VERSION: &str = "3";
+    /// Start of the second line. The rest of the line names the program and version that wrote the checkpoint.
+    const WRITER: &str = "written by ";
+    /// Name and version of this library.
+    const OWN_WRITER: &str = concat!("gpu-smooth ", env!("CARGO_PKG_VERSION"));
 
     /// Returns the number of sweeps before the checkpoint, opening sweeps included.
     pub fn sweeps(&self) -> u32 {
@@ -51,11 +56,13 @@ impl Checkpoint {
     /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex, up to 76 once sweeps are
     /// corrected from coarser levels, 12 more on strongly stretched meshes, and up to 128 more if vertices slide.
     ///
-    /// The bytes are [`MAGIC`](Self::MAGIC), the version, records, and a CRC-32 of all bytes before. A record consists
-    /// of name and content, each after its length in bytes. Numbers are little-endian.
+    /// The bytes are [`MAGIC`](Self::MAGIC) and the version of the format on a line, the version of this library on a
+    /// line, records, and a CRC-32 of all bytes before. A record consists of name and content, each after its length in
+    /// bytes. Numbers are little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Self { about, saved, period } = self;
-        let mut out = Writer([&Self::MAGIC[..], Self::VERSION].concat());
+        let head = format!("{}\n{}{}\n", Self::VERSION, Self::WRITER, Self::OWN_WRITER);
+        let mut out = Writer([&Self::MAGIC[..], head.as_bytes()].concat());
         out.record("mesh", |out| out.number(about.mesh));
         out.record("options", |out| out.text(&about.options));
         if let Some((desired, origin)) = &about.goal {
@@ -107,14 +114,31 @@ impl Checkpoint {
         out.0
     }
 
-    /// Decodes a checkpoint from the bytes of [`to_bytes`](Self::to_bytes). `None` for changed bytes, another version
-    /// of the format, or bytes that are no checkpoint.
-    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        let (content, sum) = bytes.split_last_chunk()?;
-        if crc32(content) != u32::from_le_bytes(*sum) {
-            return None;
+    /// Decodes a checkpoint from the bytes of [`to_bytes`](Self::to_bytes).
+    ///
+    /// # Errors
+    /// [`CheckpointError`] for bytes that are no checkpoint, another version of the format, and changed bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let content = bytes.strip_prefix(Self::MAGIC).ok_or(CheckpointError::Foreign)?;
+        let (version, content) = line(content);
+        let (second, content) = line(content);
+        let writer =
+            second.strip_prefix(Self::WRITER).unwrap_or("an earlier version of gpu-smooth");
+        let writer = writer.to_owned();
+        if version != Self::VERSION {
+            return Err(CheckpointError::Version { writer });
         }
-        let content = content.strip_prefix(Self::MAGIC)?.strip_prefix(Self::VERSION)?;
+        let is_whole = bytes
+            .split_last_chunk()
+            .is_some_and(|(before, sum)| crc32(before) == u32::from_le_bytes(*sum));
+        let records = content.split_last_chunk::<4>().filter(|_| is_whole);
+        let decoded = records.and_then(|(records, _)| Self::of_records(records));
+        decoded.ok_or(CheckpointError::Damaged { writer })
+    }
+
+    /// Decodes the records behind the head of a checkpoint. `None` for records that [`to_bytes`](Self::to_bytes) does
+    /// not write.
+    fn of_records(content: &[u8]) -> Option<Self> {
         let mut records = Reader(content).records()?;
         let about = RunFingerprint {
             mesh: records.read("mesh", Reader::number)?,
@@ -168,6 +192,16 @@ impl Checkpoint {
         };
         Some(Self { about, saved, period })
     }
+}
+
+/// Splits bytes behind the first line. Returns the line without its end, empty if the line is not a short text, and the
+/// bytes behind the line.
+fn line(bytes: &[u8]) -> (&str, &[u8]) {
+    /// Length in bytes of the longest line.
+    const LONGEST: usize = 100;
+    let end = bytes.iter().take(LONGEST).position(|&byte| byte == b'\n');
+    let (text, rest) = end.map_or((&[][..], bytes), |end| (&bytes[..end], &bytes[end + 1..]));
+    (std::str::from_utf8(text).unwrap_or_default(), rest)
 }
 
 #[cfg(test)]
@@ -232,8 +266,8 @@ mod tests {
         for at in 0..bytes.len() {
             let mut damaged = bytes.clone();
             damaged[at] ^= 0x10;
-            assert_eq!(Checkpoint::from_bytes(&damaged), None, "byte {at}");
-            assert_eq!(Checkpoint::from_bytes(&bytes[..at]), None, "cut at {at}");
+            assert!(Checkpoint::from_bytes(&damaged).is_err(), "byte {at}");
+            assert!(Checkpoint::from_bytes(&bytes[..at]).is_err(), "cut at {at}");
             // A length longer than any file, with a correct checksum.
             let mut huge = bytes[..bytes.len() - 4].to_vec();
             let end = (at + 8).min(huge.len());
@@ -241,6 +275,25 @@ mod tests {
             let sum = crc32(&huge);
             huge.extend(sum.to_le_bytes());
             let _ = Checkpoint::from_bytes(&huge);
+        }
+    }
+
+    #[test]
+    fn errors_name_the_version_that_wrote_the_checkpoint() {
+        let bytes = example().to_bytes();
+        let error = |bytes: &[u8]| Checkpoint::from_bytes(bytes).unwrap_err().to_string();
+        let own = format!("gpu-smooth {}", env!("CARGO_PKG_VERSION"));
+        let mut damaged = bytes.clone();
+        *damaged.last_mut().unwrap() ^= 1;
+        assert_eq!(error(&damaged), format!("the checkpoint, written by {own}, is damaged"));
+        assert_eq!(error(b"any notes"), "the file is not a checkpoint of gpu-smooth");
+        let other = format!("{own} does not read checkpoints that");
+        for (head, writer) in [
+            ("7\nwritten by gpu-smooth 9.1\n", "gpu-smooth 9.1"),
+            ("2\n", "an earlier version of gpu-smooth"),
+        ] {
+            let bytes = [Checkpoint::MAGIC, head.as_bytes(), &bytes[60..]].concat();
+            assert_eq!(error(&bytes), format!("{other} {writer} wrote"));
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use gpu_smooth::Scheme;
 
 use crate::args::EngineChoice;
@@ -26,7 +27,7 @@ pub(crate) struct BenchArgs {
     )]
     pub(crate) vertices: Vec<usize>,
     /// The metric to sweep by, or several in turn
-    #[arg(long, default_value = "imr", value_name = "A[+B...]", value_parser = names::schemes(), hide_possible_values = true)]
+    #[arg(long, default_value = "imr", value_name = "A[+B...]", value_parser = names::schemes(), hide_possible_values = true, add = ArgValueCompleter::new(names::completed_schemes))]
     pub(crate) scheme: Scheme,
     /// What to measure: the CPU and the best GPU adapter, or one of them
     #[arg(long, value_enum, default_value = "auto")]

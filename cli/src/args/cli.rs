@@ -118,6 +118,10 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Writes a mesh in another format; if that format cannot hold all of the mesh, lists the losses, and writes only
     /// with --lossy
+    #[command(after_help = "Examples:\n  \
+        gpu-smooth convert wing.su2 wing.vtu --encoding compressed\n  \
+        gpu-smooth convert part.msh part.inp --lossy\n  \
+        gpu-smooth convert bay.gr3 - --to gmsh22 > bay.msh")]
     Convert(ConvertArgs),
     /// Lists the GPU adapters of this machine, best first, and whether each is usable
     Adapters(AdaptersArgs),
@@ -171,8 +175,10 @@ pub(crate) struct CompareArgs {
 #[derive(Args)]
 pub(crate) struct ConvertArgs {
     /// Mesh in any supported input format; - reads standard input
+    #[arg(value_name = "IN")]
     pub(crate) input: PathBuf,
     /// File to write; its extension determines the format. - writes to standard output, with --to
+    #[arg(value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Output format, if the extension of OUT does not determine the format; .msh without --to means gmsh 4.1
     #[arg(long, value_name = "FORMAT", value_parser = targets())]

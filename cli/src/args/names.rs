@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
+use clap_complete::engine::CompletionCandidate;
 use gpu_smooth::{Metric, Scheme, measure::Measure};
 use mesh_io::Format;
 
@@ -38,6 +39,15 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Offering<T> {
 /// Returns the parser of schemes, which offers the names of all metrics.
 pub(crate) fn schemes() -> Offering<Scheme> {
     Offering { parse: parse::scheme, names: || metrics(|_| true) }
+}
+
+/// Returns the completions of an incomplete scheme: each metric as the next one of the scheme.
+pub(crate) fn completed_schemes(scheme: &OsStr) -> Vec<CompletionCandidate> {
+    let scheme = scheme.to_string_lossy();
+    let start = scheme.rfind('+').map_or(0, |sign| sign + 1);
+    let (before, last) = scheme.split_at(start);
+    let names = metrics(|metric| metric.name().starts_with(last));
+    names.iter().map(|name| CompletionCandidate::new(format!("{before}{name}"))).collect()
 }
 
 /// Returns the parser of measures, which offers the names of all measures.

@@ -55,6 +55,15 @@ pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 2], String> {
     }
 }
 
+/// Parses two opposite corners of a box that has an area.
+pub(crate) fn area(text: &str) -> Result<[[f64; 2]; 2], String> {
+    let [[x0, y0], [x1, y1]] = corners(text)?;
+    match x0 != x1 && y0 != y1 {
+        true => Ok([[x0, y0], [x1, y1]]),
+        false => Err("the corners must differ in both coordinates".into()),
+    }
+}
+
 /// Parses an inverse mean ratio: a finite number from 1.
 pub(crate) fn ratio(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|q| *q >= 1.0 && q.is_finite());

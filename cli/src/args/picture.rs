@@ -39,7 +39,7 @@ pub(crate) struct PictureArgs {
         value_name = "X0,Y0,X1,Y1",
         requires = "picture",
         help_heading = "Picture",
-        value_parser = parse::corners,
+        value_parser = parse::area,
         allow_hyphen_values = true
     )]
     pub(crate) picture_box: Option<[[f64; 2]; 2]>,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{ArgGroup, Args, ValueEnum};
+use clap_complete::engine::ArgValueCompleter;
 use gpu_smooth::Scheme;
 
 use crate::args::{
@@ -30,6 +31,7 @@ pub(crate) struct SmoothArgs {
         long,
         value_name = "A[+B...]",
         value_parser = names::schemes(),
+        add = ArgValueCompleter::new(names::completed_schemes),
         hide_possible_values = true,
         help_heading = "Metric and engine",
         help = names::scheme_help()

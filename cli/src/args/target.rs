@@ -1,6 +1,7 @@
 //! Options of the target shapes and sizes of elements.
 
 use clap::{Args, ValueEnum};
+use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
 
 use crate::args::SurfaceArgs;
 
@@ -16,7 +17,7 @@ pub(crate) struct TargetArgs {
     /// .sol file of Medit, a metric file of BAMG, or the name of point data of IN. SOURCE may also refer to another
     /// mesh: BACKGROUND:DATA, where BACKGROUND is a mesh file and DATA its point data or a .sol or BAMG file, or a view
     /// of gmsh (.pos) of scalars on triangles
-    #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target)]
+    #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target, add = ArgValueCandidates::new(complete_targets))]
     pub(crate) target: Target,
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 1 for keep-shape, 0 for keep-size]
     #[arg(long, value_name = "N", help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
@@ -45,6 +46,11 @@ pub(crate) enum Target {
     KeepShape,
     Size { source: String },
     Metric { source: String },
+}
+
+/// Returns the targets that need no source, for completions.
+fn complete_targets() -> Vec<CompletionCandidate> {
+    ["equilateral", "keep-size", "keep-shape"].map(CompletionCandidate::new).into()
 }
 
 fn target(text: &str) -> Result<Target, String> {

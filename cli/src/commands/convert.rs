@@ -13,11 +13,13 @@ use crate::load::LoadedMesh;
 use crate::load::overwrite::{self, Likeness};
 use crate::load::streams::{self, is_standard};
 use crate::request::{MeshOutput, Outputs, ReadRequest};
-use crate::terminal::tell;
+use crate::terminal::{interrupt, tell};
 
 /// Writes a mesh in another format. Without `--lossy`, returns an error if that format cannot hold all of the mesh.
 pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError> {
     let format = format(args)?;
+    // From here on, a signal leaves no temporary file behind.
+    interrupt::watch(show.quiet);
     let outputs = Outputs::of_mesh(MeshOutput::Converted);
     let (read, written) = (slice::from_ref(&args.input), slice::from_ref(&args.output));
     outputs.check(read, written)?;

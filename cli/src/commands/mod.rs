@@ -1,6 +1,7 @@
 //! The commands of the command line, one module each.
 
 pub(crate) mod adapters;
+mod bash_words;
 pub(crate) mod batch;
 pub(crate) mod bench;
 pub(crate) mod compare;

@@ -7,11 +7,12 @@ use std::path::Path;
 
 use clap::parser::ValueSource;
 use clap::{Args, Command, CommandFactory};
-use clap_complete::env::{CompleteEnv, Shells};
+use clap_complete::env::{CompleteEnv, Elvish, Fish, Powershell, Shells, Zsh};
 use clap_mangen::Man;
 use mesh_io::atomic;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs, OutputArgs, SmoothArgs};
+use crate::commands::bash_words::BashWords;
 use crate::error::CliError;
 use crate::terminal::{process, tell};
 
@@ -20,6 +21,8 @@ const PROGRAM: &str = "gpu-smooth";
 /// Environment variable by which a script of a shell asks the program for completions. The value is the name of the
 /// shell.
 const VARIABLE: &str = "GPU_SMOOTH_COMPLETE";
+/// The shells with completions.
+const SHELLS: Shells<'static> = Shells(&[&BashWords, &Elvish, &Fish, &Powershell, &Zsh]);
 
 /// Answers a script of a shell that asks for completions, and returns true. Does nothing in all other calls, and returns
 /// false.
@@ -29,7 +32,7 @@ pub(crate) fn complete() -> bool {
     let mut words: Vec<OsString> = line.iter().skip_while(|word| *word != "--").cloned().collect();
     words.pop();
     let program = move || program_after(words.get(1..).unwrap_or_default());
-    let script = CompleteEnv::with_factory(program).var(VARIABLE).bin(PROGRAM);
+    let script = CompleteEnv::with_factory(program).var(VARIABLE).bin(PROGRAM).shells(SHELLS);
     let directory = std::env::current_dir().ok();
     script.try_complete(line, directory.as_deref()).unwrap_or_else(|error| error.exit())
 }
@@ -53,8 +56,7 @@ fn program_after(words: &[OsString]) -> Command {
 pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
     let mut text = Vec::new();
     let shell = args.shell.to_string();
-    let shells = Shells::builtins();
-    let written = shells.completer(&shell).map(|completer| {
+    let written = SHELLS.completer(&shell).map(|completer| {
         completer.write_registration(VARIABLE, PROGRAM, PROGRAM, PROGRAM, &mut text)
     });
     if !matches!(written, Some(Ok(()))) {

@@ -47,6 +47,9 @@ fn with_effect(remark: &Remark) -> String {
                 format!("{remark}, and not `{}` (--regions NAME takes others)", names.join("`, `"))
             }
         },
+        Remark::FurtherRegionArrays(_) => {
+            format!("{remark}, and are not used (--regions NAME takes them instead)")
+        }
         _ => remark.to_string(),
     }
 }

@@ -8,6 +8,7 @@ use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
 use crate::args::{Cli, Command, OutputArgs};
 use crate::request::conflicts::{self, OF_BENCH, OF_COMPARE, OF_CONVERT, OF_QUALITY, OF_RUN};
+use crate::request::mistyped;
 use crate::terminal::{Verbosity, process};
 
 /// Parses the command line of this process.
@@ -15,7 +16,15 @@ use crate::terminal::{Verbosity, process};
 /// # Errors
 /// If the command line is invalid, or asks for help or the version, prints the answer and returns the exit code.
 pub(crate) fn command_line() -> Result<Cli, u8> {
-    checked(process::command_line()).map_err(|error| answered(&error))
+    let words = process::command_line();
+    checked(words.clone()).map_err(|error| {
+        // A mistyped command is taken for a mesh, for which its options and arguments may be wrong.
+        let mistyped = Some(mistyped::message(&words)).filter(|_| error.use_stderr()).flatten();
+        let error = mistyped
+            .map(|text| Cli::command().error(ErrorKind::InvalidSubcommand, text))
+            .unwrap_or(error);
+        answered(&error)
+    })
 }
 
 /// Prints an error of the command line, or the requested help or version. Returns the exit code.

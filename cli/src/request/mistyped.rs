@@ -1,5 +1,6 @@
 //! Finds names of commands that were mistyped, and therefore taken for the input mesh.
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use clap::CommandFactory;
@@ -9,7 +10,7 @@ use crate::error::CliError;
 
 /// Largest number of inserted, deleted, replaced or swapped letters of a mistyped name.
 const MAX_EDITS: usize = 2;
-/// Length of the shortest word that is taken for the name of a command.
+/// Length of the shortest word with `MAX_EDITS`. In shorter words, one letter may be wrong.
 const MIN_LENGTH: usize = 5;
 
 /// Checks that the input is not the mistyped name of a command.
@@ -17,19 +18,41 @@ const MIN_LENGTH: usize = 5;
 /// # Errors
 /// If no file has the name, and the name resembles that of a command.
 pub(crate) fn check(input: &Path) -> Result<(), CliError> {
-    let Some(word) = input.to_str().filter(|word| word.chars().all(|c| c.is_ascii_lowercase()))
-    else {
-        return Ok(());
-    };
-    if word.len() < MIN_LENGTH || input.exists() {
-        return Ok(());
-    }
-    let program = Cli::command();
-    let names = program.get_subcommands().map(|command| command.get_name());
-    let edits = |name: &&str| strsim::osa_distance(word, name);
-    match names.min_by_key(edits).filter(|name| edits(name) <= MAX_EDITS) {
+    match meant(input) {
         None => Ok(()),
-        Some(name) => Err(CliError::usage(format!("`{word}` is neither a file nor a command"))
-            .with_remedy(format!("There is a command `{name}`"))),
+        Some(name) => Err(CliError::usage(problem(input)).with_remedy(remedy(&name))),
     }
+}
+
+/// Returns the message for a refused command line whose first word is the mistyped name of a command; `None` for any
+/// other command line. The first of `words` is the name of the program.
+pub(crate) fn message(words: &[OsString]) -> Option<String> {
+    let is_option = |word: &OsString| word.as_encoded_bytes().starts_with(b"-");
+    let input = Path::new(words.iter().skip(1).find(|word| !is_option(word))?);
+    Some(format!("{}. {}", problem(input), remedy(&meant(input)?)))
+}
+
+fn problem(input: &Path) -> String {
+    format!("`{}` is neither a file nor a command", input.display())
+}
+
+fn remedy(name: &str) -> String {
+    format!("There is a command `{name}`")
+}
+
+/// Returns the command whose name resembles `input` and differs from it; `None` if there is none, or if a mesh has the name.
+fn meant(input: &Path) -> Option<String> {
+    let word = input.to_str().filter(|word| word.chars().all(|c| c.is_ascii_alphabetic()))?;
+    // A Triangle mesh may be given without an extension.
+    let is_mesh =
+        input.exists() || ["node", "ele"].iter().any(|e| input.with_extension(e).exists());
+    let word = word.to_ascii_lowercase();
+    let most = if word.len() < MIN_LENGTH { 1 } else { MAX_EDITS };
+    let program = Cli::command();
+    let names = program.get_subcommands().map(|command| command.get_name()).chain(["help"]);
+    let edits = |name: &&str| strsim::osa_distance(&word, name);
+    let nearest = names
+        .min_by_key(edits)
+        .filter(|name| !is_mesh && *name != input.as_os_str() && edits(name) <= most);
+    nearest.map(str::to_owned)
 }

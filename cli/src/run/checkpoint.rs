@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use gpu_smooth::{Checkpoint, CheckpointPolicy, GpuError, Stop};
+use gpu_smooth::{Checkpoint, CheckpointError, CheckpointPolicy, GpuError, Stop};
 use mesh_io::atomic;
 
 use crate::error::CliError;
@@ -28,13 +28,15 @@ pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>
         .with_remedy(WITHOUT_CONTINUE),
         _ => CliError::input(format!("{name}: {error}")),
     })?;
-    let refused = || {
-        CliError::input(format!(
-            "{name}: not a checkpoint of this version of gpu-smooth, or damaged"
-        ))
-        .with_remedy(WITHOUT_CONTINUE)
-    };
-    Checkpoint::from_bytes(&bytes).map(Some).ok_or_else(refused)
+    Checkpoint::from_bytes(&bytes).map(Some).map_err(|error| {
+        let remedy = match &error {
+            CheckpointError::Version { writer } => {
+                format!("Continue the run by {writer}. {WITHOUT_CONTINUE}")
+            }
+            _ => WITHOUT_CONTINUE.to_owned(),
+        };
+        CliError::input(format!("{name}: {error}")).with_remedy(remedy)
+    })
 }
 
 /// Saver of the checkpoints of a run, as `--checkpoint` and `--checkpoint-every` request.

@@ -45,13 +45,19 @@ pub(crate) fn say(text: &str) {
     say_data(&printable(text));
 }
 
-/// Prints a result for programs to standard output, without any change. Ignores a reader that has closed the pipe, as
-/// `head` does; other failures, such as a full disk, end the process.
+/// Prints a result for programs to standard output, without any change unless standard output is a terminal. Ignores a
+/// reader that has closed the pipe, as `head` does; other failures, such as a full disk, end the process.
 pub(crate) fn say_data(text: &str) {
-    match writeln!(std::io::stdout(), "{text}") {
+    let mut out = std::io::stdout();
+    let written = match out.is_terminal() {
+        true => writeln!(out, "{}", printable(text)),
+        false => writeln!(out, "{text}"),
+    };
+    match written {
         Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
-            error(&CliError::output(format!("standard output: {problem}")));
-            std::process::exit(1);
+            let failed = CliError::output(format!("standard output: {problem}"));
+            error(&failed);
+            std::process::exit(failed.kind.exit_code().into());
         }
         _ => {}
     }

@@ -115,3 +115,27 @@ fn control_characters_of_names_are_escaped_on_standard_output() {
         assert!(is_escaped && run.out.contains("\\u{1b}"), "{:?}", run.out);
     }
 }
+
+/// In a pipe, data for programs contain the names unchanged.
+#[cfg(target_os = "linux")]
+#[test]
+fn control_characters_of_names_in_a_table_for_programs_are_escaped_on_a_terminal() {
+    let folder = super::small();
+    let name = "a\u{1b}[31mb.node";
+    for ending in ["node", "ele"] {
+        let from = folder.path(&format!("in.{ending}"));
+        fs::copy(from, folder.path(&name.replace("node", ending))).unwrap();
+    }
+    let program = env!("CARGO_BIN_EXE_gpu-smooth");
+    for line in [format!("quality {name} --csv"), format!("{name} --out-dir d --csv --engine cpu")]
+    {
+        let in_pipe = folder.run(line.split(' '));
+        assert!(in_pipe.out.contains(name), "{:?}", in_pipe.out);
+        let shell = format!("{program} {} 2>/dev/null", line.replace(name, &format!("'{name}'")));
+        let mut command = std::process::Command::new("script");
+        command.args(["-qec", &shell, "/dev/null"]).current_dir(&folder.0);
+        let output = command.stdin(std::process::Stdio::null()).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(!text.contains('\u{1b}') && text.contains("a\\u{1b}[31mb"), "{text:?}");
+    }
+}

@@ -149,6 +149,25 @@ fn files_that_are_read_or_hold_a_mesh_are_not_replaced_by_other_files() {
     assert!(folder.content() == before);
 }
 
+/// Formats without a first word, and compressed meshes.
+#[test]
+fn meshes_that_their_numbers_identify_are_not_replaced_by_reports() {
+    let folder = small();
+    fs::write(folder.path("in.msh"), support::write_msh22(&disturbed())).unwrap();
+    for (to, out) in
+        [("freefem", "a.msh"), ("adcirc", "a.gr3"), ("vtk", "a.vtk.gz"), ("obj", "a.obj.zst")]
+    {
+        folder.line(&format!("convert in.msh {out} --to {to} --lossy -q")).clean();
+    }
+    for mesh in ["in.node", "in.ele", "a.msh", "a.gr3", "a.vtk.gz", "a.obj.zst"] {
+        fs::copy(folder.path(mesh), folder.path("kept.json")).unwrap();
+        let before = folder.content();
+        let run = folder.line("in out --engine cpu --report kept.json");
+        run.refused(&["kept.json: the file is a mesh (", "Give --report another name"]);
+        assert!(folder.content() == before, "{mesh}");
+    }
+}
+
 /// A mesh with a `.poly`, under names without the usual endings, and links to its files.
 #[cfg(unix)]
 fn linked() -> Folder {
@@ -187,15 +206,16 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
         folder.line(&format!("{line} --engine cpu")).misused(&["the report is JSON, not a mesh"]);
         assert!(folder.content() == before, "{line} has changed files");
     }
-    // The files of a Triangle mesh are known only after reading.
-    for line in [
-        "in out --report to-in.node.json",
-        "in out --report here/to-in.ele.json",
-        "in out --report to-in.poly.json",
-        "in out --report poly.json",
-        "in out --report to-out.ele.json",
+    // The files of a Triangle mesh are known only after reading, or by their content.
+    let (by_name, by_content) = ("the report is JSON, not a mesh", "the file is a mesh (Triangle");
+    for (line, part) in [
+        ("in out --report to-in.node.json", by_content),
+        ("in out --report here/to-in.ele.json", by_content),
+        ("in out --report to-in.poly.json", by_name),
+        ("in out --report poly.json", by_name),
+        ("in out --report to-out.ele.json", by_name),
     ] {
-        folder.line(&format!("{line} --engine cpu")).refused(&["the report is JSON, not a mesh"]);
+        folder.line(&format!("{line} --engine cpu")).refused(&[part]);
         assert!(folder.content() == before, "{line} has changed files");
     }
     let run = folder.line("mesh out --engine cpu --report sub/out");

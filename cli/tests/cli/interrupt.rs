@@ -282,6 +282,27 @@ fn a_second_interrupt_ends_at_once_with_nothing_half_written() {
     assert_eq!(folder.text("out.node"), "old\n");
 }
 
+/// The `.ele` of OUT is a pipe without a reader, so the command blocks while writing.
+#[test]
+fn an_interrupted_conversion_leaves_no_temporary_file() {
+    for (signal, code) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
+        let folder = perturbed_lattice(4);
+        make_pipe(&folder, "out.ele");
+        let run = Started::new(&folder, &["convert", "in.off", "out.node", "--force"]);
+        let start = Instant::now();
+        while !names(&folder).iter().any(|name| name.ends_with(".tmp")) {
+            assert!(start.elapsed() < PATIENCE, "no temporary file appears: {:?}", names(&folder));
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        run.signal(signal);
+        let (found, out, err) = run.end();
+        assert_eq!((found, out.as_str()), (Some(code), ""), "{err}");
+        assert_eq!(err, "gpu-smooth: interrupted: nothing was written\n");
+        fs::remove_file(folder.path("out.ele")).unwrap();
+        assert_eq!(names(&folder), ["in.off"]);
+    }
+}
+
 /// An interrupt of a batch keeps the finished meshes, and leaves no file of the mesh under way.
 #[test]
 fn an_interrupted_call_of_many_meshes_leaves_whole_ones() {

@@ -130,7 +130,7 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     fs::write(folder.path("foreign"), "no checkpoint").unwrap();
     folder
         .line(&format!("{LONG} --continue foreign"))
-        .refused(&["foreign: not a checkpoint of this version"]);
+        .refused(&["foreign: the file is not a checkpoint of gpu-smooth. Without --continue"]);
     fs::remove_file(folder.path("foreign")).unwrap();
     let misused = |line: &str, parts: &[&str]| {
         folder.line(line).misused(parts);
@@ -148,7 +148,15 @@ fn a_checkpoint_that_does_not_fit_is_refused_before_anything_is_written() {
     bytes[100] ^= 1;
     fs::write(folder.path("bad.ckpt"), bytes).unwrap();
     let bad = folder.line(&format!("{LONG} --continue bad.ckpt"));
-    bad.refused(&["bad.ckpt: not a checkpoint of this version of gpu-smooth, or damaged"]);
+    bad.refused(&["bad.ckpt: the checkpoint, written by gpu-smooth ", ", is damaged. Without"]);
+    fs::write(folder.path("later.ckpt"), "gpu-smooth checkpoint 99\nwritten by gpu-smooth 7.0\n")
+        .unwrap();
+    let later = folder.line(&format!("{LONG} --continue later.ckpt"));
+    later.refused(&[
+        "later.ckpt: gpu-smooth ",
+        " does not read checkpoints that gpu-smooth 7.0 wrote",
+        "Continue the run by gpu-smooth 7.0",
+    ]);
     fs::write(folder.path("notes.txt"), "mine").unwrap();
     folder
         .line(&format!("{LONG} --checkpoint notes.txt"))

@@ -193,6 +193,9 @@ fn a_part_of_the_mesh_is_drawn_larger_with_its_worst_triangles_inside() {
     folder
         .line("in new --engine cpu --picture p.svg --picture-box 50,4,60,2")
         .refused(&["no vertex lies in the rectangle of --picture-box"]);
+    let run = folder.line("in new --engine cpu --picture p.svg --picture-box 0,0,0,1");
+    assert_eq!(run.code, Some(2));
+    assert_holds(&run.err, &["--picture-box", "the corners must differ in both coordinates"]);
     assert!(folder.content() == before);
 }
 

@@ -410,12 +410,29 @@ fn a_mesh_that_cannot_be_read_does_not_hide_the_others() {
 #[test]
 fn a_mistyped_command_is_told_from_a_missing_mesh() {
     let folder = small();
-    for (line, name) in
-        [("qualtiy in.node", "quality"), ("comvert in.node", "convert"), ("in.nod x", "")]
-    {
+    for ending in ["node", "ele"] {
+        fs::copy(folder.path(&format!("in.{ending}")), folder.path(&format!("benches.{ending}")))
+            .unwrap();
+    }
+    for (line, name) in [
+        ("qualtiy in.node", "quality"),
+        ("comvert in.node", "convert"),
+        ("Quality in.node", "quality"),
+        ("tyr in.node", "try"),
+        // A run would not accept these command lines either.
+        ("qualtiy", "quality"),
+        ("qualtiy in.node --by-region", "quality"),
+        ("-q comapre in.node a.node b.node", "compare"),
+        ("in.nod x", ""),
+        ("groupings", ""),
+        ("benches", ""),
+        ("benches out --nonsense", ""),
+    ] {
         let run = folder.line(line);
         let remedy = format!("There is a command `{name}`");
         assert_eq!(run.err.contains(&remedy), !name.is_empty(), "{line}: {}", run.err);
         assert_ne!(run.code, Some(0), "{line}");
     }
+    // The mesh of Triangle resembles a command.
+    folder.line("benches out --engine cpu -q").clean();
 }

@@ -108,7 +108,7 @@ fn a_mesh_with_a_region_for_each_triangle_is_refused_with_the_way_to_smooth_it()
 /// An array of cell data: its name, whether its numbers are real, and the number of each triangle.
 type CellData<'n> = (&'n str, bool, Vec<f64>);
 
-/// Writes the mesh in formats with cell data: legacy VTK, VTU, XDMF and gmsh.
+/// Writes the mesh in formats with cell data: legacy VTK, VTU, XDMF, gmsh and PLY.
 fn with_cell_data(mesh: &Mesh, arrays: &[CellData<'_>]) -> Vec<(&'static str, String)> {
     let (n, m) = (mesh.points.len(), mesh.triangles.len());
     let points: String = mesh.points.iter().map(|[x, y]| format!("{x:?} {y:?} 0\n")).collect();
@@ -152,6 +152,20 @@ fn with_cell_data(mesh: &Mesh, arrays: &[CellData<'_>]) -> Vec<(&'static str, St
             let rows = (1..).zip(values).map(|(id, value)| format!("{id} {value:?}\n"));
             let rows = rows.collect::<String>();
             format!("$ElementData\n1\n\"{name}\"\n1\n0\n3\n0\n1\n{m}\n{rows}$EndElementData\n")
+        })
+        .collect();
+    let of_ply: String = arrays
+        .iter()
+        .map(|(name, is_real, _)| {
+            let kind = if *is_real { "double" } else { "int" };
+            format!("property {kind} {}\n", name.replace(' ', "_"))
+        })
+        .collect();
+    let faces_of_ply: String = (0..m)
+        .map(|t| {
+            let [a, b, c] = mesh.triangles[t];
+            let own: String = arrays.iter().map(|array| format!(" {}", array.2[t])).collect();
+            format!("3 {a} {b} {c}{own}\n")
         })
         .collect();
     let ends: String = (1..=m).map(|t| format!("{} ", 3 * t)).collect();
@@ -205,6 +219,13 @@ fn with_cell_data(mesh: &Mesh, arrays: &[CellData<'_>]) -> Vec<(&'static str, St
                  {of_gmsh}"
             ),
         ),
+        (
+            "in.ply",
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex {n}\nproperty double x\nproperty double y\nproperty double z\n\
+                 element face {m}\nproperty list uchar int vertex_indices\n{of_ply}end_header\n{points}{faces_of_ply}"
+            ),
+        ),
     ]
 }
 
@@ -234,6 +255,8 @@ fn cell_data_under_any_name_that_look_like_regions_are_regions() {
             assert_middle_row_held(&before, &after);
             // The reader of legacy VTK takes real numbers under usual names as regions too.
             if (name, input) != ("MaterialIDs", "in.vtk") {
+                // Names of PLY are words.
+                let name = if input == "in.ply" { name.replace(' ', "_") } else { name.to_owned() };
                 let note = format!(
                     "the cell data `{name}` number the regions (--regions NAME takes others)"
                 );
@@ -241,6 +264,42 @@ fn cell_data_under_any_name_that_look_like_regions_are_regions() {
             }
         }
     }
+}
+
+/// Variables of faces of a UGRID have names and numbers like other cell data.
+#[test]
+fn variables_of_the_faces_of_a_ugrid_that_look_like_regions_are_regions() {
+    let mesh = disturbed();
+    let m = mesh.triangles.len();
+    let halves = (0..m).map(|t| if t < m / 2 { 1.0 } else { 2.0 }).collect();
+    let files = with_cell_data(&mesh, &[("zone", false, halves)]);
+    let folder = Folder::new(&[(files[0].0, &files[0].1)]);
+    folder.line("convert in.vtk in.nc -q").clean();
+    for options in ["", " --regions zone"] {
+        let run = folder.line(&format!("in.nc out.nc --engine cpu{options}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.err, &[NOTE]);
+        assert_middle_row_held(&folder.mesh("in.nc"), &folder.mesh("out.nc"));
+    }
+}
+
+/// The regions of a format come before cell data, whose interfaces then move.
+#[test]
+fn cell_data_that_divide_regions_further_are_told() {
+    let mesh = disturbed();
+    let m = mesh.triangles.len();
+    let parts = |size: usize| (0..m).map(|t| (1 + t / size) as f64).collect::<Vec<_>>();
+    let told = |arrays: &[CellData<'_>]| {
+        let files = with_cell_data(&mesh, arrays);
+        let folder = Folder::new(&[(files[0].0, &files[0].1)]);
+        folder.line("in.vtk out.vtk --engine cpu").err
+    };
+    let (halves, quarters) = (parts(m / 2), parts(m / 4));
+    let err = told(&[("region", false, halves.clone()), ("zone", true, quarters.clone())]);
+    let note = "the cell data `zone` divide the regions further, and are not used (--regions NAME takes them instead)";
+    assert_holds(&err, &[NOTE, note]);
+    let err = told(&[("region", false, quarters), ("zone", true, halves)]);
+    assert!(!err.contains("zone"), "{err}");
 }
 
 #[test]

@@ -95,7 +95,7 @@ fn completed(folder: &Folder, shell: &str, words: &[&str]) -> Vec<String> {
     let script = match shell {
         "bash" => format!(
             "source <(gpu-smooth completions bash); COMP_WORDS=({line}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); COMP_TYPE=9; \
-             _clap_complete_gpu_smooth gpu-smooth \"${{COMP_WORDS[COMP_CWORD]}}\"; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+             _clap_complete_gpu_smooth gpu-smooth \"${{COMP_WORDS[COMP_CWORD]#=}}\"; printf '%s\\n' \"${{COMPREPLY[@]}}\""
         ),
         // The functions of zsh's interactive completion are replaced, so that the script runs without a terminal.
         "zsh" => format!(
@@ -133,12 +133,29 @@ fn bash_zsh_and_fish_complete_commands_options_values_and_files() {
             (&["gpu-smooth", "quality", "part.msh", "--measure", "scaled"], "scaled-jacobian"),
             (&["gpu-smooth", "part.msh", "out.msh", "--max-s"], "--max-sweeps"),
             (&["gpu-smooth", "part.msh", "out.msh", "--scheme", "tmop-8"], "tmop-80"),
+            (&["gpu-smooth", "part.msh", "out.msh", "--scheme", "imr+tmop-8"], "imr+tmop-80"),
+            (&["gpu-smooth", "part.msh", "out.msh", "--target", "keep-sh"], "keep-shape"),
             (&["gpu-smooth", "part.msh", "out.msh", "--engine", "g"], "gpu"),
             (&["gpu-smooth", "convert", "par"], "part.msh"),
             (&["gpu-smooth", "par"], "part.msh"),
         ] {
             assert_eq!(completed(&folder, shell, words), [expected], "{shell}: {words:?}");
         }
+    }
+}
+
+/// bash splits a word at `=`, and replaces only the last part of the word.
+#[cfg(unix)]
+#[test]
+fn bash_completes_values_behind_an_equals_sign() {
+    let folder = Folder::new(&[("part.msh", "")]);
+    for (words, expected) in [
+        (&["--scheme", "=", "imr+tmop-8"][..], &["imr+tmop-80"][..]),
+        (&["--improve-worst", "="], &["imr", "min-angle", "altitude"]),
+        (&["--target", "=", "keep-si"], &["keep-size"]),
+    ] {
+        let line = [&["gpu-smooth", "part.msh", "out.msh"][..], words].concat();
+        assert_eq!(completed(&folder, "bash", &line), expected, "{words:?}");
     }
 }
 
@@ -170,7 +187,8 @@ fn every_command_has_a_page() {
 #[test]
 fn help_has_examples_for_each_command_with_options() {
     let folder = Folder::new(&[]);
-    for command in ["quality", "try", "groups", "compare", "bench", "completions", "man"] {
+    for command in ["quality", "try", "groups", "compare", "convert", "bench", "completions", "man"]
+    {
         let help = folder.line(&format!("{command} --help")).clean().out;
         assert!(help.contains("Example"), "{command}");
         assert_holds(&help, &[&format!("  gpu-smooth {command} ")]);

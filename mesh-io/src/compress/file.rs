@@ -2,7 +2,7 @@
 
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
-use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
+use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder, StreamingDecoder};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -94,6 +94,26 @@ pub(crate) fn inner_name(name: &str) -> &str {
     let inner =
         |compression: Compression| name.strip_suffix(compression.extension())?.strip_suffix('.');
     Compression::ALL.into_iter().find_map(inner).unwrap_or(name)
+}
+
+/// Decompresses the beginning of a file that is compressed by gzip or zstd, from the beginning of the compressed file.
+/// `None` if the file is not compressed.
+pub(crate) fn beginning(compressed: &[u8]) -> Option<Vec<u8>> {
+    /// Largest number of decompressed bytes.
+    const LENGTH: usize = 1 << 16;
+    let found = Compression::ALL.into_iter().find(|own| compressed.starts_with(own.magic()))?;
+    let mut content: Box<dyn Read + '_> = match found {
+        Compression::Gzip => Box::new(MultiGzDecoder::new(compressed)),
+        Compression::Zstd => Box::new(StreamingDecoder::new(compressed).ok()?),
+    };
+    let (mut head, mut bytes) = (Vec::new(), [0; 1 << 10]);
+    // The end of the compressed bytes is an error within a block, after the content of earlier blocks.
+    while let Ok(length @ 1..) = content.read(&mut bytes)
+        && head.len() < LENGTH
+    {
+        head.extend_from_slice(&bytes[..length]);
+    }
+    Some(head)
 }
 
 /// Decompresses a file if its first bytes are those of gzip or zstd. Returns the compression and the content; `None`

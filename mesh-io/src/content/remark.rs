@@ -35,6 +35,9 @@ pub enum Remark {
         /// Names of further arrays that look like regions, in file order.
         others: Vec<String>,
     },
+    /// The regions of the triangles are those of the format, or of cell data under a usual name. Cell data under other
+    /// names, which look like regions too, divide these regions further.
+    FurtherRegionArrays(Vec<String>),
     /// The file says that coordinates are longitude and latitude in degrees (UGRID).
     Degrees,
     /// Any other fact, as a sentence.
@@ -61,6 +64,9 @@ impl fmt::Display for Remark {
             }
             Remark::RegionArray { array, .. } => {
                 write!(f, "the cell data `{array}` number the regions")
+            }
+            Remark::FurtherRegionArrays(names) => {
+                write!(f, "the cell data `{}` divide the regions further", names.join("`, `"))
             }
             Remark::Degrees => f.write_str("coordinates are longitude and latitude in degrees"),
             Remark::Text(text) => f.write_str(text),

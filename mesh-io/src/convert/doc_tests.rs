@@ -116,7 +116,7 @@ const ROWS: &[Row] = &[
             "points, lines, polygons",
             "material, and group or object",
             "materials, objects, groups",
-            "planar in x and y",
+            "",
         ],
     ),
     row(
@@ -124,9 +124,9 @@ const ROWS: &[Row] = &[
         "either byte order, `float` and `double`, any other elements and properties",
         [
             "edges, quadrilaterals, polygons",
-            "–",
+            "data of faces that look like regions",
             "nothing; numbers of vertices for `--fix-array`",
-            "y next to x; planar in x and y; no strips",
+            "y next to x; no strips",
         ],
     ),
     row(
@@ -234,7 +234,7 @@ const ROWS: &[Row] = &[
         "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4, by UGRID 0.9 and 1.0; `float` and `double`; numbers of nodes from 0 or 1; time steps and layers are kept",
         [
             "quadrilaterals, polygons",
-            "–",
+            "variables of faces that look like regions",
             "nothing; variables of nodes for `--fix-array`",
             "one mesh of faces; as described below; netCDF-4 as for HDF5",
         ],

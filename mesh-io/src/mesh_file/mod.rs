@@ -5,6 +5,7 @@ mod centers;
 mod content;
 pub(crate) mod diff;
 pub(crate) mod fields;
+mod ghost_arrays;
 pub(crate) mod groups;
 pub(crate) mod locate;
 pub(crate) mod mesh;

@@ -5,7 +5,7 @@ use crate::disk::source::{ReadOptions, Source};
 use crate::error::ReadError;
 use crate::formats::triangle;
 use crate::mesh_file::mesh::MeshFile;
-use crate::mesh_file::region_arrays;
+use crate::mesh_file::{ghost_arrays, region_arrays};
 use crate::visit::mesh_builder;
 use crate::visit::reader::ReaderFunctions;
 use std::path::Path;
@@ -71,6 +71,7 @@ fn parsed(reader: &'static ReaderFunctions, source: Source) -> Result<MeshFile, 
     let ends = source.files().find_map(ends_by_returns);
     let read = mesh_builder::parse(reader, &source).and_then(|mut parsed| {
         region_arrays::find(&mut parsed, reader, &source)?;
+        ghost_arrays::constrain(&mut parsed, reader, &source)?;
         Ok(parsed)
     });
     let made = read.and_then(|parsed| MeshFile::new(parsed, reader, source));

@@ -15,7 +15,8 @@ const MAX_REGIONS: usize = 1000;
 const MIN_PART: usize = 8;
 
 /// Sets the regions of a mesh by cell data: by the array that the options of reading name, else, if the file has no
-/// region under a usual name, by the first array that looks like regions.
+/// region under a usual name, by the first array that looks like regions. A remark names the arrays that look like
+/// regions.
 ///
 /// # Errors
 /// If the options name an array that the file lacks, or that has other than whole numbers. If the file cannot be read.
@@ -40,23 +41,37 @@ pub(super) fn find(
     }
     let is_whole = |name: &&String| !parsed.fractional.contains(*name);
     let names: Vec<String> = parsed.cell_arrays.iter().filter(is_whole).cloned().collect();
-    if parsed.regions.is_some() || names.is_empty() {
+    if names.is_empty() {
         return Ok(());
     }
     let all = triangle_values(reader, source, &names)?;
-    let (mut used, mut others) = (None, Vec::new());
-    for (name, values) in names.iter().zip(all) {
-        match numbered(&values).filter(|regions| looks_like_regions(regions, &parsed.triangles)) {
-            Some(regions) if used.is_none() => used = Some((name.clone(), regions)),
-            Some(_) => others.push(name.clone()),
-            None => {}
+    let mut found = names.into_iter().zip(all).filter_map(|(name, values)| {
+        let regions = numbered(&values)?;
+        looks_like_regions(&regions, &parsed.triangles).then_some((name, regions))
+    });
+    if let Some(own) = &parsed.regions {
+        let divides = |(_, regions): &(String, Vec<u32>)| divides(regions, own, &parsed.triangles);
+        let others: Vec<_> = found.filter(divides).map(|(name, _)| name).collect();
+        if !others.is_empty() {
+            parsed.remarks.push(Remark::FurtherRegionArrays(others));
         }
-    }
-    if let Some((array, regions)) = used {
+    } else if let Some((array, regions)) = found.next() {
+        let others = found.map(|(name, _)| name).collect();
         parsed.regions = Some(regions);
         parsed.remarks.push(Remark::RegionArray { array, others });
     }
     Ok(())
+}
+
+/// Returns whether two triangles with a common edge have one region of `regions`, but two different numbers.
+fn divides(numbers: &[u32], regions: &[u32], triangles: &[[u32; 3]]) -> bool {
+    let mut both: HashMap<[u32; 2], u32> = HashMap::new();
+    let pairs = numbers.iter().zip(regions).map(|(&number, &region)| {
+        let next = both.len() as u32;
+        *both.entry([number, region]).or_insert(next)
+    });
+    let together: Vec<u32> = pairs.collect();
+    connected_parts(&together, triangles) > connected_parts(regions, triangles)
 }
 
 /// Returns the remedy that lists the cell data of a mesh.
@@ -140,6 +155,14 @@ mod tests {
         assert!(!looks(&|_| 3.0, 40), "one region");
         assert!(!looks(&|t| 0.5 + f64::from(t / 20), 40), "fractions");
         assert!(!looks(&|t| if t < 20 { 1.0 } else { f64::NAN }, 40), "missing values");
+    }
+
+    #[test]
+    fn numbers_divide_regions_that_they_cut() {
+        let strip = strip(40);
+        let by = |size: u32| (0..40).map(|t| t / size).collect::<Vec<u32>>();
+        assert!(divides(&by(10), &by(20), &strip) && !divides(&by(20), &by(10), &strip));
+        assert!(!divides(&by(20), &by(20), &strip) && divides(&by(8), &by(20), &strip));
     }
 
     #[test]

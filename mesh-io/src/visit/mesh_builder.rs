@@ -10,7 +10,7 @@ use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::ghosts::vtk_ghosts;
-use crate::visit::items::{CellKind, Element, PeriodicNodes, RegionAttribute};
+use crate::visit::items::{CellKind, Element, PeriodicNodes};
 use crate::visit::locate::{ItemList, ItemLocation, locate};
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
@@ -49,6 +49,7 @@ pub(crate) fn parse_by(
         assembler;
     let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
     let MeshBuilder { cell_arrays, fractional, other_faces, .. } = assembler;
+    let ghost_array = assembler.ghost_array.filter(|_| !assembler.has_ghosts);
     if quadrilaterals > 0 {
         remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
     }
@@ -88,6 +89,7 @@ pub(crate) fn parse_by(
         data,
         cell_arrays,
         fractional,
+        ghost_array,
         has_parameters,
         has_centers,
         has_z,
@@ -119,8 +121,10 @@ struct MeshBuilder {
     fractional: HashSet<String>,
     /// Name of the cell data whose numbers come next.
     announced: Option<String>,
-    /// Whether elements may have regions under usual names.
-    has_usual_regions: bool,
+    /// Name of the cell data that mark ghosts.
+    ghost_array: Option<String>,
+    /// Whether the reader has passed ghosts.
+    has_ghosts: bool,
     /// Whether nodes have parameters on surfaces of the model that can be replaced.
     has_parameters: bool,
     has_centers: bool,
@@ -255,6 +259,7 @@ impl MeshVisitor for MeshBuilder {
         self.constraints.vertices.extend_from_slice(&vertices);
         self.constraints.anchored.extend_from_slice(&vertices);
         self.remark(Remark::elements(count, name, ""));
+        self.has_ghosts = true;
     }
 
     fn pieces(&mut self, first_nodes: &[u64]) {
@@ -291,23 +296,22 @@ impl MeshVisitor for MeshBuilder {
         true
     }
 
-    fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
-        self.has_usual_regions |= !columns.is_empty();
-    }
-
     /// Asks for real numbers, as cell data with a fraction need no second reading of the file.
     fn cell_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
         self.announced = None;
         let is_ghosts = vtk_ghosts(name).is_some();
         let name = String::from_utf8_lossy(name).into_owned();
+        if is_ghosts {
+            self.ghost_array = Some(name).filter(|_| components == 1);
+            return false;
+        }
         // Beyond this number, an array without a usual name is not looked for among the others.
         if components == 1
-            && !is_ghosts
             && self.cell_arrays.len() < MAX_CELL_ARRAYS
             && !self.cell_arrays.contains(&name)
         {
             self.cell_arrays.push(name.clone());
-            self.announced = Some(name).filter(|_| is_real && !self.has_usual_regions);
+            self.announced = Some(name).filter(|_| is_real);
         }
         self.announced.is_some()
     }

@@ -37,6 +37,8 @@ pub(crate) struct ParsedMesh {
     pub(crate) cell_arrays: Vec<String>,
     /// Names among `cell_arrays` of data with a fraction, as far as the reader passed the numbers.
     pub(crate) fractional: HashSet<String>,
+    /// Name of the cell data that mark ghosts; `None` if the reader has passed the ghosts of the file.
+    pub(crate) ghost_array: Option<String>,
     /// Whether vertices have parameters on surfaces of a model (gmsh 4), which can be replaced.
     pub(crate) has_parameters: bool,
     /// Whether the file stores centers of faces or edges (UGRID).

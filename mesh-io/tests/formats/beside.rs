@@ -208,6 +208,12 @@ fn a_solution_beside_a_medit_mesh_is_told_and_a_loss_of_conversions() {
         Conversion::new(file, mesh_io::Format::Vtk).unwrap().unwrap().losses().to_vec()
     };
     assert_eq!(losses(&file), ["the solution in in.sol beside the mesh"]);
+    for (name, solution) in [("b.mesh.gz", "b.solb"), ("C.MESH", "C.SOL"), ("D.MESH.GZ", "D.sol")] {
+        fs::write(folder.path(name), mesh).unwrap();
+        fs::write(folder.path(solution), "any").unwrap();
+        let told = super::facts::remarks(&folder.read(name));
+        assert_eq!(told, [remark.replace("in.sol", solution)], "{name}");
+    }
     let alone = folder.read("alone.mesh");
     assert!(super::facts::remarks(&alone).is_empty() && losses(&alone).is_empty());
 }

@@ -107,3 +107,70 @@ fn ghosts_of_vtu_and_common_vertices_of_its_pieces_are_anchored() {
     let (vertices, ..) = read(&[piece(first, 3, &data("CellData", "32"))]);
     assert_eq!(vertices, [0; 0]);
 }
+
+/// Returns the constrained vertices, ascending.
+fn held(file: &mesh_io::MeshFile) -> Vec<u32> {
+    let mut held = file.constraints().vertices.clone();
+    held.sort_unstable();
+    held
+}
+
+/// Two triangles with a common edge, the second of which is a ghost, in formats without a rule for ghosts of their own.
+#[test]
+fn ghosts_by_cell_data_of_any_format_are_anchored() {
+    let points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+    let item = |kind: &str, size: &str, numbers: &str| {
+        format!(
+            "<DataItem Format=\"XML\" NumberType=\"{kind}\" Precision=\"8\" Dimensions=\"{size}\">{numbers}</DataItem>"
+        )
+    };
+    let xdmf = format!(
+        "<Xdmf Version=\"3.0\"><Domain><Grid><Geometry GeometryType=\"XYZ\">{}</Geometry><Topology \
+         TopologyType=\"Triangle\" NumberOfElements=\"2\">{}</Topology><Attribute Name=\"vtkGhostType\" \
+         AttributeType=\"Scalar\" Center=\"Cell\">{}</Attribute></Grid></Domain></Xdmf>\n",
+        item("Float", "4 3", points),
+        item("Int", "2 3", "0 1 2 1 3 2"),
+        item("Int", "2", "0 1")
+    );
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
+         property uchar vtkGhostType\nproperty list uchar int vertex_indices\nend_header\n{points}0 3 0 1 2\n1 3 1 3 2\n"
+    );
+    for (name, text) in [("a.xdmf", &xdmf), ("a.ply", &ply)] {
+        let folder = Folder::new(&[(name, text)]);
+        let file = folder.read(name);
+        assert_eq!(held(&file), [1, 2, 3], "{name}");
+        assert_eq!(remarks(&file), ["1 ghost element"], "{name}");
+    }
+}
+
+/// meshio names the types of whole numbers in binary files of VTK like `vtktypeuint8`.
+#[test]
+fn whole_numbers_of_every_size_in_a_vtk_of_meshio_are_read() {
+    for (kind, size) in
+        [("int8", 1), ("uint8", 1), ("int16", 2), ("uint16", 2), ("int32", 4), ("uint64", 8)]
+    {
+        let mut bytes = b"# vtk DataFile Version 5.1\nmesh\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n".to_vec();
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        bytes.extend(points.iter().flatten().flat_map(|x: &f64| x.to_be_bytes()));
+        bytes.extend(b"\nCELLS 3 6\nOFFSETS vtktypeint64\n");
+        bytes.extend([0_i64, 3, 6].iter().flat_map(|n| n.to_be_bytes()));
+        bytes.extend(b"\nCONNECTIVITY vtktypeint64\n");
+        bytes.extend([0_i64, 1, 2, 1, 3, 2].iter().flat_map(|n| n.to_be_bytes()));
+        bytes.extend(b"\nCELL_TYPES 2\n");
+        bytes.extend([5_i32, 5].iter().flat_map(|n| n.to_be_bytes()));
+        bytes.extend(b"\nCELL_DATA 2\nFIELD FieldData 2\n");
+        for (name, numbers) in [("vtkGhostType", [0_u64, 1]), ("region", [7, 8])] {
+            bytes.extend(format!("{name} 1 2 vtktype{kind}\n").bytes());
+            bytes.extend(numbers.iter().flat_map(|n| n.to_be_bytes()[8 - size..].to_vec()));
+            bytes.push(b'\n');
+        }
+        let folder = Folder::new(&[]);
+        std::fs::write(folder.path("a.vtk"), bytes).unwrap();
+        let file = folder.read("a.vtk");
+        assert_eq!(held(&file), [1, 2, 3], "{kind}");
+        assert_eq!(file.regions(), Some(&[0, 1][..]), "{kind}");
+        let groups = file.groups().unwrap();
+        assert_eq!(groups.find("8").unwrap().triangles(), [1], "{kind}");
+    }
+}

@@ -3,7 +3,7 @@
 use super::damage::{self, damaged, random};
 use super::facts::{between_regions, fixed, mesh_of};
 use super::{Folder, support::check};
-use mesh_io::{Conversion, Format, MeshFile, PointField};
+use mesh_io::{Conversion, Format, MeshFile, PointField, Remark};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -286,6 +286,25 @@ fn sections_and_boundaries_of_cgns_are_groups() {
     assert!(file.regions().is_some());
     let place = file.triangle_location(0);
     assert_eq!(place.id, 2);
+}
+
+/// The file has one section. Its elements have data in real and in whole numbers.
+#[test]
+fn solutions_of_cgns_in_cells_that_look_like_regions_are_regions() {
+    let file = MeshFile::read(&made("cells.cgns")).unwrap();
+    let told = Remark::RegionArray { array: "Material".into(), others: vec!["Part".into()] };
+    assert!(file.remarks().contains(&told), "{:?}", file.remarks());
+    let at = |&v: &u32| file.points()[v as usize][0];
+    let is_left = |corners: &[u32; 3]| corners.iter().map(at).sum::<f64>() < 1.5;
+    let regions = file.regions().unwrap();
+    assert!(file.triangles().iter().zip(regions).all(|(corners, &region)| {
+        (is_left(corners) == is_left(&file.triangles()[0])) == (region == regions[0])
+    }));
+    assert!(!file.interface_vertices().is_empty());
+    let by_name = mesh_io::ReadOptions::new().regions(Some("Part".into()));
+    assert_eq!(by_name.read(&made("cells.cgns")).unwrap().regions(), Some(regions));
+    let text = Conversion::new(&file, Format::Gmsh22).unwrap().unwrap().text().unwrap();
+    assert!(text.contains("\"Material\""), "{text}");
 }
 
 /// gmsh lists the pairs of a periodic boundary twice, once for each side.

@@ -273,6 +273,7 @@ fn files_that_are_no_meshes_are_named_whatever_their_ending() {
         let name = format!("a.{ending}");
         assert_refused(&name, lfs, &["a pointer of Git LFS", "git lfs pull"]);
         assert_refused(&name, page, &["an HTML page", "Download"]);
+        assert_refused(&name, format!("\u{feff}{page}"), &["an HTML page", "Download"]);
         assert_refused(&name, little.clone(), &utf16);
         assert_refused(&name, big.clone(), &utf16);
         assert_refused(&name, [&[0xFF, 0xFE][..], &little].concat(), &utf16);

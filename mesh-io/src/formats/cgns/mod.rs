@@ -15,8 +15,9 @@ use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::axes::{Axes, BinaryReals};
-use crate::hdf5::{Dataset, DatasetArray, Datatype, Hdf5, Hdf5Arrays, SIGNATURE};
-use crate::visit::items::PointNumbers;
+use crate::hdf5::{Dataset, DatasetArray, Datatype, Hdf5, Hdf5Arrays, Object, SIGNATURE};
+use crate::text::cursor::Cursor;
+use crate::visit::items::{CellKind, Element, PointNumbers};
 use crate::visit::reader::FormatReader;
 use crate::visit::storage::{ArrayLocation, ByteSpace, CoordinateStorage};
 use crate::visit::visitor::MeshVisitor;
@@ -58,7 +59,7 @@ impl<'a> File<'a> {
         if visitor.asks_for_periodic_pairs() {
             visitor.periodic_pairs(self.periodic());
         }
-        self.solutions(count, visitor);
+        self.solutions(count, visitor)?;
         Ok(layout)
     }
 
@@ -92,16 +93,26 @@ impl<'a> File<'a> {
         Ok((Axes::of_arrays(self.hdf5, form, arrays, axes, count), count))
     }
 
-    /// Visits the data of vertices. Data of elements are only reported as unsupported.
-    fn solutions(&self, vertices: usize, visitor: &mut dyn MeshVisitor) {
+    /// Visits the data of vertices and of faces. Other data are only reported as unsupported.
+    ///
+    /// # Errors
+    /// If a second reading of the sections fails.
+    fn solutions(&self, vertices: usize, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
         for (_, solution) in labeled(self.hdf5, self.zone, b"FlowSolution_t") {
             let location =
                 self.hdf5.child(solution, b"GridLocation").and_then(|own| self.text(own));
-            if location.is_some_and(|location| location != b"Vertex") {
-                if visitor.asks_for_data() {
-                    visitor.unsupported("data of elements");
+            match location.as_deref() {
+                None | Some(b"Vertex") => {}
+                Some(b"CellCenter") => {
+                    self.face_data(solution, visitor)?;
+                    continue;
                 }
-                continue;
+                Some(_) => {
+                    if visitor.asks_for_data() {
+                        visitor.unsupported("data of edges");
+                    }
+                    continue;
+                }
             }
             for (name, node) in labeled(self.hdf5, solution, b"DataArray_t") {
                 let dataset = self.data(node).and_then(|data| self.hdf5.dataset(data).ok()?);
@@ -135,5 +146,56 @@ impl<'a> File<'a> {
                 });
             }
         }
+        Ok(())
+    }
+
+    /// Visits the data of a solution at the centers of cells, which are the faces of a mesh in the order of their
+    /// numbers. Damaged data are ignored.
+    ///
+    /// # Errors
+    /// If a second reading of the sections fails.
+    fn face_data(
+        &self,
+        solution: &'a Object,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Result<(), ReadError> {
+        if !visitor.asks_for_cell_arrays() {
+            return Ok(());
+        }
+        let mut faces = FaceIds(Vec::new());
+        for (name, node) in labeled(self.hdf5, solution, b"DataArray_t") {
+            let reals = self.reals(node).ok().flatten();
+            if !visitor.cell_array(name, 1, reals.is_some()) {
+                continue;
+            }
+            let numbers: Vec<f64> = match &reals {
+                Some((Dataset { datatype: Datatype::Real(precision, order), .. }, array)) => {
+                    let each = array.bytes.chunks_exact(precision.bytes());
+                    each.map(|number| order.real(*precision, number)).collect()
+                }
+                _ => self.integers(node).unwrap_or_default().iter().map(|&n| n as f64).collect(),
+            };
+            if faces.0.is_empty() {
+                self.sections(&Boundaries::default(), &mut faces)?;
+            }
+            if numbers.len() == faces.0.len() {
+                visitor.cell_numbers(numbers, Some(faces.0.clone()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Visitor that collects the ids of faces.
+struct FaceIds(Vec<u64>);
+
+impl MeshVisitor for FaceIds {
+    fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
+
+    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        if matches!(element.kind, CellKind::Triangle | CellKind::Quadrilateral) {
+            self.0.push(element.id);
+        }
+        Ok(())
     }
 }

@@ -1,8 +1,8 @@
 //! PLY, as text and in binary of either byte order.
 //!
 //! The format: Turk, The PLY Polygon File Format (1994), <http://paulbourke.net/dataformats/ply/>. The reader uses x, y
-//! and data of vertices, `vertex_indices` or `vertex_index` of faces, `vertex1` and `vertex2` of edges. Other elements
-//! and properties are skipped. Coordinates of the type `float` have single precision in text, too.
+//! and data of vertices, `vertex_indices` or `vertex_index` and data of faces, `vertex1` and `vertex2` of edges. Other
+//! elements and properties are skipped. Coordinates of the type `float` have single precision in text, too.
 
 use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, Offsets};
@@ -24,6 +24,11 @@ pub(crate) mod write;
 
 pub(crate) struct Ply;
 
+/// Names of the list property with the corners of a face.
+const CORNERS: [&[u8]; 2] = [b"vertex_indices", b"vertex_index"];
+/// Names of the properties with the vertices of an edge.
+const ENDS: [&[u8]; 2] = [b"vertex1", b"vertex2"];
+
 impl FormatReader for Ply {
     const VERTICES: &'static str = "the list of vertices";
 
@@ -40,14 +45,19 @@ impl FormatReader for Ply {
             let problem = "faces stand before the vertices";
             return Err(cursor.error(problem, "Save the vertices first"));
         }
+        let of_faces = lists.iter().filter(|list| list.name == b"face");
+        let faces = of_faces.fold(0, |sum: u64, list| sum.saturating_add(list.count));
         let mut layout = None;
         for list in &lists {
             match list.name {
                 b"vertex" => layout = Some(items.vertices(cursor, list, visitor)?),
                 b"face" => {
-                    items.elements(cursor, list, &[b"vertex_indices", b"vertex_index"], visitor)?
+                    let start = cursor.clone();
+                    items.elements(cursor, list, &CORNERS, 0, visitor)?;
+                    items.face_data(&start, list, visitor);
                 }
-                b"edge" => items.elements(cursor, list, &[b"vertex1", b"vertex2"], visitor)?,
+                // Ids of edges follow those of faces, by which data belong to faces alone.
+                b"edge" => items.elements(cursor, list, &ENDS, faces, visitor)?,
                 b"tristrips" => {
                     let problem = "strips of triangles are not read";
                     return Err(cursor.error(problem, "Save them as faces"));
@@ -252,20 +262,24 @@ impl Items {
         })
     }
 
-    /// Visits elements, whose corners are the numbers of all properties with the given names.
+    /// Visits elements, whose corners are the numbers of all properties with the given names. The ids of the elements
+    /// start at `first_id`.
     fn elements(
         self,
         cursor: &mut Cursor<'_>,
         list: &List<'_>,
         names: &[&[u8]],
+        first_id: u64,
         visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let properties = &list.properties;
-        if properties.iter().any(|property| !names.contains(&property.name)) {
-            visitor.unsupported("properties of faces or edges");
+        let is_data = |property: &Property<'_>| list.name == b"face" && property.length.is_none();
+        if properties.iter().any(|own| !names.contains(&own.name) && !is_data(own)) {
+            visitor.unsupported("lists of numbers of faces, and properties of edges");
         }
-        let mut id = self.plain_triangles(cursor, list, names, visitor);
-        self.each(cursor, list, id, |place, values, _| {
+        let taken = self.plain_triangles(cursor, list, names, visitor);
+        let mut id = first_id.saturating_add(taken);
+        self.each(cursor, list, taken, |place, values, _| {
             let named = properties.iter().zip(values).filter(|(p, _)| names.contains(&p.name));
             let corners: Vec<f64> = named.flat_map(|(_, values)| values).copied().collect();
             // A corner that is negative or not whole becomes `u64::MAX`, which is no vertex.
@@ -290,5 +304,29 @@ impl Items {
             id += 1;
             Ok(())
         })
+    }
+
+    /// Visits the data of faces: the properties of one number. `start` is the start of the faces, which are valid.
+    fn face_data(self, start: &Cursor<'_>, list: &List<'_>, visitor: &mut dyn MeshVisitor) {
+        if !visitor.asks_for_cell_arrays() {
+            return;
+        }
+        for (index, property) in list.properties.iter().enumerate() {
+            let is_real = property.precision().is_some();
+            if property.length.is_some()
+                || CORNERS.contains(&property.name)
+                || !visitor.cell_array(property.name, 1, is_real)
+            {
+                continue;
+            }
+            let mut numbers = Vec::new();
+            let read = self.each(&mut start.clone(), list, 0, |_, values, _| {
+                numbers.push(values[index][0]);
+                Ok(())
+            });
+            if read.is_ok() {
+                visitor.cell_numbers(numbers, None);
+            }
+        }
     }
 }

@@ -40,12 +40,14 @@ impl<'h, 'a> Mesh<'h, 'a> {
                 }
             }
         }
-        if visitor.asks_for_data() {
+        if visitor.asks_for_cell_arrays() {
             for variable in self.header.variables.iter().filter(is_data) {
                 if let Some((DataLocation::Faces, parts)) = self.located(variable, lengths) {
                     self.of_faces(faces, variable, &parts, &mut points, visitor);
                 }
             }
+        }
+        if visitor.asks_for_data() {
             self.left_out(visitor);
         }
         let left = self.centers(tables, &places, &mut points, visitor);

@@ -111,7 +111,9 @@ fn paths(source: &Source, path: &Path) -> Vec<PathBuf> {
     let (old, new) = (stem(&source.path), stem(path));
     for companion in &source.companions {
         let own = file_name(&companion.source.path);
-        let mut name = match own.strip_prefix(&old) {
+        // `zone.h5` is not named after `z.xdmf`.
+        let rest = own.strip_prefix(&old).filter(|rest| !rest.starts_with(char::is_alphabetic));
+        let mut name = match rest {
             Some(rest) => format!("{new}{rest}"),
             None => format!("{new}_{own}"),
         };
@@ -166,6 +168,7 @@ mod tests {
             ("in.xdmf", &["mesh.h5", "d/u.h5"], "out.xdmf", &["out_mesh.h5", "out_u.h5"]),
             ("in.xdmf", &["a/mesh.h5", "b/mesh.h5"], "o.xdmf", &["o_mesh.h5", "o_o_mesh.h5"]),
             ("in.xdmf", &["in.h5"], "out", &["out.h5"]),
+            ("z.xdmf", &["zone.h5"], "out.xdmf", &["out_zone.h5"]),
             ("in.xdmf", &["in"], "out.", &["out"]),
             ("none/in.xdmf", &["none/in.h5"], "none/in.xdmf", &["none/in.h5"]),
         ] {

@@ -6,6 +6,7 @@ meshio 5.3 and gmsh 4.15 made what is in the repository). dolfinx is not needed:
 
 import math
 import os
+import shutil
 
 import gmsh
 import h5netcdf
@@ -296,3 +297,23 @@ with h5py.File("all.cgns", "a") as whole, h5py.File("periodic.cgns", "w") as f:
     for key, value in whole.items():
         whole.copy(value, f, name=key)
 os.remove("all.cgns")
+
+# The mesh of periodic.cgns with two materials, as a solution at the centers of cells.
+shutil.copyfile("periodic.cgns", "cells.cgns")
+with h5py.File("cells.cgns", "a") as f:
+    def node(parent, name, label, kind, data=None):
+        own = parent.create_group(name)
+        for key, text, size in (("name", name, 33), ("label", label, 33), ("type", kind, 3)):
+            own.attrs.create(key, text.encode(), dtype=f"S{size}")
+        own.attrs.create("flags", [1], dtype="i4")
+        if data is not None:
+            own.create_dataset(" data", data=data)
+        return own
+
+    zone = f["all.cgns/cell_Part0"]
+    corners = zone["3_S_1/ElementConnectivity/ data"][:].reshape(-1, 3) - 1
+    left = zone["GridCoordinates/CoordinateX/ data"][:][corners].mean(axis=1) < 0.5
+    solution = node(zone, "Materials", "FlowSolution_t", "MT")
+    node(solution, "GridLocation", "GridLocation_t", "C1", np.frombuffer(b"CellCenter", dtype="i1"))
+    node(solution, "Material", "DataArray_t", "R8", np.where(left, 1.0, 2.0))
+    node(solution, "Part", "DataArray_t", "I4", np.where(left, 3, 4).astype("i4"))

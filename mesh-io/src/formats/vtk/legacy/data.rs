@@ -266,8 +266,8 @@ fn label_of(kind: &[u8]) -> fn(i64) -> Option<GroupLabel> {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => |bits| Some(GroupLabel::number(f64::from(f32::from_bits(bits as u32)))),
         b"double" => number_of_bits,
-        b"unsigned_char" => |number| Some(GroupLabel::Tag(number & 0xff)),
-        b"unsigned_short" => |number| Some(GroupLabel::Tag(number & 0xffff)),
+        b"unsigned_char" | b"vtktypeuint8" => |number| Some(GroupLabel::Tag(number & 0xff)),
+        b"unsigned_short" | b"vtktypeuint16" => |number| Some(GroupLabel::Tag(number & 0xffff)),
         b"unsigned_int" | b"vtktypeuint32" => |number| Some(GroupLabel::Tag(number & 0xffff_ffff)),
         _ => |number| Some(GroupLabel::Tag(number)),
     }
@@ -278,8 +278,8 @@ fn value_of(kind: &[u8]) -> fn(i64) -> f64 {
     match kind.to_ascii_lowercase().as_slice() {
         b"float" => |bits| f64::from(f32::from_bits(bits as u32)),
         b"double" => |bits| f64::from_bits(bits.cast_unsigned()),
-        b"unsigned_char" => |number| (number & 0xff) as f64,
-        b"unsigned_short" => |number| (number & 0xffff) as f64,
+        b"unsigned_char" | b"vtktypeuint8" => |number| (number & 0xff) as f64,
+        b"unsigned_short" | b"vtktypeuint16" => |number| (number & 0xffff) as f64,
         b"unsigned_int" | b"vtktypeuint32" => |number| (number & 0xffff_ffff) as f64,
         b"vtktypeuint64" | b"unsigned_long" => |number| number.cast_unsigned() as f64,
         _ => |number| number as f64,

@@ -56,8 +56,9 @@ fn strings(cursor: &mut Cursor<'_>, count: u64) -> Result<(), ReadError> {
 /// Returns the width in bytes of a binary number type; `None` for types that cannot be read.
 pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
     match kind.to_ascii_lowercase().as_slice() {
-        b"char" | b"unsigned_char" | b"signed_char" => Some(1),
-        b"short" | b"unsigned_short" => Some(2),
+        // meshio writes the names that start with `vtktype` for whole numbers of all sizes.
+        b"char" | b"unsigned_char" | b"signed_char" | b"vtktypeint8" | b"vtktypeuint8" => Some(1),
+        b"short" | b"unsigned_short" | b"vtktypeint16" | b"vtktypeuint16" => Some(2),
         b"int" | b"unsigned_int" | b"float" | b"vtktypeint32" | b"vtktypeuint32" => Some(4),
         b"double" | b"long" | b"unsigned_long" | b"vtkidtype" | b"vtktypeint64"
         | b"vtktypeuint64" => Some(8),

@@ -1,0 +1,31 @@
+//! Finds ghosts by cell data, in formats whose readers pass no ghosts.
+
+use crate::content::remark::Remark;
+use crate::disk::source::Source;
+use crate::error::ReadError;
+use crate::visit::ghosts::vtk_ghosts;
+use crate::visit::parsed_mesh::ParsedMesh;
+use crate::visit::reader::ReaderFunctions;
+use crate::visit::triangle_values::triangle_values;
+
+/// Constrains the vertices of the triangles that cell data named like VTK's mark as ghosts.
+///
+/// # Errors
+/// If the file cannot be read.
+pub(super) fn constrain(
+    parsed: &mut ParsedMesh,
+    reader: &ReaderFunctions,
+    source: &Source,
+) -> Result<(), ReadError> {
+    let Some(name) = parsed.ghost_array.take() else { return Ok(()) };
+    let Some(is_ghost) = vtk_ghosts(name.as_bytes()) else { return Ok(()) };
+    let values = triangle_values(reader, source, &[name])?.pop().unwrap_or_default();
+    let marked = parsed.triangles.iter().zip(values).filter(|&(_, value)| is_ghost(value));
+    let ghosts: Vec<[u32; 3]> = marked.map(|(&corners, _)| corners).collect();
+    if !ghosts.is_empty() {
+        parsed.constraints.vertices.extend(ghosts.iter().flatten());
+        parsed.constraints.anchored.extend(ghosts.iter().flatten());
+        parsed.remarks.push(Remark::elements(ghosts.len() as u64, "ghost element", ""));
+    }
+    Ok(())
+}
