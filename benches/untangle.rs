@@ -70,6 +70,10 @@ fn moved_boundaries(vertices: usize) {
     of("three holes, each moved to the place of the next", &|seed| {
         boundaries::permuted(&three, 3, seed)
     });
+    let five = boundaries::holes(5, vertices);
+    of("five holes, each moved to the place of the next", &|seed| {
+        boundaries::permuted(&five, 5, seed)
+    });
     let two = boundaries::two_holes(vertices);
     of("two holes, one dragged past the other", &|seed| boundaries::past(&two, seed));
     of("two holes swapped", &|seed| boundaries::swapped(&two, seed));

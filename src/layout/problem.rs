@@ -216,9 +216,14 @@ impl Problem {
     /// Returns the neighbors of a free vertex, counter-clockwise.
     #[inline]
     pub(crate) fn ring_of(&self, vertex: u32) -> &[u32] {
-        let vertex = vertex as usize;
-        &self.layout.ring
-            [self.layout.ring_start[vertex] as usize..self.layout.ring_start[vertex + 1] as usize]
+        &self.layout.ring[self.ring_range(vertex)]
+    }
+
+    /// Returns the range of [`Problem::ring`] that has the neighbors of a free vertex.
+    #[inline]
+    pub(crate) fn ring_range(&self, vertex: u32) -> Range<usize> {
+        let start = &self.layout.ring_start;
+        start[vertex as usize] as usize..start[vertex as usize + 1] as usize
     }
 
     /// Returns all triangles, counter-clockwise, sorted by their least vertices.

@@ -7,6 +7,8 @@
 //! Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, *Foldover-free maps in 50 lines of code*, ACM Transactions on
 //! Graphics 40 (2021), equations 2 to 5, with the shape term alone.
 
+use glam::{DMat2, DVec2};
+
 use crate::metric::{Dual, EdgeSlopes, Real};
 
 /// S of an equilateral triangle of unit area.
@@ -94,6 +96,29 @@ impl<T: Real> Corner<T> {
     }
 }
 
+impl Corner<f64> {
+    /// Returns three blocks of the convex part of the Hessian: the derivatives by the position of the corner and by that
+    /// of the corner itself, of the first, and of the second other vertex. χ counts as linear in the area, and the area as
+    /// linear in the positions. The energy is then a squared length over a linear function, and thus convex.
+    pub(crate) fn blocks(&self, epsilon: f64) -> [DMat2; 3] {
+        let [a, b] = self.edges.map(DVec2::from);
+        let (chi, root) = regularized(epsilon, self.area());
+        let unit = self.inverse_target * (2.0 / IDEAL);
+        let of_squares = [-a - b, 2.0 * a - b, 2.0 * b - a].map(|slope| slope * unit);
+        let [first, second] = [-b.perp(), a.perp()].map(|slope| slope * 0.5 * self.inverse_target);
+        let of_area = [-first - second, first, second];
+        // χ' = χ / √(ε² + d²).
+        let (cross, square) = (-1.0 / (chi * root), 2.0 * self.squares() / (chi * root * root));
+        let outer = |a: DVec2, b: DVec2| DMat2::from_cols(a * b.x, a * b.y);
+        std::array::from_fn(|i| {
+            let weight = if i == 0 { 2.0 } else { -1.0 };
+            DMat2::from_diagonal(DVec2::splat(weight * unit / chi))
+                + (outer(of_squares[0], of_area[i]) + outer(of_area[0], of_squares[i])) * cross
+                + outer(of_area[0], of_area[i]) * square
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,6 +168,24 @@ mod tests {
                 close(found.hessian[1], x.y, scale);
                 close(found.hessian[2], y.y, scale);
             }
+        }
+    }
+
+    #[test]
+    fn blocks_are_those_of_the_hessian_without_the_curvature_of_chi_and_the_area() {
+        let at = DVec2::new(0.1, 0.2);
+        let blocks = corner(at).blocks(1e-9);
+        // The area is linear in the position of one vertex, and χ in a positive area.
+        let [xx, xy, yy] = corner(at).expansion(Own, 1e-9).hessian;
+        let expected = DMat2::from_cols(DVec2::new(xx, xy), DVec2::new(xy, yy));
+        assert!(blocks[0].abs_diff_eq(expected, 1e-9 * xx), "{blocks:?}");
+        for (at, epsilon) in [([0.1, 0.2], 1e-3), ([1.5, 1.5], 0.1), ([4.0, 3.0], 2.0)] {
+            let blocks = corner(at.into()).blocks(epsilon);
+            // Equal moves of all corners change no slope.
+            let sum = blocks[0] + blocks[1] + blocks[2];
+            assert!(sum.abs_diff_eq(DMat2::ZERO, 1e-9 * blocks[0].col(0).length()), "{sum}");
+            let [x, y] = [blocks[0].col(0), blocks[0].col(1)];
+            assert!(x.x > 0.0 && y.y > 0.0 && blocks[0].determinant() > 0.0);
         }
     }
 

@@ -3,14 +3,14 @@
 //! Sweeps of Newton steps lower an `energy` that is finite for inverted triangles too. At first, only vertices near bad
 //! triangles move, then vertices within more edges. If triangles stay bad, the free vertices are moved to the means of
 //! their neighbors, and a step from coarser levels follows each sweep. Then the mesh is cut (`cuts`) into pieces, in
-//! which the means of neighbors are a good start. At last, quasi-Newton steps move all vertices of the given mesh at once.
+//! which the means of neighbors are a good start. At last, Newton steps move all vertices of the given mesh at once.
 
 mod cuts;
 pub(crate) mod energy;
 mod judge;
+mod newton;
 mod patches;
 mod pieces;
-mod quasi_newton;
 mod stages;
 mod state;
 
@@ -28,18 +28,18 @@ use crate::run::regularization::epsilon;
 use crate::topology::Topology;
 use crate::topology::predicates::not_positive;
 use judge::{Judge, Judgment};
-use quasi_newton::{QuasiNewton, next_epsilon};
-use stages::{QUASI_NEWTON, STAGES, Stage, Start};
+use newton::{Newton, next_epsilon};
+use stages::{DESCENTS, Descent, NEWTON, STAGES, Stage, Start};
 use state::{Region, State};
 
 /// Share of bad triangles (0 to 1) above which all vertices move from the start.
 const MANY: f64 = 0.05;
 
-/// Regularization of the first period of quasi-Newton steps, in units of the target area (Garanzha et al., section 2.3).
+/// Regularization of the first period of Newton steps, in units of the target area (Garanzha et al., section 2.3).
 const FIRST_EPSILON: f64 = 1.0;
-/// Regularization at which quasi-Newton steps end.
+/// Regularization at which Newton steps end.
 const LAST_EPSILON: f64 = 1e-4;
-/// Largest number of quasi-Newton steps in a period.
+/// Largest number of Newton steps in a period.
 const STEPS_PER_PERIOD: u32 = 300;
 /// Relative decrease of the energy by a step, below which a period ends.
 const MIN_GAIN: f64 = 1e-5;
@@ -184,7 +184,16 @@ impl<'m> Work<'m> {
                 return;
             }
         }
-        self.descend(result, observe);
+        let Judge { mesh, topology, .. } = self.judge;
+        // If edges between fixed vertices cross, no positions are feasible, and the steps would take minutes in vain.
+        if topology.crossings(&mesh.points, 1).is_ok_and(|crossings| !crossings.is_empty()) {
+            return;
+        }
+        for descent in &DESCENTS {
+            if self.descend(descent, result, observe).is_break() {
+                return;
+            }
+        }
     }
 
     /// Moves the vertices to the start of a stage, and returns the region that the stage sweeps. Returns `None` to skip
@@ -220,36 +229,31 @@ impl<'m> Work<'m> {
         Some(Region::whole(self.problem))
     }
 
-    /// Moves all free vertices from the given positions by quasi-Newton steps, while the regularization falls from period
-    /// to period. Ends if only hopeless triangles are bad, or if `observe` breaks. Does nothing if no positions can be
-    /// feasible.
+    /// Moves all free vertices from the given positions by Newton steps, while the regularization falls from period to
+    /// period. Breaks if only hopeless triangles are bad, or if `observe` breaks.
     fn descend(
         &mut self,
+        descent: &Descent,
         result: &mut Untangled,
         observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
-    ) {
-        let Judge { mesh, topology, .. } = self.judge;
-        // If edges between fixed vertices cross, no positions are feasible, and the steps would take minutes in vain.
-        if topology.crossings(&mesh.points, 1).is_ok_and(|crossings| !crossings.is_empty()) {
-            return;
+    ) -> ControlFlow<()> {
+        if descent.has_equal_targets {
+            self.state.equalize_targets();
         }
         let region = Region::whole(self.problem);
-        let nobody = vec![false; self.problem.free_count()];
-        let levels = self.levels.take().unwrap_or_else(|| self.state.hierarchy(&nobody));
         self.state.positions = self.problem.positions().to_vec();
-        let budget = &QUASI_NEWTON;
         let mut now = self.state.assess(&region);
         let began = result.sweeps;
         let mut judged = (began, now);
         let mut epsilon = FIRST_EPSILON;
-        while result.sweeps - began < budget.most && epsilon > LAST_EPSILON {
-            if result.sweeps - judged.0 >= budget.often {
+        while result.sweeps - began < NEWTON.most && epsilon > LAST_EPSILON {
+            if result.sweeps - judged.0 >= NEWTON.often {
                 let before = std::mem::replace(&mut judged, (result.sweeps, now)).1;
-                if !budget.goes_on(before, now) {
+                if !NEWTON.goes_on(before, now) {
                     break;
                 }
             }
-            let mut search = QuasiNewton::new(&levels, &region, epsilon, &self.state);
+            let mut search = Newton::new(&region, epsilon, descent.residual, &self.state);
             let first = search.energy();
             for _ in 0..STEPS_PER_PERIOD {
                 let last = search.energy();
@@ -259,11 +263,11 @@ impl<'m> Work<'m> {
                 result.sweeps += 1;
                 now = self.state.assess(&region);
                 if now.bad <= result.hopeless.len() && self.is_done(result) {
-                    return;
+                    return ControlFlow::Break(());
                 }
                 if observe(&Untangling { sweep: result.sweeps, bad: now.bad }).is_break() {
                     self.is_done(result);
-                    return;
+                    return ControlFlow::Break(());
                 }
                 if last - search.energy() <= MIN_GAIN * last {
                     break;
@@ -271,7 +275,10 @@ impl<'m> Work<'m> {
             }
             epsilon = next_epsilon(epsilon, now.least, [first, search.energy()]);
         }
-        self.is_done(result);
+        match self.is_done(result) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     }
 
     /// Sweeps the region until the stage ends. Breaks if only hopeless triangles are bad, or if `observe` breaks.

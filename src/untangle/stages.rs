@@ -27,9 +27,24 @@ pub(super) const STAGES: [Stage; 19] = [
     Stage { start: Start::Means, sweeps: 100 },
 ];
 
-/// The budget of [quasi-Newton](super::quasi_newton) steps, which follow the last stage.
-pub(super) const QUASI_NEWTON: StageBudget =
-    StageBudget { fewest: 0, most: 20_000, often: 4000, area: 0.75, bad: 0.9 };
+/// Runs of [Newton](super::newton) steps, which follow the last stage. Each run begins at the positions of the given mesh.
+/// Equal target areas lead to other states than areas of triangles, many of which are inverted.
+pub(super) const DESCENTS: [Descent; 2] = [
+    Descent { has_equal_targets: false, residual: 0.5 },
+    Descent { has_equal_targets: true, residual: 0.3 },
+];
+
+/// The settings of a run of Newton steps.
+pub(super) struct Descent {
+    /// Whether all target areas are equal.
+    pub(super) has_equal_targets: bool,
+    /// Share of the residual (0 to 1) at which conjugate gradients end.
+    pub(super) residual: f64,
+}
+
+/// The budget of each run of Newton steps.
+pub(super) const NEWTON: StageBudget =
+    StageBudget { fewest: 0, most: 5000, often: 1000, area: 0.75, bad: 0.9 };
 
 /// Sweeps from one start.
 pub(super) struct Stage {

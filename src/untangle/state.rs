@@ -9,6 +9,7 @@ use crate::parallel::{collect, for_each_chunk, map_parts, map_ranges};
 use crate::patch::{VertexBatch, batches};
 use crate::run::multilevel::{Hierarchy, Search};
 use crate::untangle::cuts::{Short, cut};
+use crate::untangle::energy::Corner;
 use crate::untangle::patches::Tangle;
 
 /// Number of vertices or triangles in one parallel task.
@@ -181,9 +182,15 @@ impl<'p> State<'p> {
         }
     }
 
-    /// Returns the mean target area at vertices.
-    pub(super) fn mean_target(&self) -> f64 {
-        self.targets.iter().sum::<f64>() / self.targets.len() as f64
+    /// Replaces all target areas by their mean.
+    pub(super) fn equalize_targets(&mut self) {
+        let mean = self.targets.iter().sum::<f64>() / self.targets.len() as f64;
+        self.targets.fill(mean);
+    }
+
+    /// Returns a triangle, seen from its first vertex.
+    pub(super) fn triangle(&self, vertices: &[u32; 3]) -> Corner<f64> {
+        self.tangle(&self.positions).triangle(vertices)
     }
 
     /// Returns the energy of all triangles.
@@ -268,11 +275,7 @@ impl<'p> State<'p> {
 
 /// Returns a gradient multiplied by the inverse Hessian that the levels approximate; a zero gradient for a gradient that
 /// is zero.
-pub(super) fn preconditioned(
-    hierarchy: &Hierarchy,
-    problem: &Problem,
-    gradient: &[DVec2],
-) -> Vec<DVec2> {
+fn preconditioned(hierarchy: &Hierarchy, problem: &Problem, gradient: &[DVec2]) -> Vec<DVec2> {
     // The levels compute in single precision, whose range a gradient near flat triangles may exceed.
     let most = largest(gradient);
     if most == 0.0 {
@@ -285,7 +288,7 @@ pub(super) fn preconditioned(
 }
 
 /// Returns the largest absolute coordinate of the vectors, 0 if there are none.
-pub(super) fn largest(vectors: &[DVec2]) -> f64 {
+fn largest(vectors: &[DVec2]) -> f64 {
     let parts = map_parts(vectors.chunks(CHUNK), |_, part| {
         part.iter().fold(0.0, |most: f64, v| most.max(v.abs().max_element()))
     });
@@ -293,7 +296,7 @@ pub(super) fn largest(vectors: &[DVec2]) -> f64 {
 }
 
 /// Applies `change` to each vector and its index, on all threads.
-fn update(vectors: &mut [DVec2], change: impl Fn(usize, &mut DVec2) + Sync) {
+pub(super) fn update(vectors: &mut [DVec2], change: impl Fn(usize, &mut DVec2) + Sync) {
     for_each_chunk(vectors, CHUNK, |first, vectors| {
         vectors.iter_mut().enumerate().for_each(|(i, vector)| change(first + i, vector));
     });
