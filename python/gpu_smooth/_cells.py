@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gpu_smooth import _native
 from gpu_smooth._errors import MeshError
 
 if TYPE_CHECKING:
@@ -36,23 +37,18 @@ class Cells(NamedTuple):
             raise MeshError("mesh: there are no triangles with three vertices. Pass a mesh of linear triangles")
         # None is the default of each option.
         given = {name: value for name, value in given.items() if value is not None}
+        unknown = self.anchored[(self.anchored < 0) | (self.anchored >= vertices)]
+        if len(unknown):
+            raise MeshError(
+                f"mesh: a cell has the vertex {unknown[0]}, but the mesh has {vertices} points: vertices are numbered from 0"
+            )
         fixed = np.zeros(vertices, dtype=bool)
         fixed[self.anchored] = True
         if "fixed" in given:
-            own = np.asarray(given["fixed"])
-            # Wrong arrays are passed on, so that the error is that of `smooth`.
-            if own.dtype == bool and own.shape == fixed.shape:
-                fixed |= own
-            elif own.dtype.kind in "iu" and own.ndim == 1 and ((own >= 0) & (own < vertices)).all():
-                fixed[own] = True
-            else:
-                return given
+            fixed[_native.vertex_set("fixed", given["fixed"], vertices)] = True
         lines = self.lines
         if "lines" in given:
-            drawn = np.asarray(given["lines"])
-            if drawn.ndim != 2 or drawn.shape[1] != 2:
-                return given
-            lines = np.concatenate([lines, drawn])
+            lines = np.concatenate([lines, _native.pairs("lines", given["lines"], vertices)])
         found = {"fixed": fixed, "lines": lines}
         if self.regions is not None:
             found["regions"] = self.regions
@@ -65,6 +61,8 @@ def named(fixed: Any, groups: dict[str, Callable[[], Any]]) -> Any:
     `groups` has a function for each name, which returns the vertices of the group.
     """
     names = [fixed] if isinstance(fixed, str) else fixed
+    if isinstance(names, np.ndarray) and names.dtype.kind == "U":
+        names = names.tolist()
     if not isinstance(names, (list, tuple, set)) or not names or not all(isinstance(name, str) for name in names):
         return fixed
     unknown = [name for name in names if name not in groups]
@@ -75,11 +73,16 @@ def named(fixed: Any, groups: dict[str, Callable[[], Any]]) -> Any:
 
 
 def whole(values: npt.NDArray[Any]) -> npt.NDArray[Any] | None:
-    """Return numbers of regions as integers; None if they are no whole numbers."""
+    """Return numbers or names of regions as integers; None if they are numbers, but no whole numbers."""
     values = np.asarray(values)
+    # One number per cell, as a column.
+    if values.ndim == 2 and values.shape[1] == 1:
+        values = values[:, 0]
     if values.ndim != 1:
         return None
-    if values.dtype.kind in "iu":
+    if values.dtype.kind == "i":
         return values
-    integers = values.astype(np.int64) if values.dtype.kind == "f" and np.isfinite(values).all() else None
-    return integers if integers is not None and (integers == values).all() else None
+    if values.dtype.kind == "f" and not (np.isfinite(values) & (values == np.trunc(values))).all():
+        return None
+    # Other integers, flags, floating-point numbers of any size and names become integers that differ where they do.
+    return np.unique(values, return_inverse=True)[1] if values.dtype.kind in "ubfUS" else None

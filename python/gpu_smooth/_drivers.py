@@ -26,6 +26,8 @@ def trial() -> str | None:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             timeout=PATIENCE,
+            # Ctrl-C in a terminal would end the trial like a crash.
+            start_new_session=True,
             # The command line would start a third process for its own trial.
             env=dict(os.environ, GPU_SMOOTH_IS_TRIAL="1"),
             check=False,

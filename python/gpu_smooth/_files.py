@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
 
 from gpu_smooth import _native
 from gpu_smooth._errors import DeviceError, FileError, GpuSmoothError, OptionError
@@ -33,7 +36,7 @@ class MeshFile:
 
     Parameters
     ----------
-    path : str or path-like
+    path : str, bytes or path-like
         File to read. The format is detected from its content. Files compressed by gzip or zstd are decompressed.
     weld : bool, default False
         Join corners of triangles at the same place to one vertex, for STL.
@@ -56,7 +59,7 @@ class MeshFile:
         allow_outside: bool = False,
         regions: str | None = None,
     ) -> None:
-        self._native = _native.MeshFile(path, weld=weld, allow_outside=allow_outside, regions=regions)
+        self._native = _native.MeshFile(os.fsdecode(path), weld=weld, allow_outside=allow_outside, regions=regions)
 
     @property
     def path(self) -> pathlib.Path:
@@ -135,7 +138,7 @@ class MeshFile:
 
         Parameters
         ----------
-        path : str or path-like
+        path : str, bytes or path-like
             File to write; may be the file that was read. A name that ends in .gz or .zst compresses the file.
         points : array_like of float, shape (n, 2) or (n, 3)
             Positions of the vertices. If third coordinates of the file differ, those of the array replace them.
@@ -147,7 +150,7 @@ class MeshFile:
         MeshError
             The points are not finite, or not one per vertex.
         """
-        self._native.write(path, points)
+        self._native.write(os.fsdecode(path), points)
 
     def difference(self, other: MeshFile) -> str | None:
         """Return the first difference to another file apart from coordinates, None without one."""
@@ -169,9 +172,9 @@ def convert(
 
     Parameters
     ----------
-    source : str or path-like
+    source : str, bytes or path-like
         File to read.
-    destination : str or path-like
+    destination : str, bytes or path-like
         File to write. An existing file is replaced.
     lossy : bool, default False
         Write the mesh even if the format cannot hold all of it.
@@ -190,7 +193,7 @@ def convert(
         A file cannot be read or written, the format is not written in the encoding, or the format cannot hold all of the
         mesh and `lossy` is false.
     """
-    return MeshFile(source)._native.convert(destination, lossy, encoding)
+    return MeshFile(source)._native.convert(os.fsdecode(destination), lossy, encoding)
 
 
 # Exit codes of the command line, and their exceptions.
@@ -204,9 +207,9 @@ def smooth_file(source: Path, destination: Path, **options: Any) -> dict[str, An
 
     Parameters
     ----------
-    source : str or path-like
+    source : str, bytes or path-like
         Mesh to read.
-    destination : str or path-like
+    destination : str, bytes or path-like
         File for the smoothed mesh, in the format of `source`; may be `source` itself.
     **options
         Options of the command line, with underscores for hyphens: `slide=True` for `--slide`, `fix=["inlet", "outlet"]`
@@ -229,7 +232,6 @@ def smooth_file(source: Path, destination: Path, **options: Any) -> dict[str, An
         The run has ended without the wanted result, such as with `strict=True`.
     """
     import json
-    import os
     import pathlib
     import subprocess
     import sys
@@ -237,24 +239,40 @@ def smooth_file(source: Path, destination: Path, **options: Any) -> dict[str, An
 
     if not sys.executable:
         raise GpuSmoothError("no interpreter of Python is known to run the command line: sys.executable is empty")
-    words = [sys.executable, "-m", "gpu_smooth", os.fspath(source), os.fspath(destination)]
+    own = options.pop("report", None)
+    words = [sys.executable, "-m", "gpu_smooth", "--quiet"]
     for name, value in options.items():
+        # The text of the command line is not shown.
+        if name == "quiet":
+            continue
         option = "--" + name.replace("_", "-")
         values = value if isinstance(value, (list, tuple)) else [value]
         for one in values:
-            if one is True:
-                words.append(option)
-            elif one is not None and one is not False:
-                words.append(f"{option}={os.fspath(one) if isinstance(one, os.PathLike) else one}")
+            if isinstance(one, (bool, np.bool_)):
+                words += [option] if one else []
+            elif one is not None:
+                words.append(f"{option}={os.fsdecode(one) if isinstance(one, (bytes, os.PathLike)) else one}")
     with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(options.get("report") or pathlib.Path(folder, "report.json"))
-        if not options.get("report"):
-            words.append(f"--report={report}")
-        words.append("--quiet")
+        report = pathlib.Path(os.fsdecode(own) if own else pathlib.Path(folder, "report.json"))
+        # A name may begin with a hyphen.
+        words += [f"--report={report}", "--", os.fsdecode(source), os.fsdecode(destination)]
         done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False)
         if done.returncode != 0:
-            text = done.stderr.decode(errors="replace").strip()
-            text = text.removeprefix("error: ") or f"gpu-smooth ended with code {done.returncode}"
+            text = _message(done.stderr.decode(errors="replace"))
+            text = text or f"gpu-smooth ended with code {done.returncode}"
             raise ERRORS.get(done.returncode, GpuSmoothError)(text)
-        found: dict[str, Any] = json.loads(report.read_text())
+        if not report.exists():
+            raise OptionError(
+                "the command line has written no report, and no mesh, as with dry_run=True. Drop the option, or run the "
+                "command line"
+            )
+        found: dict[str, Any] = json.loads(report.read_text(encoding="utf-8"))
         return found
+
+
+def _message(text: str) -> str:
+    """Return the message of an error of the command line, without messages of drivers before and usage after it."""
+    text = text.rpartition("gpu-smooth: error: ")[2].strip().removeprefix("error: ")
+    for end in ("\n\nUsage:", "\n\nFor more information"):
+        text = text.partition(end)[0]
+    return text

@@ -48,8 +48,14 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
         The mesh has no triangles of three nodes, has volume elements, or does not lie in a plane.
     OptionError, DeviceError
         As `smooth` does.
+    ImportError
+        gmsh is not installed.
     """
-    import gmsh
+    try:
+        import gmsh
+    except ModuleNotFoundError as missing:
+        text = "the mesh of a gmsh session is needed, but gmsh is not installed: pip install gmsh"
+        raise ModuleNotFoundError(text, name=missing.name) from missing
 
     if not gmsh.isInitialized():
         raise GpuSmoothError("no gmsh session is running: call gmsh.initialize() and mesh a model first")
@@ -111,11 +117,15 @@ def _cells(gmsh: Any, rows: Integers) -> Cells:
 def _groups(gmsh: Any, rows: Integers) -> dict[str, Callable[[], Any]]:
     """Return the named physical groups of the model."""
 
-    def nodes(dimension: int, tag: int) -> Any:
-        return rows[np.asarray(gmsh.model.mesh.getNodesForPhysicalGroup(dimension, tag)[0], np.int64)]
+    def nodes(pairs: list[tuple[int, int]]) -> Any:
+        tags = [gmsh.model.mesh.getNodesForPhysicalGroup(*pair)[0] for pair in pairs]
+        return rows[np.concatenate(tags).astype(np.int64)]
 
-    groups = {gmsh.model.getPhysicalName(*pair): pair for pair in gmsh.model.getPhysicalGroups()}
-    return {name: functools.partial(nodes, *pair) for name, pair in groups.items() if name}
+    # Groups of several dimensions may have one name.
+    groups: dict[str, list[tuple[int, int]]] = {}
+    for pair in gmsh.model.getPhysicalGroups():
+        groups.setdefault(gmsh.model.getPhysicalName(*pair), []).append(pair)
+    return {name: functools.partial(nodes, pairs) for name, pairs in groups.items() if name}
 
 
 def _periodic(gmsh: Any, rows: Integers) -> Integers:

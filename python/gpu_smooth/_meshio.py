@@ -11,18 +11,15 @@ import numpy as np
 
 from gpu_smooth import _native
 from gpu_smooth._cells import REGIONS, Cells, named, whole
+from gpu_smooth._errors import MeshError
 
 
 def cells_of(mesh: Any) -> Cells:
     """Return the cells of a `meshio.Mesh`."""
     of_triangles = [block.type == "triangle" for block in mesh.cells]
-    triangles = [block.data for block, is_one in zip(mesh.cells, of_triangles) if is_one]
-    lines = [block.data for block in mesh.cells if block.type == "line"]
-    others = [
-        np.asarray(block.data).ravel()
-        for block in mesh.cells
-        if block.type not in ("triangle", "line")
-    ]
+    triangles = [_vertices(block) for block, is_one in zip(mesh.cells, of_triangles) if is_one]
+    lines = [_vertices(block) for block in mesh.cells if block.type == "line"]
+    others = [_vertices(block).ravel() for block in mesh.cells if block.type not in ("triangle", "line")]
     regions = None
     for name in REGIONS:
         if name in mesh.cell_data:
@@ -30,11 +27,26 @@ def cells_of(mesh: Any) -> Cells:
             regions = whole(np.concatenate(own)) if own else None
             break
     return Cells(
-        np.concatenate([np.empty((0, 3), np.int64), *triangles]).astype(np.int64),
-        np.concatenate([np.empty((0, 2), np.int64), *lines]).astype(np.int64),
-        np.concatenate([np.empty(0, np.int64), *others]).astype(np.int64),
+        np.concatenate([np.empty((0, 3), np.int64), *triangles]),
+        np.concatenate([np.empty((0, 2), np.int64), *lines]),
+        np.concatenate([np.empty(0, np.int64), *others]),
         regions,
     )
+
+
+def _vertices(block: Any) -> Any:
+    """Return the vertices of the cells of a block, of shape (k, n); of polyhedra, in one row."""
+    if block.type.startswith("polyhedron"):
+        corners = [np.asarray(face).ravel() for cell in block.data for face in cell]
+        vertices = np.concatenate([np.empty(0, np.int64), *corners])
+    else:
+        vertices = np.asarray(block.data)
+    if vertices.dtype.kind not in "iu" and vertices.size:
+        raise MeshError(
+            f"mesh: vertices of cells are integers, but those of type {block.type} are numbers of type {vertices.dtype}. "
+            "Convert the data of their block by .astype(int)"
+        )
+    return vertices.astype(np.int64)
 
 
 def groups_of(mesh: Any) -> dict[str, Callable[[], Any]]:

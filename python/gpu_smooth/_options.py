@@ -20,7 +20,7 @@ Array: TypeAlias = "npt.ArrayLike"
 Floats: TypeAlias = "npt.NDArray[np.floating[Any]]"
 Doubles: TypeAlias = "npt.NDArray[np.float64]"
 Integers: TypeAlias = "npt.NDArray[np.int64]"
-Path: TypeAlias = "Union[str, PathLike[str]]"
+Path: TypeAlias = "Union[str, bytes, PathLike[str], PathLike[bytes]]"
 
 Surface: TypeAlias = Literal["plane", "sphere"]
 ThirdCoordinate: TypeAlias = Literal["coordinate", "data"]

@@ -29,8 +29,11 @@ def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, A
     if which not in ("before", "after", "both"):
         raise _which_error(which)
     names = list(states) if which == "both" else [which]
+    # matplotlib makes room for all points, and some vertices may belong to no triangle.
+    used, triangles = np.unique(result.triangles, return_inverse=True)
+    triangles = triangles.reshape(-1, 3)
     if ax is None:
-        width, height = np.ptp(states["after"][np.unique(result.triangles)], axis=0)
+        width, height = np.ptp(states["after"][used], axis=0)
         each = 6.0 * min(max(height / max(width, np.finfo(float).tiny), 0.3), 2.0)
         figure, axes = plt.subplots(
             1,
@@ -54,14 +57,15 @@ def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, A
     is_low_good = row["better"] == "lower"
     colors, low, high = ("viridis_r", 0.0, 0.99) if is_low_good else ("viridis", 0.01, 1.0)
     chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2, "cmap": colors}
-    if finite.size:
+    # matplotlib refuses limits beside a norm, which has its own.
+    if finite.size and "norm" not in options:
         chosen |= {"vmin": np.quantile(finite, low), "vmax": np.quantile(finite, high)}
     chosen |= options
     drawn = None
     for name, axis in zip(names, all_axes):
-        points = states[name]
+        points = states[name][used]
         drawn = axis.tripcolor(
-            points[:, 0], points[:, 1], result.triangles, facecolors=_finite(values[name]), **chosen
+            points[:, 0], points[:, 1], triangles, facecolors=_finite(values[name]), **chosen
         )
         axis.set_aspect("equal")
         axis.set_title(name)

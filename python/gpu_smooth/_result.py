@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import types
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -15,10 +16,24 @@ if TYPE_CHECKING:
     from gpu_smooth._smooth import Smoother
 
 
+# Methods and properties of an outcome whose values a pickled result has.
+_METHODS = (
+    "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
+)
+_PROPERTIES = (
+    "axes", "metric", "engine", "stop", "fault", "sweeps", "corrections", "best_sweep", "remaining", "held_back", "slid",
+    "prepare_seconds", "seconds",
+)
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
 class Result:
     """Result of a run: new points, and a report.
 
-    A notebook shows the result as a picture. `run` and `Smoother.run` return results.
+    A notebook shows the result as a picture. `run` and `Smoother.run` return results. A result may be pickled.
     """
 
     def __init__(self, outcome: Outcome, smoother: Smoother) -> None:
@@ -196,6 +211,14 @@ class Result:
             No measure has the name.
         """
         _picture.show(self, which, measure, options)
+
+    def __getstate__(self) -> dict[str, Any]:
+        outcome = self._outcome
+        values: dict[str, Any] = {name: getattr(outcome, name) for name in _PROPERTIES}
+        for name in _METHODS:
+            values[name] = functools.partial(_same, getattr(outcome, name)())
+        smoother = types.SimpleNamespace(triangles=self.triangles)
+        return {**self.__dict__, "_outcome": types.SimpleNamespace(**values), "_smoother": smoother}
 
     def _repr_html_(self) -> str:
         return _picture.html(self)

@@ -87,6 +87,20 @@ class Smoother:
         """Whether each vertex is free: inside of the mesh and not fixed; of shape (n,), bool."""
         return self._native.free
 
+    def __repr__(self) -> str:
+        free = self.free
+        return f"Smoother({len(free)} vertices, {free.sum()} free, {len(self.triangles)} triangles)"
+
+    # A prepared mesh does not change, so that copies may share it.
+    def __copy__(self) -> Smoother:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Smoother:
+        return self
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a Smoother cannot be pickled: make one in each process, from points and triangles")
+
     @functools.cached_property
     def triangles(self) -> Integers:
         """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
@@ -197,12 +211,12 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     on_sweep : callable, optional
         Called with a `Progress` between sweeps, about ten times a second. A true result or `StopIteration` ends the run
         with the best points so far; any other exception ends the run and is raised.
-    checkpoint : str or path-like, optional
+    checkpoint : str, bytes or path-like, optional
         File to which the state of the run is saved, from which `resume` continues. A completed run removes the file.
     checkpoint_every : float, default 300
         With `checkpoint` or `resume`: seconds between two checkpoints. A run that is ended by `time_limit`, `on_sweep` or
         an exception saves its state too.
-    resume : str or path-like, optional
+    resume : str, bytes or path-like, optional
         Continue the run that saved this checkpoint, on the same mesh with the same options. The state is saved to the
         same file, unless `checkpoint` names another. On the CPU, or on the GPU of the saved run, the new points have the
         bits of an uninterrupted run.
@@ -279,5 +293,6 @@ def run(points: Array, triangles: Array, **options: Unpack[SmoothOptions]) -> Re
     ('converged', 45)
     """
     all_options: dict[str, Any] = dict(options)
+    _native.check_option_names(list(all_options))
     of_mesh = {name: all_options.pop(name) for name in list(all_options) if name in MESH_OPTIONS}
     return Smoother(points, triangles, **of_mesh).run(**all_options)

@@ -14,6 +14,7 @@ use numpy::{
 };
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
 
 use crate::error;
 
@@ -185,7 +186,10 @@ pub(crate) fn pairs(
     value: &Bound<'_, PyAny>,
     vertices: usize,
 ) -> PyResult<Vec<[u32; 2]>> {
-    index_rows(name, value, vertices, "integers of shape (k, 2)")
+    match is_empty(value, &[2])? {
+        true => Ok(Vec::new()),
+        false => index_rows(name, value, vertices, "integers of shape (k, 2)"),
+    }
 }
 
 fn index_rows<const N: usize>(
@@ -245,10 +249,12 @@ impl Rows<'_> {
             // Without Python's global lock, another thread may have changed the number since.
             let value = view[[row, column]];
             let at = if N == 1 { row.to_string() } else { format!("{row}, {column}") };
-            let text = format!(
-                "{name}[{at}] is {value}, but points has {vertices} rows: vertices are numbered from 0 to {}",
-                vertices.saturating_sub(1)
-            );
+            let text = match vertices.checked_sub(1) {
+                Some(last) => format!(
+                    "{name}[{at}] is {value}, but points has {vertices} rows: vertices are numbered from 0 to {last}"
+                ),
+                None => format!("{name}[{at}] is {value}, but points has no rows"),
+            };
             return Err(error::mesh(array.py(), &text));
         }
         Ok(read)
@@ -263,6 +269,9 @@ pub(crate) fn vertex_set(
 ) -> PyResult<Vec<u32>> {
     let py = value.py();
     let wanted = "vertex numbers of shape (k,), or booleans of shape (n,)";
+    if is_empty(value, &[])? {
+        return Ok(Vec::new());
+    }
     let array = converted(name, value, wanted, &["i", "u", "b"])?;
     if array.ndim() != 1 {
         return Err(of_shape(name, array.as_any(), wanted));
@@ -284,6 +293,31 @@ pub(crate) fn vertex_set(
     let column = array.call_method1(intern!(py, "reshape"), ((-1, 1),))?;
     let column: Vec<[u32; 1]> = index_rows(name, &column, vertices, wanted)?;
     Ok(column.into_flattened())
+}
+
+/// Returns the vertices of the option `name` of a mesh with `vertices` vertices, as `smooth` reads them.
+#[pyfunction]
+#[pyo3(name = "vertex_set")]
+pub(crate) fn vertex_set_of<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    vertices: usize,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let set = vertex_set(name, value, vertices)?;
+    Ok(PyArray1::from_vec(value.py(), set.into_iter().map(i64::from).collect()))
+}
+
+/// Returns the pairs of vertices of the option `name` of a mesh with `vertices` vertices, as `smooth` reads them.
+#[pyfunction]
+#[pyo3(name = "pairs")]
+pub(crate) fn pairs_of<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    vertices: usize,
+) -> PyResult<Bound<'py, PyAny>> {
+    let pairs = pairs(name, value, vertices)?;
+    let numbers = pairs.as_flattened().iter().map(|&v| i64::from(v)).collect();
+    matrix(value.py(), numbers, [pairs.len(), 2])
 }
 
 /// Reads a number per row: an array of shape (count,) of any integer type.
@@ -325,6 +359,27 @@ pub(crate) fn per_vertex(
     let numbers = flat.cast_into::<PyArray1<f64>>()?.try_readonly()?.as_array().to_vec();
     let each = shape.get(1).copied().unwrap_or(1);
     Ok(PerVertex { numbers, each, is_flat: shape.len() == 1 })
+}
+
+/// Returns whether a value is an empty list, or an empty array of numbers whose rows have the shape `row`. NumPy makes an
+/// empty list an array of float64 with the shape (0,).
+fn is_empty(value: &Bound<'_, PyAny>, row: &[usize]) -> PyResult<bool> {
+    let Ok(array) = value.cast::<PyUntypedArray>() else {
+        let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+        return Ok(is_list && value.len()? == 0);
+    };
+    let shape = array.shape();
+    let fits = shape == [0] || shape.split_first() == Some((&0, row));
+    Ok(fits && ["f", "i", "u"].contains(&&*kind(array)?))
+}
+
+/// Fails if a point is not finite.
+pub(crate) fn check_finite(py: Python<'_>, name: &str, points: &[[f64; 2]]) -> PyResult<()> {
+    let is_finite = |point: &[f64; 2]| point.iter().all(|x| x.is_finite());
+    match points.iter().position(|point| !is_finite(point)) {
+        Some(vertex) => Err(error::not_finite(py, name, vertex)),
+        None => Ok(()),
+    }
 }
 
 /// Returns an array of two dimensions that has exactly this type and is aligned, without a copy. `None` for everything
@@ -375,6 +430,13 @@ fn converted<'py>(
     let is_empty_list = array.len() == 0 && value.cast::<PyUntypedArray>().is_err();
     if kinds.contains(&kind(&array)?.as_str()) || is_empty_list {
         return Ok(array);
+    }
+    // NumPy makes an object that is no sequence an array without dimensions.
+    if array.ndim() == 0 && kind(&array)? == "O" {
+        let found = value.get_type().name()?;
+        return Err(refused(format!(
+            "{name}: {wanted} are needed, not an object of type {found}. Pass an array or a list"
+        )));
     }
     let found = array.dtype().str()?;
     let remedy = match kinds.contains(&"f") {

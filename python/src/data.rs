@@ -16,6 +16,7 @@ use crate::observer::RunObserver;
 use crate::plane;
 use crate::run_options::RunOptions;
 use crate::threads;
+use crate::values::Given;
 
 /// Moves free vertices until no triangle is inverted or flat.
 #[pyfunction]
@@ -25,12 +26,13 @@ pub(crate) fn untangle<'py>(
     triangles: &Bound<'py, PyAny>,
     fixed: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,
-    keep_going: bool,
+    keep_going: &Bound<'py, PyAny>,
     time_limit: &Bound<'py, PyAny>,
     on_sweep: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
     let z = plane::third_coordinate(z)?;
+    let keep_going = Given { name: "keep_going", value: keep_going }.flag()?;
     let given = Named { name: "points", points };
     let (mut mesh, form) = measures::mesh(given, triangles, z, Surface::Plane)?;
     if !fixed.is_none() {
@@ -137,7 +139,10 @@ fn likewise(
     let points = arrays::points(name, value)?;
     let (given, expected) = (points.xy.len(), mesh.points.len());
     match given == expected {
-        true => plane::lay_out_likewise(value.py(), name, points, of),
+        true => {
+            arrays::check_finite(value.py(), name, &points.xy)?;
+            plane::lay_out_likewise(value.py(), name, points, of)
+        }
         false => {
             let text = format!(
                 "{name}: {given} points are given for the {expected} vertices of the mesh. Pass one row per vertex"

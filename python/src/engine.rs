@@ -1,7 +1,7 @@
 //! The engine of a run: the CPU, or a device that is opened once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use gpu_smooth::choice::BackendChooser;
 use gpu_smooth::options::Options;
@@ -13,8 +13,9 @@ use crate::run_options::EngineChoice;
 use crate::threads;
 
 // A process that was forked after drivers were started uses neither of these, as another thread may have held the lock.
-/// The device of runs that choose their engine.
-static CHOOSER: BackendChooser = BackendChooser::new();
+/// The device of runs that choose their engine; `None` before the first choice, and after a choice that an exception has
+/// ended. The lock is held only by threads that are attached to Python.
+static CHOOSER: Mutex<Option<Arc<BackendChooser>>> = Mutex::new(None);
 /// Open devices of runs that name their engine, each with the requested text in the adapter's name.
 static OPEN: Mutex<Vec<(Option<String>, Gpu)>> = Mutex::new(Vec::new());
 /// Whether this process, or a parent before a fork, has started a driver of a GPU.
@@ -50,8 +51,14 @@ pub(crate) fn open(
         EngineChoice::Cpu => Ok(Backend::Cpu),
         EngineChoice::Auto if check_fork(py).is_err() => Ok(Backend::Cpu),
         EngineChoice::Auto => {
-            let choose = || CHOOSER.choose(size, options, try_drivers);
-            threads::detached(py, choose).map(|(backend, _)| backend)
+            let lock = || CHOOSER.lock().unwrap_or_else(PoisonError::into_inner);
+            let chooser = Arc::clone(lock().get_or_insert_default());
+            let raised = Mutex::new(None);
+            let choose = || chooser.choose(size, options, || try_drivers(&raised));
+            let (backend, _) = threads::detached(py, choose)?;
+            // The chooser keeps the failure of the trial that the exception has ended.
+            ended(raised).inspect_err(|_| *lock() = None)?;
+            Ok(backend)
         }
         EngineChoice::Gpu(name) => {
             start_drivers(py)?;
@@ -65,7 +72,10 @@ pub(crate) fn open(
 pub(crate) fn of_checkpoint(py: Python<'_>, checkpoint: &Checkpoint) -> PyResult<Backend> {
     match checkpoint.adapter() {
         Some(name) if check_fork(py).is_ok() => {
-            let gpu = threads::detached(py, || try_drivers().and_then(|()| opened(Some(name))))?;
+            let raised = Mutex::new(None);
+            let open = || try_drivers(&raised).and_then(|()| opened(Some(name)));
+            let gpu = threads::detached(py, open)?;
+            ended(raised)?;
             Ok(gpu.map_or(Backend::Cpu, Backend::Gpu))
         }
         _ => Ok(Backend::Cpu),
@@ -87,13 +97,25 @@ fn opened(name: Option<&str>) -> Result<Gpu, GpuError> {
     Ok(gpu)
 }
 
-/// Tries the drivers of all GPUs in another process, as a driver that crashes would end this one.
-fn try_drivers() -> Result<(), GpuError> {
+/// Returns the exception that has ended a trial of drivers.
+fn ended(raised: Mutex<Option<PyErr>>) -> PyResult<()> {
+    raised.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+/// Tries the drivers of all GPUs in another process, as a driver that crashes would end this one. An exception that ends
+/// the trial, such as `KeyboardInterrupt`, is stored in `raised`.
+fn try_drivers(raised: &Mutex<Option<PyErr>>) -> Result<(), GpuError> {
     HAS_STARTED.store(true, Ordering::Relaxed);
-    Python::attach(|py| {
+    let tried = Python::attach(|py| {
         let tried = py.import("gpu_smooth._drivers")?.call_method0("trial")?;
         tried.extract::<Option<String>>()
-    })
-    .unwrap_or_else(|error| Some(error.to_string()))
-    .map_or(Ok(()), |failure| Err(GpuError::Crashed(failure)))
+    });
+    match tried {
+        Ok(failure) => failure.map_or(Ok(()), |failure| Err(GpuError::Crashed(failure))),
+        Err(error) => {
+            let failure = error.to_string();
+            *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            Err(GpuError::Crashed(failure))
+        }
+    }
 }

@@ -149,6 +149,16 @@ pub(crate) fn not_planar(py: Python<'_>, name: &str, refused: &NotPlanar) -> PyE
     with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
 }
 
+const NOT_FINITE_REMEDY: &str = "Replace NaN and infinity, or remove the vertex";
+
+/// Returns the exception of a point of the argument `name` that is not finite.
+pub(crate) fn not_finite(py: Python<'_>, name: &str, vertex: usize) -> PyErr {
+    let text = format!(
+        "{name}[{vertex}]: vertex {vertex} has a coordinate that is not a finite number. {NOT_FINITE_REMEDY}"
+    );
+    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+}
+
 /// Returns the exception of a third coordinate that is not finite.
 pub(crate) fn third_coordinate(py: Python<'_>, name: &str, vertex: usize, z: f64) -> PyErr {
     let text = format!(
@@ -204,7 +214,7 @@ fn explained(error: &MeshError) -> String {
             "triangles: the mesh has no triangles. Pass an integer array of shape (m, 3) with at least one row".to_owned()
         }
         MeshError::NotFinite { vertex } => {
-            format!("points[{vertex}]: {error}. Replace NaN and infinity, or remove the vertex")
+            format!("points[{vertex}]: {error}. {NOT_FINITE_REMEDY}")
         }
         MeshError::OutOfRange { .. } => format!("points: {error}. Choose another unit of length"),
         MeshError::IndexOutOfRange { triangle: Some(triangle), .. } => {
@@ -230,7 +240,7 @@ fn explained(error: &MeshError) -> String {
             format!("triangles[{triangle}]: {error}. {usable}")
         }
         MeshError::Target { vertex, problem } => {
-            format!("vertex {vertex} has no target: {problem}. Sizes are positive, tensors (xx, xy, yy) positive definite")
+            format!("target: vertex {vertex} has no target: {problem}. Sizes are positive, tensors (xx, xy, yy) positive definite")
         }
         MeshError::NothingFree { .. } => format!(
             "{error}: all are on the boundary, fixed, on lines or between regions. Pass slide=True, fix fewer vertices, or \

@@ -33,10 +33,13 @@ impl MeshFile {
     fn new(
         py: Python<'_>,
         path: PathBuf,
-        weld: bool,
-        allow_outside: bool,
-        regions: Option<String>,
+        weld: &Bound<'_, PyAny>,
+        allow_outside: &Bound<'_, PyAny>,
+        regions: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let weld = Given { name: "weld", value: weld }.flag()?;
+        let allow_outside = Given { name: "allow_outside", value: allow_outside }.flag()?;
+        let regions = regions.map(|value| Given { name: "regions", value }.text()).transpose()?;
         let options = ReadOptions::new().weld(weld).allow_outside(allow_outside).regions(regions);
         let file = threads::detached(py, || options.read(&path))?;
         Ok(Self(Arc::new(file.map_err(|error| error::of_reading(py, &error))?)))
@@ -125,7 +128,8 @@ impl MeshFile {
     }
 
     /// Returns an array of data of the vertices.
-    fn data<'py>(&self, py: Python<'py>, name: String) -> PyResult<Bound<'py, PyAny>> {
+    fn data<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let name = Given { name: "name", value: name }.text()?;
         let fields = threads::detached(py, || self.0.point_fields(Some(&[name])))?;
         let fields = fields.map_err(|error| error::of_reading(py, &error))?;
         let Some(field) = fields.last() else {
@@ -172,9 +176,10 @@ impl MeshFile {
         &self,
         py: Python<'_>,
         path: PathBuf,
-        lossy: bool,
+        lossy: &Bound<'_, PyAny>,
         encoding: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Vec<String>> {
+        let lossy = Given { name: "lossy", value: lossy }.flag()?;
         let Some(format) = Conversion::target_of(&path) else {
             let names: Vec<_> = Conversion::targets().map(|(name, _)| name).collect();
             let text = format!(

@@ -32,19 +32,23 @@ mod _native {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::arrays::{pairs_of, vertex_set_of};
+    #[pymodule_export]
     use crate::command_line::command_line;
     #[pymodule_export]
     use crate::data::{compare, interpolate, untangle};
     #[pymodule_export]
     use crate::files::MeshFile;
     #[pymodule_export]
-    use crate::measures::{Quality, quality};
+    use crate::measures::{Quality, quality, restored_quality};
     #[pymodule_export]
     use crate::outcome::Outcome;
     #[pymodule_export]
     use crate::smoother::{Smoother, smooth};
     #[pymodule_export]
-    use crate::tables::{adapters, measures, mesh_options, metrics, run_options};
+    use crate::tables::{
+        adapters, check_option_names, measures, mesh_options, metrics, run_options,
+    };
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -4,6 +4,7 @@ use gpu_smooth::measure::{Measure, Measured};
 use gpu_smooth::targets::Surface;
 use gpu_smooth::{Mesh, Metric, Quality as MeshQuality, Topology};
 use numpy::PyArray1;
+use pyo3::intern;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Points, PointsForm};
@@ -34,6 +35,7 @@ pub(crate) fn mesh(
     let Named { name, points } = given;
     let read = arrays::points(name, points)?;
     let triangles = arrays::triangles("triangles", triangles, read.xy.len())?;
+    arrays::check_finite(points.py(), name, &read.xy)?;
     let Points { xy, form } = plane::lay_out(points.py(), name, read, z, surface)?;
     Ok((Mesh { points: xy, triangles, fixed: Vec::new() }, form))
 }
@@ -44,13 +46,14 @@ pub(crate) fn quality<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     triangles: &Bound<'py, PyAny>,
-    measure: &str,
+    measure: &Bound<'py, PyAny>,
     on: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let surface = surface(on)?;
     let z = plane::third_coordinate(z)?;
     let (mesh, _) = mesh(Named { name: "points", points }, triangles, z, surface)?;
+    let measure = Given { name: "measure", value: measure }.text()?;
     let measure: Measure =
         measure.parse().map_err(|unknown: gpu_smooth::measure::UnknownMeasure| {
             error::option(py, &format!("measure: {unknown}"))
@@ -65,26 +68,55 @@ pub(crate) fn quality<'py>(
 
 /// Statistics of the triangles of a mesh.
 #[pyclass(frozen, module = "gpu_smooth")]
-pub(crate) struct Quality(MeshQuality);
+pub(crate) struct Quality(Statistics);
+
+/// The numbers of a [`Quality`], which may go to another process.
+#[derive(Clone, IntoPyObject, FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Statistics {
+    /// f by each of [`Metric::ALL`].
+    f: Vec<f64>,
+    min_angle: f64,
+    max_angle: f64,
+    worst_imr: f64,
+    worst_triangle: usize,
+    inverted: usize,
+}
 
 impl Quality {
     pub(crate) fn of(quality: MeshQuality) -> Self {
-        Self(quality)
+        let f = Metric::ALL.iter().map(|&metric| quality.f(metric)).collect();
+        let MeshQuality { min_angle, max_angle, worst_imr, worst_triangle, inverted, .. } = quality;
+        Self(Statistics { f, min_angle, max_angle, worst_imr, worst_triangle, inverted })
     }
+
+    /// Returns f by a metric. Infinite for a metric that the version of a pickled quality does not have.
+    fn by(&self, metric: Metric) -> f64 {
+        let mut values = Metric::ALL.iter().zip(&self.0.f);
+        values.find(|(of, _)| **of == metric).map_or(f64::INFINITY, |(_, &f)| f)
+    }
+}
+
+/// Returns the quality that was pickled as `statistics`.
+#[pyfunction]
+pub(crate) fn restored_quality(statistics: Statistics) -> Quality {
+    Quality(statistics)
 }
 
 #[pymethods]
 impl Quality {
     /// The objective f, the mean of q² over all triangles, by a metric. Infinite if a triangle is inverted or flat and
     /// the metric has a barrier.
-    #[pyo3(signature = (metric = "imr"))]
-    fn f(&self, py: Python<'_>, metric: &str) -> PyResult<f64> {
+    #[pyo3(signature = (metric = None), text_signature = "($self, metric='imr')")]
+    fn f(&self, py: Python<'_>, metric: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
+        let Some(value) = metric else { return Ok(self.by(Metric::Imr)) };
+        let metric = Given { name: "metric", value }.text()?;
         let metric: Metric = metric.replace('_', "-").parse().map_err(
             |unknown: gpu_smooth::metric::UnknownMetric| {
                 error::option(py, &format!("metric: {unknown}"))
             },
         )?;
-        Ok(self.0.f(metric))
+        Ok(self.by(metric))
     }
 
     /// Smallest angle of any triangle, in degrees.
@@ -117,12 +149,17 @@ impl Quality {
         self.0.inverted
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Statistics,))> {
+        let restored = py.import(intern!(py, "gpu_smooth._native"))?;
+        Ok((restored.getattr(intern!(py, "restored_quality"))?, (self.0.clone(),)))
+    }
+
     fn __repr__(&self) -> String {
-        let MeshQuality { min_angle, max_angle, worst_imr, inverted, .. } = &self.0;
+        let Statistics { min_angle, max_angle, worst_imr, inverted, .. } = &self.0;
         format!(
             "Quality(f imr {:.6}, min angle {min_angle:.2}°, max angle {max_angle:.2}°, worst imr {worst_imr:.6}, inverted \
              {inverted})",
-            self.0.f(Metric::Imr)
+            self.by(Metric::Imr)
         )
     }
 }

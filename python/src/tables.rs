@@ -7,6 +7,7 @@ use pyo3::types::PyDict;
 
 use crate::engine;
 use crate::threads;
+use crate::values;
 use crate::{mesh_options as of_mesh, run_options as of_run};
 
 /// Returns the names of the options that belong to a mesh.
@@ -19,6 +20,16 @@ pub(crate) fn mesh_options() -> Vec<&'static str> {
 #[pyfunction]
 pub(crate) fn run_options() -> Vec<&'static str> {
     of_run::NAMES.to_vec()
+}
+
+/// Fails if smoothing has no option of one of these names.
+#[pyfunction]
+pub(crate) fn check_option_names(py: Python<'_>, given: Vec<String>) -> PyResult<()> {
+    let names = [of_mesh::NAMES, of_run::NAMES].concat();
+    match given.iter().find(|name| !names.contains(&name.as_str())) {
+        Some(name) => Err(values::unknown(py, name, "smoothing", &names)),
+        None => Ok(()),
+    }
 }
 
 /// Returns the metrics, as a dict of keyword arguments each.

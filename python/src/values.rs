@@ -94,7 +94,9 @@ impl Given<'_, '_> {
 
     /// Returns a path that is given as a text or a path-like object.
     pub(crate) fn path(&self) -> PyResult<PathBuf> {
-        self.value.extract().map_err(|_| self.refused("the path of a file"))
+        let os = self.value.py().import("os")?;
+        let path = os.call_method1("fsdecode", (self.value,)).and_then(|path| path.extract());
+        path.map_err(|_| self.refused("the path of a file"))
     }
 
     /// Returns a text.

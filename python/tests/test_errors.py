@@ -53,7 +53,7 @@ def test_exceptions_are_of_the_kinds_that_python_has_for_them() -> None:
         (POINTS, TRIANGLES[:0], "triangles: the mesh has no triangles"),
         (POINTS, [], "triangles: "),
         (POINTS[:0], TRIANGLES[:0], "triangles: the mesh has no triangles"),
-        (POINTS[:0], TRIANGLES, r"triangles\[0, 0\] is 0, but points has 0 rows"),
+        (POINTS[:0], TRIANGLES, r"triangles\[0, 0\] is 0, but points has no rows"),
         (POINTS[:9], TRIANGLES, r"triangles\[\d+, \d\] is 9, but points has 9 rows"),
         (POINTS, with_value(TRIANGLES, (4, 1), -1), r"triangles\[4, 1\] is -1"),
         (POINTS, with_value(TRIANGLES, (4, 1), 2**40), r"triangles\[4, 1\] is 1099511627776"),
@@ -281,3 +281,40 @@ def test_random_arguments_of_functions_raise_exceptions_of_python() -> None:
         except MeshError as error:
             assert str(error)
     assert accepted > 100
+
+
+def test_empty_lists_list_nothing() -> None:
+    smoothed = gpu_smooth.smooth(POINTS, TRIANGLES)
+    nothing: list[Any] = [[], (), np.array([]), np.empty((0,), int)]
+    for empty in nothing:
+        assert np.array_equal(gpu_smooth.smooth(POINTS, TRIANGLES, fixed=empty, lines=empty), smoothed)
+        slid = gpu_smooth.smooth(POINTS, TRIANGLES, slide=True, periodic=empty)
+        assert np.array_equal(slid, gpu_smooth.smooth(POINTS, TRIANGLES, slide=True))
+        assert np.array_equal(gpu_smooth.untangle(POINTS, TRIANGLES, fixed=empty), POINTS)
+    assert np.array_equal(gpu_smooth.smooth(POINTS, TRIANGLES, lines=np.empty((0, 2))), smoothed)
+    with pytest.raises(MeshError, match="fixed: booleans"):
+        gpu_smooth.smooth(POINTS, TRIANGLES, fixed=np.empty(0, bool))
+
+
+def test_messages_name_the_argument_of_functions() -> None:
+    wrong: Any = np.full_like(POINTS, np.nan)
+    calls: list[tuple[str, Any]] = [
+        (r"moved\[0\]: vertex 0", lambda: gpu_smooth.interpolate(POINTS, TRIANGLES, wrong, POINTS)),
+        (r"points\[0\]: vertex 0", lambda: gpu_smooth.interpolate(wrong, TRIANGLES, POINTS, POINTS)),
+        (r"before\[0\]: vertex 0", lambda: gpu_smooth.compare(wrong, POINTS, TRIANGLES)),
+        (r"after\[0\]: vertex 0", lambda: gpu_smooth.compare(POINTS, wrong, TRIANGLES)),
+        ("target: vertex 0", lambda: gpu_smooth.smooth(POINTS, TRIANGLES, target=0 * POINTS[:, 0])),
+        ("points has no rows", lambda: gpu_smooth.smooth(np.empty((0, 2)), TRIANGLES)),
+        ("not an object of type NoneType. Pass an array", lambda: gpu_smooth.smooth(None, TRIANGLES)),  # type: ignore[call-overload]
+        ("not an object of type set. Pass an array", lambda: gpu_smooth.smooth(POINTS, TRIANGLES, fixed={1, 2})),  # type: ignore[call-overload]
+        ("measure: the value is 3", lambda: gpu_smooth.quality(POINTS, TRIANGLES, 3)),  # type: ignore[arg-type]
+        ("keep_going: ", lambda: gpu_smooth.untangle(POINTS, TRIANGLES, keep_going="x")),  # type: ignore[arg-type]
+        ("metric: ", lambda: gpu_smooth.run(POINTS, TRIANGLES).quality_after.f(3)),  # type: ignore[arg-type]
+        ("weld: ", lambda: gpu_smooth.MeshFile("a.vtk", weld="x")),  # type: ignore[arg-type]
+        ("regions: ", lambda: gpu_smooth.MeshFile("a.vtk", regions=3)),  # type: ignore[arg-type]
+    ]
+    for text, call in calls:
+        with pytest.raises(GpuSmoothError, match=text):
+            call()
+    with pytest.raises(TypeError, match="Did you mean target?"):
+        gpu_smooth.run(POINTS, TRIANGLES, targt="keep-size")  # type: ignore[call-arg]

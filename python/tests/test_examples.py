@@ -106,6 +106,21 @@ def test_a_result_is_shown(mesh: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     pyplot.close("all")
 
 
+@pytest.mark.heavy
+def test_a_picture_shows_the_mesh_alone_and_takes_a_norm(mesh: Mesh) -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import colors, pyplot
+
+    points, triangles = mesh
+    # A vertex without a triangle, as the center of an arc in gmsh may be.
+    result = gpu_smooth.run(np.concatenate([[[1e5, 1e5]], points]), triangles + 1)
+    figure = result.plot("after", norm=colors.LogNorm(1, 2))
+    assert figure.axes[0].get_xlim()[1] < 13 and figure.axes[0].collections[0].norm.vmax == 2
+    pyplot.close("all")
+
+
 def test_pictures_without_matplotlib_name_the_remedy(mesh: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match="pip install matplotlib"):

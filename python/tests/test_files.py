@@ -142,3 +142,30 @@ def test_public_functions_say_what_they_return_and_raise() -> None:
         if callable(thing) and not isinstance(thing, type) and thing.__code__.co_argcount:
             assert "Parameters\n----" in text and "Returns\n----" in text, name
             assert "Raises\n----" in text, name
+
+
+def test_names_may_begin_with_a_hyphen_and_be_bytes(
+    plate: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    gpu_smooth.convert(plate, b"-in.vtk", lossy=True)
+    gpu_smooth.smooth_file("-in.vtk", b"-out.vtk", report=b"report.json")
+    gpu_smooth.MeshFile(b"-in.vtk").write(b"same.vtk", gpu_smooth.MeshFile("-out.vtk").points)
+    assert Path("same.vtk").read_bytes() == Path("-out.vtk").read_bytes() and Path("report.json").exists()
+
+
+def test_options_of_smooth_file_are_those_of_python(plate: Path, tmp_path: Path) -> None:
+    destination = tmp_path / "out.node"
+    of_true = gpu_smooth.smooth_file(plate, destination, slide=np.True_, quiet=True)
+    slid = gpu_smooth.MeshFile(destination).points
+    gpu_smooth.smooth_file(plate, destination, slide=np.False_)
+    assert of_true["sweeps"] and not np.array_equal(slid, gpu_smooth.MeshFile(destination).points)
+    for name in ("dry_run", "help", "version"):
+        with pytest.raises(gpu_smooth.OptionError, match="written no report"):
+            gpu_smooth.smooth_file(plate, destination, **{name: True})
+    with pytest.raises(gpu_smooth.OptionError) as refused:
+        gpu_smooth.smooth_file(plate, destination, schem="imr")
+    assert "'--scheme'" in str(refused.value) and "Usage" not in str(refused.value)
+    with pytest.raises(FileError) as missing:
+        gpu_smooth.smooth_file(tmp_path / "none.node", destination)
+    assert str(missing.value).startswith(str(tmp_path))

@@ -166,3 +166,27 @@ def test_the_three_lines_of_the_documents_smooth_and_show_a_mesh(gmsh: Any, docu
     exec(code, names)
     assert nodes(gmsh) != before and names["result"].stop == "converged"
     assert len(names["result"].plot().axes) == 3
+
+
+def test_groups_of_one_name_are_fixed_together(gmsh: Any) -> None:
+    first, second = (gmsh.model.occ.addRectangle(x, 0, 0, 4, 4) for x in (0, 5))
+    gmsh.model.occ.synchronize()
+    curve = gmsh.model.getBoundary([(2, first)])[0][1]
+    # Uneven nodes, which would slide.
+    gmsh.model.mesh.setTransfiniteCurve(curve, 9, "Progression", 1.5)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.8)
+    gmsh.model.mesh.generate(2)
+    gmsh.model.addPhysicalGroup(1, [curve], name="held")
+    gmsh.model.addPhysicalGroup(2, [second], name="held")
+    before = nodes(gmsh)
+    held = {*gmsh.model.mesh.getNodes(1, curve)[0].tolist(), *gmsh.model.mesh.getNodes(2, second)[0].tolist()}
+    gpu_smooth.smooth_gmsh_model(fixed="held", slide=True)
+    assert len(held) > 8 and all(nodes(gmsh)[tag] == before[tag] for tag in held) and nodes(gmsh) != before
+
+
+def test_an_empty_list_of_fixed_nodes_keeps_the_constraints_of_the_model(gmsh: Any) -> None:
+    square(gmsh)
+    before = nodes(gmsh)
+    gpu_smooth.smooth_gmsh_model(fixed=[], lines=[])
+    on_curves = gmsh.model.mesh.getNodes(1, includeBoundary=True)[0].tolist()
+    assert on_curves and all(nodes(gmsh)[tag] == before[tag] for tag in on_curves)

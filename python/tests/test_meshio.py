@@ -100,3 +100,49 @@ def test_a_file_of_meshio_is_smoothed_as_by_the_command_line(tmp_path: Any) -> N
 def test_a_mesh_without_triangles_is_refused() -> None:
     with pytest.raises(gpu_smooth.MeshError, match="no triangles"):
         gpu_smooth.smooth(meshio.Mesh(np.eye(4, 2), [("quad", np.array([[0, 1, 2, 3]]))]))
+
+
+def test_constraints_of_the_mesh_hold_beside_empty_and_other_options(mesh: Mesh) -> None:
+    points, triangles = mesh
+    column = np.flatnonzero(np.arange(len(points)) % 13 == 6)
+    line = np.stack([column[:-1], column[1:]], axis=1)
+    given = meshio.Mesh(points, [("triangle", triangles), ("line", line)])
+    expected = gpu_smooth.smooth(given).points
+    options: list[Any] = [
+        {"fixed": []}, {"lines": []}, {"fixed": np.array([])}, {"lines": np.array([[0, 1]], np.uint64)}, {"fixed": (0,)},
+    ]
+    for one in options:
+        assert np.array_equal(gpu_smooth.smooth(given, **one).points, expected), one
+    ragged: Any = [1, [2]]
+    # The index is that of the argument, not of the lines of the mesh before.
+    with pytest.raises(gpu_smooth.MeshError, match=r"lines\[0, 1\] is 999"):
+        gpu_smooth.smooth(given, lines=[[1, 999]])
+    with pytest.raises(gpu_smooth.MeshError, match="fixed: .* no array can be made"):
+        gpu_smooth.smooth(given, fixed=ragged)
+    of_type = meshio.Mesh(points, given.cells, point_sets={"wall": np.array([30])})
+    named = gpu_smooth.smooth(of_type, fixed=np.array(["wall"])).points
+    assert np.array_equal(named[30], points[30]) and not np.array_equal(expected[30], points[30])
+
+
+def test_wrong_cells_are_refused(mesh: Mesh) -> None:
+    points, triangles = mesh
+    for vertex in (-5, 999):
+        given = meshio.Mesh(points, [("triangle", triangles), ("vertex", np.array([[vertex]]))])
+        with pytest.raises(gpu_smooth.MeshError, match=f"a cell has the vertex {vertex}, but the mesh has 169 points"):
+            gpu_smooth.smooth(given)
+    with pytest.raises(gpu_smooth.MeshError, match="type triangle are numbers of type float64"):
+        gpu_smooth.smooth(meshio.Mesh(points, [("triangle", triangles + 0.5)]))
+
+
+def test_regions_may_be_flags_names_and_columns(mesh: Mesh) -> None:
+    points, triangles = mesh
+    is_right = triangles[:, 0] // 13 >= 8
+    expected = gpu_smooth.smooth(points, triangles, regions=is_right.astype(int))
+    assert not np.array_equal(expected, gpu_smooth.smooth(points, triangles))
+    numbers: list[Any] = [
+        is_right, np.where(is_right, "steel", "rock"), np.where(is_right, 1.0, 1e300), is_right[:, None].astype(int),
+        np.where(is_right, 2**63 + 1, 2**63).astype(np.uint64),
+    ]
+    for one in numbers:
+        given = meshio.Mesh(points, [("triangle", triangles)], cell_data={"material": [one]})
+        assert np.array_equal(gpu_smooth.smooth(given).points, expected), one[:2]

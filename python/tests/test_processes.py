@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import multiprocessing
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -217,3 +219,53 @@ def test_arrays_that_other_threads_change_do_no_harm() -> None:
     is_done.set()
     thread.join()
     assert ended == {True}
+
+
+def test_results_go_to_other_processes() -> None:
+    points, triangles = lattice(12)
+    result = gpu_smooth.run(points, triangles, scheme="rms", history="all")
+    result.points[0] += 1.0
+    for other in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result), copy.copy(result)):
+        assert repr(other) == repr(result) and other._repr_html_() == result._repr_html_()
+        assert np.array_equal(other.points, result.points) and np.array_equal(other.history, result.history)
+        assert np.array_equal(other.points_before, points) and np.array_equal(other.displacement, result.displacement)
+        assert set(other.histories) == set(result.histories) and other.axes == ("x", "y")
+        for metric in gpu_smooth.metrics():
+            assert other.quality_after.f(metric.name) == result.quality_after.f(metric.name)
+        assert other.quality_after.worst_triangle == result.quality_after.worst_triangle
+    compared = gpu_smooth.compare(points, result.points, triangles)
+    assert repr(pickle.loads(pickle.dumps(compared))) == repr(compared)
+    smoother = gpu_smooth.Smoother(points, triangles)
+    assert copy.deepcopy(smoother).run().stop == "converged" and repr(smoother).startswith("Smoother(169 vertices")
+    with pytest.raises(TypeError, match="a Smoother cannot be pickled: make one in each process"):
+        pickle.dumps(smoother)
+
+
+TRIAL = """
+import subprocess, sys
+sys.path.insert(0, sys.argv[1])
+from conftest import lattice
+import gpu_smooth
+from gpu_smooth import _drivers
+
+calls = []
+def interrupted(*words, **options):
+    calls.append(words)
+    raise KeyboardInterrupt
+points, triangles = lattice(200)
+usual, subprocess.run = subprocess.run, interrupted
+for _ in range(2):
+    try:
+        gpu_smooth.run(points, triangles, scheme="edge", desired=1e6)
+    except KeyboardInterrupt:
+        print("interrupted")
+subprocess.run = lambda *words, **options: calls.append(words) or usual(*words, **options)
+print(gpu_smooth.run(points, triangles, scheme="edge", desired=1e6).stop, len(calls))
+"""
+
+
+def test_an_interrupt_during_the_trial_of_drivers_ends_the_run_and_is_not_kept() -> None:
+    environment = {**os.environ, "RAYON_NUM_THREADS": "1"}
+    command = [sys.executable, "-c", TRIAL, os.path.dirname(__file__)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, env=environment)
+    assert done.stdout.split("\n")[:-1] == ["interrupted", "interrupted", "reached 3"], done.stderr
