@@ -398,7 +398,7 @@ fn damaged_files_of_hdf5_never_panic() {
         let whole: Vec<Vec<u8>> = files.iter().map(|name| fs::read(made(name)).unwrap()).collect();
         let ending = |name: &str| name.split('.').next_back().map(str::to_owned);
         let alike = SAMPLES.iter().filter(|other| ending(other.name) == ending(sample.name));
-        let rounds = damage::rounds(2000) / alike.count();
+        let rounds = damage::rounds(1000) / alike.count();
         let mut read = 0;
         for round in 0..rounds {
             let part = round % files.len();
