@@ -304,7 +304,7 @@ pub enum CheckpointError {
     /// The bytes are no checkpoint.
     #[error("the file is not a checkpoint of gpu-smooth")]
     Foreign,
-    /// The checkpoint has another version of the format than the checkpoints of this library.
+    /// The version of the checkpoint's format differs from the version that this library reads.
     #[error("gpu-smooth {} does not read checkpoints that {writer} wrote", env!("CARGO_PKG_VERSION"))]
     Version {
         /// Name and version of the library that wrote the checkpoint, such as `gpu-smooth 0.1.0`.

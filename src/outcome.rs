@@ -43,7 +43,8 @@ pub struct Outcome {
     /// up to rounding, the bound is the variation of f over the last sweeps. On a device, the bound is the error of the f
     /// that the run was judged by, in single precision.
     ///
-    /// `None` if the run has not converged, and either did too few sweeps or gained no less from sweep to sweep.
+    /// `None` if the run has not converged and its sweeps allow no estimate: the run did too few sweeps, or the gains per
+    /// sweep do not decay.
     pub remaining: Option<f64>,
     /// Number of vertices that a guard kept from moving further at the end of a run. Computed only if the run has
     /// converged or has done [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. If the number is above 0, a

@@ -70,12 +70,12 @@ pub(crate) fn quality<'py>(
 #[pyclass(frozen, module = "gpu_smooth")]
 pub(crate) struct Quality(Statistics);
 
-/// The numbers of a [`Quality`], which may go to another process.
+/// The numbers of a [`Quality`], in the form that is pickled.
 #[derive(Clone, IntoPyObject, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Statistics {
-    /// f by each of [`Metric::ALL`].
-    f: Vec<f64>,
+    /// f by each metric, with the name of the metric, as another version may have other metrics.
+    f: Vec<(String, f64)>,
     min_angle: f64,
     max_angle: f64,
     worst_imr: f64,
@@ -85,15 +85,15 @@ pub(crate) struct Statistics {
 
 impl Quality {
     pub(crate) fn of(quality: MeshQuality) -> Self {
-        let f = Metric::ALL.iter().map(|&metric| quality.f(metric)).collect();
+        let f = Metric::ALL.iter().map(|&own| (own.name().to_owned(), quality.f(own))).collect();
         let MeshQuality { min_angle, max_angle, worst_imr, worst_triangle, inverted, .. } = quality;
         Self(Statistics { f, min_angle, max_angle, worst_imr, worst_triangle, inverted })
     }
 
-    /// Returns f by a metric. Infinite for a metric that the version of a pickled quality does not have.
+    /// Returns f by a metric. NaN if the quality was pickled by a version without the metric.
     fn by(&self, metric: Metric) -> f64 {
-        let mut values = Metric::ALL.iter().zip(&self.0.f);
-        values.find(|(of, _)| **of == metric).map_or(f64::INFINITY, |(_, &f)| f)
+        let of_metric = self.0.f.iter().find(|(name, _)| name == metric.name());
+        of_metric.map_or(f64::NAN, |&(_, f)| f)
     }
 }
 

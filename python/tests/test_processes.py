@@ -233,6 +233,12 @@ def test_results_go_to_other_processes() -> None:
         for metric in gpu_smooth.metrics():
             assert other.quality_after.f(metric.name) == result.quality_after.f(metric.name)
         assert other.quality_after.worst_triangle == result.quality_after.worst_triangle
+    # Values have the names of their metrics, as another version may have other metrics in another order.
+    reduced: Any = result.quality_after.__reduce__()
+    restore, (state,) = reduced
+    assert dict(state["f"])["rms"] == result.quality_after.f("rms")
+    one_less = restore({**state, "f": [pair for pair in reversed(state["f"]) if pair[0] != "imr"]})
+    assert one_less.f("rms") == result.quality_after.f("rms") and np.isnan(one_less.f("imr"))
     compared = gpu_smooth.compare(points, result.points, triangles)
     assert repr(pickle.loads(pickle.dumps(compared))) == repr(compared)
     smoother = gpu_smooth.Smoother(points, triangles)

@@ -144,3 +144,24 @@ impl History {
         self.remaining
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Options;
+
+    /// A former defect: a run whose f was level, and did not decay, reported no remaining gain.
+    #[test]
+    fn a_level_f_is_convergence_with_the_variation_as_remaining_gain() {
+        let mut history = History::new(&Plan::new(&Options::default()));
+        for k in 0..40 {
+            let mut objectives = Objectives::empty();
+            let jump = if k % 5 == 3 { 3e-6 } else { 0.0 };
+            objectives.set(history.base, if k == 4 { 2.0 } else { 2.0 + 1e-7 + jump });
+            history.record(objectives);
+        }
+        assert_eq!(history.stop(), Some(Stop::Converged));
+        let remaining = history.remaining().unwrap();
+        assert!((remaining - 1.5e-6).abs() < 1e-9, "{remaining:e}");
+    }
+}

@@ -97,9 +97,10 @@ impl<T: Real> Corner<T> {
 }
 
 impl Corner<f64> {
-    /// Returns three blocks of the convex part of the Hessian: the derivatives by the position of the corner and by that
-    /// of the corner itself, of the first, and of the second other vertex. χ counts as linear in the area, and the area as
-    /// linear in the positions. The energy is then a squared length over a linear function, and thus convex.
+    /// Returns three blocks of the convex part of the Hessian. The rows of each block belong to the position of the
+    /// corner. The columns belong to the corner, to the first other vertex and to the second other vertex, in this order.
+    /// χ counts as linear in the area, and the area as linear in the positions. The energy is then a squared length over
+    /// a linear function, and thus convex.
     pub(crate) fn blocks(&self, epsilon: f64) -> [DMat2; 3] {
         let [a, b] = self.edges.map(DVec2::from);
         let (chi, root) = regularized(epsilon, self.area());

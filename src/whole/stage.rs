@@ -118,3 +118,26 @@ impl PeriodRule {
         Judgment { stop, remaining: self.rule.remaining(&self.f, 1).or(level) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A former defect: a run with stages whose f was constant converged without a remaining gain.
+    #[test]
+    fn a_constant_f_is_convergence_with_the_tolerance_as_remaining_gain() {
+        let tolerance = 1e-6;
+        let mut rule = PeriodRule::new(StopRule { target: None, tolerance, max_sweeps: 1000 });
+        let period = || Period {
+            f: [1.5, 1.5],
+            swept: None,
+            remaining: None,
+            is_settled: true,
+            all_held: false,
+            is_last: false,
+        };
+        let judged: Vec<Judgment> = (0..4).map(|_| rule.judge(&period())).collect();
+        assert!(judged[..3].iter().all(|judged| judged.stop.is_none()));
+        assert_eq!((judged[3].stop, judged[3].remaining), (Some(Stop::Converged), Some(tolerance)));
+    }
+}

@@ -78,7 +78,8 @@ fn squares_with_bumps_that_reach_past_each_other_are_untangled() {
     }
 }
 
-/// Steps of all vertices must come near the least energy of each regularization. L-BFGS leaves this mesh tangled.
+/// The mesh becomes feasible only if the energy comes near its minimum at each regularization. A former version by L-BFGS
+/// left the mesh tangled.
 #[test]
 fn four_holes_that_changed_places_are_untangled() {
     check("four holes", &boundaries::permuted(&boundaries::holes(4, 1500), 4, 3));

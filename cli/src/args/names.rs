@@ -41,7 +41,7 @@ pub(crate) fn schemes() -> Offering<Scheme> {
     Offering { parse: parse::scheme, names: || metrics(|_| true) }
 }
 
-/// Returns the completions of an incomplete scheme: each metric as the next one of the scheme.
+/// Returns the completions of an incomplete scheme: the scheme with each metric whose name begins like the last word.
 pub(crate) fn completed_schemes(scheme: &OsStr) -> Vec<CompletionCandidate> {
     let scheme = scheme.to_string_lossy();
     let start = scheme.rfind('+').map_or(0, |sign| sign + 1);

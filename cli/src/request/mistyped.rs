@@ -25,7 +25,7 @@ pub(crate) fn check(input: &Path) -> Result<(), CliError> {
 }
 
 /// Returns the message for a refused command line whose first word is the mistyped name of a command; `None` for any
-/// other command line. The first of `words` is the name of the program.
+/// other command line. `words` begins with the name of the program.
 pub(crate) fn message(words: &[OsString]) -> Option<String> {
     let is_option = |word: &OsString| word.as_encoded_bytes().starts_with(b"-");
     let input = Path::new(words.iter().skip(1).find(|word| !is_option(word))?);
@@ -40,7 +40,8 @@ fn remedy(name: &str) -> String {
     format!("There is a command `{name}`")
 }
 
-/// Returns the command whose name resembles `input` and differs from it; `None` if there is none, or if a mesh has the name.
+/// Returns the command whose name resembles `input` and differs from `input`. `None` if no command has such a name, or if
+/// `input` is the name of a file.
 fn meant(input: &Path) -> Option<String> {
     let word = input.to_str().filter(|word| word.chars().all(|c| c.is_ascii_alphabetic()))?;
     // A Triangle mesh may be given without an extension.

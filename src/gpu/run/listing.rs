@@ -74,9 +74,11 @@ pub(super) fn coarse_op(rows: u32) -> CoarseOp {
     }
 }
 
-/// The number of workgroups of a dispatch: enough for the rows of its operation, or a given number.
+/// The number of workgroups of a dispatch.
 pub(super) enum Groups {
+    /// As many workgroups as the rows of the operation need.
     ForRows,
+    /// A fixed number of workgroups.
     Just(u32),
 }
 
