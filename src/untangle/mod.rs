@@ -1,11 +1,13 @@
 //! Untangling: moves free vertices until no triangle is inverted or flat.
 //!
-//! Sweeps of Newton steps lower an `energy` that is finite for inverted triangles too. At first, only vertices near bad
+//! Free vertices far outside of the mesh first return to means of their neighbors (`distant`). Sweeps of Newton steps
+//! then lower an `energy` that is finite for inverted triangles too. At first, only vertices near bad
 //! triangles move, then vertices within more edges. If triangles stay bad, the free vertices are moved to the means of
 //! their neighbors, and a step from coarser levels follows each sweep. Then the mesh is cut (`cuts`) into pieces, in
 //! which the means of neighbors are a good start. At last, Newton steps move all vertices of the given mesh at once.
 
 mod cuts;
+mod distant;
 pub(crate) mod energy;
 mod judge;
 mod newton;
@@ -14,6 +16,7 @@ mod pieces;
 mod stages;
 mod state;
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 use glam::DVec2;
@@ -26,7 +29,8 @@ use crate::precision::Precision;
 use crate::run::multilevel::Hierarchy;
 use crate::run::regularization::epsilon;
 use crate::topology::Topology;
-use crate::topology::predicates::not_positive;
+use crate::topology::predicates::{is_positive, not_positive};
+use distant::{brought_back, distant_vertices};
 use judge::{Judge, Judgment};
 use newton::{Newton, next_epsilon};
 use stages::{DESCENTS, Descent, NEWTON, STAGES, Stage, Start};
@@ -81,7 +85,8 @@ pub struct Untangled {
 
 /// Moves free vertices, on the CPU, until no triangle is inverted or flat. Connectivity, boundary and fixed vertices
 /// stay. Triangles too flat for double precision are opened as well. If moves of the vertices near bad triangles
-/// suffice, all other vertices keep their coordinates.
+/// suffice, all other vertices keep their coordinates. Free vertices more than 1,000 times the size of the mesh outside of
+/// the mesh begin at means of their neighbors.
 ///
 /// Windings are first made consistent across edges. The boundary of each connected part then encloses a positive area.
 /// Points are rounded to `stored`, the precision of the file or buffer to be written, before exact predicates judge the
@@ -101,9 +106,19 @@ pub fn untangle(
     observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
 ) -> Result<Untangled, MeshError> {
     let topology = Topology::by_area(mesh)?;
-    let problem = Problem::new(mesh, &topology, &Coloring::new(&topology));
-    let judge = Judge { mesh, topology: &topology, problem: &problem, stored };
-    let (before, exactly_bad) = judge.bad_triangles(&mesh.points);
+    let distant = distant_vertices(mesh, &topology);
+    let start = match distant.is_empty() {
+        true => Cow::Borrowed(mesh),
+        false => Cow::Owned(brought_back(mesh, &topology, &distant)),
+    };
+    let problem = Problem::new(&start, &topology, &Coloring::new(&topology));
+    let judge = Judge { mesh: &start, topology: &topology, problem: &problem, stored };
+    let (mut before, exactly_bad) = judge.bad_triangles(&mesh.points);
+    // Double precision cannot judge triangles of distant vertices. Exact predicates suffice, as the vertices move anyway.
+    before.retain(|bad| {
+        let is_distant = |v: &u32| distant.binary_search(v).is_ok();
+        !bad.vertices.iter().any(is_distant) || !is_positive(&mesh.points, &bad.vertices)
+    });
     if !before.is_empty()
         && let Some(triangle) = topology.closed_part()
     {
@@ -123,7 +138,10 @@ pub fn untangle(
     if result.left.len() == result.hopeless.len() {
         return Ok(result);
     }
-    Work::new(judge, exactly_bad == 0).run(&mut result, observe);
+    let mut work = Work::new(judge, &distant, exactly_bad == 0);
+    if distant.is_empty() || !work.is_done(&mut result) {
+        work.run(&mut result, observe);
+    }
     let differs = |(now, was): &(&[f64; 2], &[f64; 2])| now != was;
     result.moved = result.points.iter().zip(&mesh.points).filter(differs).count();
     Ok(result)
@@ -146,9 +164,16 @@ struct Work<'m> {
 }
 
 impl<'m> Work<'m> {
-    fn new(judge: Judge<'m>, was_valid: bool) -> Self {
+    fn new(judge: Judge<'m>, distant: &[u32], was_valid: bool) -> Self {
         let problem = judge.problem;
-        let targets = target_areas(problem, problem.positions());
+        let mut positions = problem.positions().to_vec();
+        // The areas of triangles around vertices that were brought back tell no size.
+        for (position, v) in positions.iter_mut().zip(problem.vertices()) {
+            if distant.binary_search(v).is_ok() {
+                *position = DVec2::NAN;
+            }
+        }
+        let targets = target_areas(problem, &positions);
         let state = State::new(problem, targets);
         let (levels, tried, ends) = (None, Vec::new(), Vec::new());
         Self { judge, was_valid, problem, state, levels, tried, ends }

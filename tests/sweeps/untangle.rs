@@ -69,6 +69,66 @@ fn free_vertices_far_away_are_brought_back() {
     }
 }
 
+/// Before distant vertices were brought back, untangling left all of these meshes tangled, or took hundreds of sweeps.
+#[test]
+fn any_share_of_free_vertices_at_a_fill_value_is_brought_back() {
+    let square = support::perturb_random(&support::lattice(24, 24), 0.3, 5);
+    let plate = plate(700);
+    for (name, mesh) in [("square", &square), ("plate", &plate)] {
+        let held = support::check::held(mesh);
+        for fill in [1e24, -1e30, 9.97e36, -9.99e99] {
+            for share in [0.05, 0.2, 0.5, 0.9, 1.0] {
+                let mut random = SplitMix64::new(7);
+                let mut tangled = mesh.clone();
+                for v in (0..held.len()).filter(|&v| !held[v]) {
+                    if random.unit() < share {
+                        tangled.points[v] = [fill; 2];
+                    }
+                }
+                let label = format!("{name}, share {share} at {fill:e}");
+                let result = check(&label, &tangled);
+                assert!(result.sweeps < 60, "{label}: {} sweeps", result.sweeps);
+            }
+        }
+    }
+}
+
+#[test]
+fn ten_vertices_at_a_fill_value_move_alone() {
+    let plate = plate(700);
+    let free: Vec<usize> =
+        (0..plate.points.len()).filter(|&v| !support::check::held(&plate)[v]).collect();
+    for seed in 0..15 {
+        let mut random = SplitMix64::new(seed);
+        let mut mesh = plate.clone();
+        for _ in 0..10 {
+            mesh.points[free[(random.unit() * free.len() as f64) as usize]] = [9.97e36; 2];
+        }
+        let result = check(&format!("seed {seed}"), &mesh);
+        assert!(result.sweeps < 20, "seed {seed}: {} sweeps", result.sweeps);
+        assert!(result.moved < 100, "seed {seed}: {} vertices moved", result.moved);
+    }
+}
+
+/// Double precision cannot judge large triangles at a fill value. Former versions counted such triangles as flat.
+#[test]
+fn triangles_at_a_fill_value_count_as_bad_by_exact_predicates() {
+    let square = support::lattice(20, 20);
+    let mut crossing =
+        boundaries::dragged(&square, |[x, y]| match y == 0.0 && (8.0..12.0).contains(&x) {
+            true => [x, 30.0],
+            false => [x, y],
+        });
+    let held = support::check::held(&crossing);
+    let free: Vec<usize> = (0..held.len()).filter(|&v| !held[v]).collect();
+    free.iter().step_by(40).for_each(|&v| crossing.points[v] = [9.97e36; 2]);
+    let topology = Topology::by_area(&crossing).unwrap();
+    let exact = gpu_smooth::topology::infeasible(&crossing.points, topology.triangles()).unwrap();
+    let result = mend(&crossing);
+    assert_eq!(result.bad_before, exact.len());
+    assert!((1..=exact.len()).contains(&result.left.len()), "{} are left", result.left.len());
+}
+
 /// Sweeps alone leave some of these meshes tangled from every start. Steps of all vertices at once are needed.
 #[test]
 fn squares_with_bumps_that_reach_past_each_other_are_untangled() {
