@@ -6,8 +6,11 @@ fn mapped(map: vec3<f32>, e: vec2<f32>) -> vec2<f32> {
 
 // Returns the shape of a vertex's map: the map scaled to keep areas. The coarser levels use coordinates
 // transformed by these shapes, in which neighbors across a layer of stretched triangles are as near as neighbors along
-// the layer.
+// the layer. If the levels are in the coordinates of the plane, returns the identity.
 fn shape_of(v: u32) -> vec3<f32> {
+    if params.levels_in_plane != 0u {
+        return vec3(1.0, 0.0, 1.0);
+    }
     let map = map_at(v);
     return map * inverseSqrt(map.x * map.z - map.y * map.y);
 }

@@ -127,7 +127,7 @@ async fn correction(
     gradient: &[Vec2],
 ) -> Vec<Vec2> {
     let mut correction = match hierarchy {
-        Some(hierarchy) if problem.is_stretched() => {
+        Some(hierarchy) if problem.is_stretched() && !problem.are_levels_in_plane() => {
             let transformed = as_transformed(problem, gradient).await;
             let transformed = vcycle::correction(hierarchy, problem, &transformed).await;
             as_transformed(problem, &transformed).await

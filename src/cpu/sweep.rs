@@ -224,7 +224,9 @@ fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
                     VertexQuantity::Gradient => sum.gradient,
                     VertexQuantity::StiffnessRoot => {
                         let sum = match rings.inverse_map() {
-                            Some(inverse) if MAPPED => inverse.shape().pull_back(sum),
+                            Some(inverse) if MAPPED && !problem.are_levels_in_plane() => {
+                                inverse.shape().pull_back(sum)
+                            }
                             _ => sum,
                         };
                         [stiffness_root(&sum, degree); 2]

@@ -44,6 +44,8 @@ pub struct Problem {
     /// Whether some map is anisotropic. Coarse levels then work in coordinates transformed by the maps, in which
     /// neighbors across a layer are as near as neighbors along the layer.
     is_stretched: bool,
+    /// Whether coarse levels work in the coordinates of the plane even if a map is anisotropic.
+    levels_in_plane: bool,
     mean_area: f64,
 }
 
@@ -132,7 +134,14 @@ impl Problem {
         let layout =
             Layout { positions, colors, ring_start, ring, triangles, vertices, center, scale };
         let (maps, map_kind) = (Arc::default(), MapKind::None);
-        Self { layout: Arc::new(layout), maps, map_kind, is_stretched: false, mean_area }
+        Self {
+            layout: Arc::new(layout),
+            maps,
+            map_kind,
+            is_stretched: false,
+            levels_in_plane: false,
+            mean_area,
+        }
     }
 
     /// Sets the target maps of all vertices of the mesh, in any unit. A common factor scales the maps so that the mean
@@ -253,6 +262,18 @@ impl Problem {
     /// Returns whether some map of the vertices is anisotropic.
     pub(crate) fn is_stretched(&self) -> bool {
         self.is_stretched
+    }
+
+    /// Returns whether coarse levels work in the coordinates of the plane, whatever the maps are.
+    pub(crate) fn are_levels_in_plane(&self) -> bool {
+        self.levels_in_plane
+    }
+
+    /// Lets coarse levels work in the coordinates of the plane, also after the maps have changed. Where the maps of
+    /// neighbors differ much, a translation of these neighbors is no constant in the coordinates of the maps, and the
+    /// levels take large changes of triangles for translations.
+    pub(crate) fn set_levels_in_plane(&mut self) {
+        self.levels_in_plane = true;
     }
 
     /// Returns a triangle in the form of the metrics, transformed by its target map if the mesh has targets.

@@ -124,6 +124,11 @@ impl<E: Engine> Session<E> {
             _ => false,
         };
         let is_finite = !log.is_empty() && self.history.first_not_finite(0).is_none();
+        if let Strategy::Corrected(corrections) = &self.strategy
+            && let Some(problem) = corrections.in_plane()
+        {
+            self.engine.set_maps(problem)?;
+        }
         match fits && is_finite && self.engine.restore(&state).await? {
             true => Ok(()),
             false => Err(DriveError::Foreign),
@@ -198,9 +203,10 @@ impl<E: Engine> Session<E> {
 
     /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the run's problem.
     pub(crate) fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
-        if let Strategy::Corrected(corrections) = &mut self.strategy {
-            corrections.set_maps(problem);
-        }
+        let problem = match &mut self.strategy {
+            Strategy::Sweeps => problem,
+            Strategy::Corrected(corrections) => corrections.set_maps(problem),
+        };
         self.engine.set_maps(problem)
     }
 

@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use gpu_smooth::{
     Backend, Checkpoint, CheckpointPolicy, Goal, Method, Metric, Options, Outcome, Progress,
-    Quality, Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, options::WorstBy,
+    Quality, Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, Topology,
+    options::WorstBy,
 };
 
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
@@ -85,6 +86,20 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
                 assert_goes_on(&smoother, &alone, backend, 2);
             }
         }
+    }
+}
+
+/// Around a vertex of fifty, the levels change from the coordinates of the maps to those of the plane.
+#[test]
+fn a_run_whose_levels_change_coordinates_goes_on_to_the_same_bits() {
+    let mesh = support::perturb_random(&support::hub(50, 1e-2), 1.0, 4);
+    let topology = Topology::new(&mesh).unwrap();
+    let targets = Targets::keep_shape(&topology, &mesh.points, 0).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_targets(&targets).unwrap();
+    for backend in backends() {
+        let every = if matches!(backend, Backend::Cpu) { 2 } else { 6 };
+        assert_goes_on(&smoother, &Options::default(), backend, every);
     }
 }
 

@@ -124,7 +124,8 @@ shared_structs! {
         mean_area: vec2f,
         /// Index of the first map in the positions.
         maps: u32,
-        padding: u32,
+        /// 1 if the coarse levels work in the coordinates of the plane, 0 if in the coordinates of the maps.
+        levels_in_plane: u32,
     }
 
     /// The range of one dispatch: free vertices of one color, with the parameters of the sweep; or triangles; or free
@@ -423,7 +424,7 @@ impl Params {
             tolerance: 0.0,
             mean_area: [0.0; 2],
             maps,
-            padding: 0,
+            levels_in_plane: 0,
         }
     }
 }

@@ -284,6 +284,6 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         tolerance: plan.stop.tolerance as f32,
         mean_area: pair(problem.mean_area()),
         maps: problem.positions().len() as u32,
-        padding: 0,
+        levels_in_plane: problem.are_levels_in_plane().into(),
     }
 }

@@ -3,7 +3,7 @@
 use super::plan_steps::{
     OMEGA_ALTERNATING, OMEGA_BEFORE, OMEGA_BETWEEN, exponents, reopening_sweep,
 };
-use super::state::{Correcting, Corrections, SWEPT, Stage};
+use super::state::{ATTEMPTS, Correcting, Corrections, SWEPT, Stage};
 use crate::error::GpuError;
 use crate::metric::Metric;
 use crate::run::engine::{Engine, Proposal};
@@ -31,8 +31,9 @@ const MIN_FIRST_FOR_EDGE: f64 = 0.1;
 const MAX_REFUSED: u32 = 2;
 /// Smallest number of sweeps alone before corrections begin again.
 const SWEEPS_BETWEEN: usize = 5;
-/// Largest number of times that corrections begin. If corrections are refused the last time, sweeps alone end the run.
-const ATTEMPTS: u32 = 5;
+/// Number of corrections in one stage after which levels leave the coordinates of target maps. Most runs end before. Where
+/// neighbors have different maps, levels in the coordinates of the plane then take a fifth to a half of the sweeps.
+const MOST_IN_MAPS: u32 = 32;
 
 /// Ratio of the slopes along two successive corrections above which corrections are accelerated. On most meshes, the
 /// slope falls to a sixth or less each time, and acceleration gains nothing.
@@ -149,6 +150,9 @@ impl Corrections {
     ) -> Result<Objectives, GpuError> {
         let Correcting { since, length: last_length, proposed, refused } = state;
         let done = history.f().len();
+        if proposed == MOST_IN_MAPS && !self.has_local_maps() {
+            self.leave_maps(engine)?;
+        }
         let change = self.change_of_levels(history, done - 1, proposed);
         if let Some(change) = change
             && !self.change_levels(engine, change, done - 1).await?
@@ -206,10 +210,13 @@ impl Corrections {
         self.slope = Some(slope);
         self.stage = match refused {
             // With the last exponent, the remaining gain is near the errors of single precision.
-            MAX_REFUSED if self.attempts == ATTEMPTS || self.has_grown() => {
+            MAX_REFUSED if self.attempts >= ATTEMPTS || self.has_grown() => {
                 Stage::Without { since: done }
             }
-            MAX_REFUSED => Stage::Before { until: done + SWEEPS_BETWEEN },
+            MAX_REFUSED => {
+                self.leave_maps(engine)?;
+                Stage::Before { until: done + SWEEPS_BETWEEN }
+            }
             _ => Stage::Correcting(Correcting { since, length, proposed, refused }),
         };
         self.lowered.push(ideal + excess);

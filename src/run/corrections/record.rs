@@ -1,7 +1,7 @@
 //! The log of a run with corrections, and the stop rule for each stage of such a run.
 
 use super::slow_decay::{WINDOW, remaining_over_windows};
-use super::state::{Correcting, Corrections, ESTIMATES, SWEPT, Stage};
+use super::state::{ATTEMPTS, Correcting, Corrections, ESTIMATES, SWEPT, Stage};
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
 use crate::run::stop::{JITTER, MIN_SCALE, NOISE, Stop, StopRule};
@@ -12,6 +12,11 @@ const NO_ESTIMATE: usize = 1 << 30;
 /// Number of successive estimates that end a run by EDGE if all are below the tolerance. Fewer than [`ESTIMATES`]
 /// suffice, as the estimates are of a p-norm near f.
 const ESTIMATES_FOR_EDGE: usize = 2;
+/// Number of times that corrections begin, after which a refused correction no longer prevents the end of a run. Near
+/// vertices that a guard holds back, every correction may be refused.
+const MOST_ATTEMPTS: u32 = ATTEMPTS + 2;
+/// Multiple of the tolerance that a refused correction must promise to prevent the end of a run.
+const DOUBT: f64 = 5.0;
 /// Ratio of two successive gains of f, below which f decays steadily and a single estimate suffices.
 const STEADY: f64 = 0.3;
 /// Factor on the estimates. In some runs, each correction gained half as much as the previous one, and modes remained
@@ -58,6 +63,22 @@ impl Corrections {
         if of_decay == Some(Stop::Converged) && judged.remaining.is_none() {
             judged.remaining = Some(rule.level(&of_stage, judged.window));
         }
+        // In single precision, corrections at the end of a run are refused because of rounding.
+        let is_precise = noise <= NOISE;
+        if is_precise && self.tries_again(history, of_decay) {
+            // Only tries at the end count: a stage that has doubled the number of sweeps may be far from the end.
+            self.attempts += u32::from(of_decay.take().is_some());
+            self.begin_correcting(history.f().len() - 1, 1.0);
+            self.lowered.push(history.last());
+        } else if of_decay == Some(Stop::Converged)
+            && let Some(promised) = self.promised(history)
+            && promised > DOUBT * rule.tolerance
+            && is_precise
+        {
+            // The decay of f in sweeps alone is then no evidence for convergence.
+            judged.remaining = judged.remaining.map(|left| left.max(promised));
+            of_decay = of_decay.filter(|_| self.attempts >= MOST_ATTEMPTS);
+        }
         let is_settled = self.settled && self.is_sharpest() && !is_slow;
         if is_settled {
             // Another sweep may gain as much as the last.
@@ -83,6 +104,26 @@ impl Corrections {
             self.raise_exponent(history.f().len() - 1);
         }
         history.end(stop, remaining);
+    }
+
+    /// Returns whether corrections begin again after a stage of sweeps alone, because the stage would end the run for
+    /// `end`, or because it has doubled the number of sweeps. Corrections that were refused on a rough mesh may succeed on
+    /// the smoothed mesh, and lower modes that sweeps alone hardly change. A stage that ends as early as the stop rule
+    /// permits follows a refused correction, and may end the run.
+    fn tries_again(&self, history: &History, end: Option<Stop>) -> bool {
+        let Stage::Without { since } = self.stage else { return false };
+        let (last, window) = (history.f().len() - 1, StopRule::window(&self.metric().into()));
+        let is_due = end.is_some() || last >= 2 * since;
+        let is_long = last - since > 2 * window as usize;
+        is_due && is_long && self.metric().is_smooth() && !self.is_left_out()
+    }
+
+    /// Returns the gain in smooth modes that the last correction, which was refused, promised as a share of f: half of its
+    /// slope. `None` except in a stage of sweeps alone.
+    fn promised(&self, history: &History) -> Option<f64> {
+        let is_without = matches!(self.stage, Stage::Without { .. }) && !self.is_left_out();
+        let slope = self.slope.filter(|_| is_without && self.metric().is_smooth())?;
+        Some(0.5 * slope.abs() / history.last().max(MIN_SCALE))
     }
 
     /// Returns the values of the objective in the present stage, and the window in sweeps over which the stop rule

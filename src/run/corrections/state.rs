@@ -16,6 +16,10 @@ pub(super) const ESTIMATES: usize = 4;
 /// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 pub(super) const SWEPT: f64 = 0.1;
 
+/// Number of times that corrections begin after a few sweeps alone. Refused once more, corrections wait until sweeps alone
+/// would end the run.
+pub(super) const ATTEMPTS: u32 = 5;
+
 /// The state of a run with corrections from coarser levels.
 pub(crate) struct Corrections {
     pub(super) problem: Problem,
@@ -164,9 +168,21 @@ impl Corrections {
         }
     }
 
-    /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the run's problem.
-    pub(crate) fn set_maps(&mut self, problem: &Problem) {
+    /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the run's problem. The
+    /// coordinates of the levels do not change. Returns the problem for the engine.
+    pub(crate) fn set_maps(&mut self, problem: &Problem) -> &Problem {
+        let in_plane = self.problem.are_levels_in_plane();
         self.problem = problem.clone();
+        if in_plane {
+            self.problem.set_levels_in_plane();
+        }
+        &self.problem
+    }
+
+    /// Returns the problem with levels in the coordinates of the plane. `None` if levels are in the coordinates of the
+    /// maps.
+    pub(crate) fn in_plane(&self) -> Option<&Problem> {
+        self.problem.are_levels_in_plane().then_some(&self.problem)
     }
 
     /// Returns whether the mesh has local maps, which follow its triangles.

@@ -15,7 +15,9 @@ impl Corrections {
         };
         let counts = [self.attempts, self.taken, proposed, refused].map(u64::from);
         let levels = [self.built as u64, self.fitted as u64];
-        let flags = [self.settled, self.accelerated, self.is_left_out(), self.was_reopened];
+        let in_plane = self.problem.are_levels_in_plane();
+        let flags =
+            [self.settled, self.accelerated, self.is_left_out(), self.was_reopened, in_plane];
         let flags = flags.map(u64::from);
         let slope = [self.slope.is_some().into(), self.slope.unwrap_or(0.0).to_bits()];
         let mut words = vec![stage, at as u64, length.to_bits()];
@@ -41,6 +43,7 @@ impl Corrections {
                 accelerated,
                 left_out,
                 was_reopened,
+                in_plane,
                 has_slope,
                 slope,
                 ref estimates @ ..,
@@ -50,7 +53,7 @@ impl Corrections {
                 fitted,
             ],
             lowered,
-        )) = rest.split_first_chunk::<{ 10 + ESTIMATES }>()
+        )) = rest.split_first_chunk::<{ 11 + ESTIMATES }>()
         else {
             return false;
         };
@@ -103,6 +106,9 @@ impl Corrections {
         (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
         (self.was_left_out, self.has_levels) = (left_out != 0, has_levels);
         self.was_reopened = was_reopened != 0;
+        if in_plane != 0 {
+            self.problem.set_levels_in_plane();
+        }
         self.slope = (has_slope != 0).then(|| f64::from_bits(slope));
         self.estimates = estimates.map(f64::from_bits);
         true
