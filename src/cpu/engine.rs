@@ -10,7 +10,7 @@ use crate::cpu::objective::{Along, broken, mean_excess, mean_excess_along, mean_
 use crate::cpu::secants::{Levels, Secants, dot};
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
-use crate::layout::{MapKind, Problem};
+use crate::layout::Problem;
 use crate::metric::{Metric, Smoothing, TargetMap};
 use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
@@ -219,7 +219,7 @@ impl Engine for CpuEngine {
 
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
-        if problem.map_kind() == MapKind::Local {
+        if problem.has_local_maps() {
             // Secant pairs belong to levels in the coordinates of the earlier maps.
             self.secants = None;
         }

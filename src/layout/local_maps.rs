@@ -29,26 +29,34 @@ const MAX_RATIO: f64 = 1e6;
 
 impl Problem {
     /// Returns whether a run needs local coordinates: the triangles at one free vertex in twenty are strongly stretched,
-    /// or a free vertex has more than a thousand triangles.
+    /// after their target maps are applied if the mesh has targets. Without targets, a free vertex with more than a
+    /// thousand triangles suffices.
     pub(crate) fn is_strongly_stretched(&self, positions: &[DVec2]) -> bool {
         let step = self.free_count().div_ceil(SAMPLES).max(1);
         let samples = (0..self.free_count()).step_by(step);
         let count = samples.len();
+        let transformed = |t: &[u32; 3]| {
+            let corner = self.corner(t, |k| positions[k as usize]);
+            [corner.a, corner.b]
+        };
         let is_stretched = |&v: &usize| {
-            let [low, high] = shape_at(self, positions, v).eigenvalues();
+            let [low, high] = shape_at(self, v, transformed).eigenvalues();
             high / low > STRETCHED
         };
         let degrees = self.ring_start().windows(2).map(|ends| ends[1] - ends[0]);
-        degrees.max() > Some(HUB)
+        (self.targets().is_none() && degrees.max() > Some(HUB))
             || samples.filter(is_stretched).count() as f64 > SHARE * count as f64
     }
 
     /// Sets the local maps of the free vertices, for vertices at `positions`. A local map transforms the triangles
-    /// around its vertex so that their mean shape is equilateral, and keeps areas.
+    /// around its vertex so that their mean shape is equilateral, and keeps areas. Targets do not matter.
     pub(crate) async fn set_local_maps_at(&mut self, positions: &[DVec2]) {
         let free = self.free_count();
+        let edge =
+            |from: u32, to: u32| (positions[to as usize] - positions[from as usize]).to_array();
+        let edges = |&[v, p, q]: &[u32; 3]| [edge(v, p), edge(v, q)];
         let map = |v: usize| match v < free {
-            true => shape_at(self, positions, v).0.map(|x| x as f32),
+            true => shape_at(self, v, edges).0.map(|x| x as f32),
             false => [1.0, 0.0, 1.0],
         };
         let maps = paced::collect(positions.len(), map).await;
@@ -57,10 +65,11 @@ impl Problem {
 }
 
 /// Returns the map, of determinant 1, under which the mean shape of the triangles around a free vertex is equilateral.
-fn shape_at(problem: &Problem, positions: &[DVec2], v: usize) -> Tensor {
+/// `edges` returns the two edges of a triangle that start at its first corner, the free vertex.
+fn shape_at(problem: &Problem, v: usize, edges: impl Fn(&[u32; 3]) -> [[f64; 2]; 2]) -> Tensor {
     let ring = problem.ring_of(v as u32);
-    let edge = |i: usize| (positions[ring[i % ring.len()] as usize] - positions[v]).to_array();
-    let logarithms = (0..ring.len()).map(|i| shape_logarithm_of([edge(i), edge(i + 1)]));
+    let triangle = |i: usize| [v as u32, ring[i], ring[(i + 1) % ring.len()]];
+    let logarithms = (0..ring.len()).map(|i| shape_logarithm_of(edges(&triangle(i))));
     let sum = logarithms.fold(Tensor::default(), Tensor::plus);
     let Tensor([xx, xy, yy]) = sum.times(1.0 / ring.len() as f64);
     // Without the trace, the determinant of the exponential is 1.

@@ -15,6 +15,7 @@ pub use prepare::prepare;
 #[cfg(feature = "gpu")]
 pub(crate) use prepare::prepare_to_untangle;
 pub(crate) use prepare::{laid_out, prepare_to_slide};
+#[cfg(feature = "gpu")]
 pub(crate) use problem::MapKind;
 pub use problem::Problem;
 pub(crate) use sizes::target_areas;

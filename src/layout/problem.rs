@@ -33,23 +33,24 @@ const LONG: usize = 1 << 14;
 /// their coordinates. Single precision then suffices for meshes of any size and position, and areas far below or above
 /// the mean neither underflow nor overflow.
 ///
-/// A clone shares the layout and the maps.
+/// Maps are in single precision, so that both engines use equal values. A clone shares the layout and the maps.
 #[derive(Clone, Debug)]
 pub struct Problem {
     layout: Arc<Layout>,
-    /// Map of each vertex, of the kind `map_kind`. Empty without maps. Single precision, so that both engines use equal
-    /// values.
-    maps: Arc<[[f32; 3]]>,
-    map_kind: MapKind,
-    /// Whether some map is anisotropic. Coarse levels then work in coordinates transformed by the maps, in which
-    /// neighbors across a layer are as near as neighbors along the layer.
-    is_stretched: bool,
+    /// Target map of each vertex. `None` without targets.
+    targets: Option<Arc<[[f32; 3]]>>,
+    /// Local map of each vertex. `None` unless the mesh is strongly stretched.
+    local_maps: Option<Arc<[[f32; 3]]>>,
+    /// Whether some target map is anisotropic.
+    has_stretched_targets: bool,
     /// Whether coarse levels work in the coordinates of the plane even if a map is anisotropic.
     levels_in_plane: bool,
     mean_area: f64,
 }
 
-/// The linear maps that a problem has at its vertices.
+/// The linear maps that a device stores at the vertices of a problem. A problem with targets and local maps is for the
+/// CPU alone.
+#[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum MapKind {
     /// No maps.
@@ -62,8 +63,9 @@ pub(crate) enum MapKind {
     Local,
 }
 
+#[cfg(feature = "gpu")]
 impl MapKind {
-    #[cfg(all(test, feature = "gpu"))]
+    #[cfg(test)]
     pub(crate) const ALL: [Self; 3] = [MapKind::None, MapKind::Targets, MapKind::Local];
 
     /// Returns whether there are maps at the vertices.
@@ -133,12 +135,11 @@ impl Problem {
         };
         let layout =
             Layout { positions, colors, ring_start, ring, triangles, vertices, center, scale };
-        let (maps, map_kind) = (Arc::default(), MapKind::None);
         Self {
             layout: Arc::new(layout),
-            maps,
-            map_kind,
-            is_stretched: false,
+            targets: None,
+            local_maps: None,
+            has_stretched_targets: false,
             levels_in_plane: false,
             mean_area,
         }
@@ -152,7 +153,7 @@ impl Problem {
     }
 
     /// Sets target maps as [`set_targets`](Self::set_targets) does, but scales them for vertices at the given
-    /// normalized positions.
+    /// normalized positions. Local maps do not change.
     pub(crate) fn set_targets_at(&mut self, maps: &[Tensor], positions: &[DVec2]) {
         let map = |v: u32| maps[v as usize].0;
         let area = |t: &[u32; 3]| {
@@ -166,17 +167,24 @@ impl Problem {
         let scaled = |v: u32| map(v).map(|x| (x * scale) as f32);
         let maps = collect(self.layout.vertices.len(), |i| scaled(self.layout.vertices[i]));
         let is_longer = |&[xx, xy, yy]: &[f32; 3]| xx != yy || xy != 0.0;
-        self.is_stretched = maps.iter().any(is_longer);
-        (self.maps, self.map_kind) = (maps.into(), MapKind::Targets);
+        self.has_stretched_targets = maps.iter().any(is_longer);
+        self.targets = Some(maps.into());
         let transformed_area =
             |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
         self.mean_area =
             sum(&self.layout.triangles, transformed_area) / self.layout.triangles.len() as f64;
     }
 
-    /// Sets the local maps, one for each vertex in the order of the positions, in place of targets or older local maps.
+    /// Sets the local maps, one for each vertex in the order of the positions. Newton directions and coarser levels then
+    /// use the coordinates of the local maps, and metrics still measure triangles transformed by the target maps, if the
+    /// mesh has targets.
     pub(crate) fn set_local_maps(&mut self, maps: Vec<[f32; 3]>) {
-        (self.maps, self.map_kind, self.is_stretched) = (maps.into(), MapKind::Local, true);
+        self.local_maps = Some(maps.into());
+    }
+
+    /// Sets the local maps to those of another problem of equal layout, which may have none.
+    pub(crate) fn share_local_maps(&mut self, other: &Self) {
+        self.local_maps.clone_from(&other.local_maps);
     }
 
     /// Copies the targets of another problem of the same mesh. `number` has the index in `other` of each vertex of the
@@ -185,10 +193,10 @@ impl Problem {
     pub(crate) fn take_targets(&mut self, other: &Self, number: &[u32]) {
         if let Some(maps) = other.targets() {
             let of = |&v: &u32| maps[number[v as usize] as usize];
-            self.maps = self.layout.vertices.iter().map(of).collect();
-            self.map_kind = MapKind::Targets;
+            self.targets = Some(self.layout.vertices.iter().map(of).collect());
         }
-        (self.is_stretched, self.mean_area) = (other.is_stretched, other.mean_area);
+        self.has_stretched_targets = other.has_stretched_targets;
+        self.mean_area = other.mean_area;
     }
 
     /// Returns the normalized position of each vertex.
@@ -243,25 +251,41 @@ impl Problem {
     /// Returns the target map of each vertex, in the order of the positions, `None` if the mesh has no targets.
     #[inline(always)]
     pub(crate) fn targets(&self) -> Option<&[[f32; 3]]> {
-        (self.map_kind == MapKind::Targets).then_some(&self.maps)
+        self.targets.as_deref()
     }
 
-    /// Returns the target map or the local map of each vertex, in the order of the positions. `None` if the mesh has
-    /// neither.
+    /// Returns whether the vertices have local maps.
+    pub(crate) fn has_local_maps(&self) -> bool {
+        self.local_maps.is_some()
+    }
+
+    /// Returns the map of each vertex whose coordinates Newton directions and coarser levels use, in the order of the
+    /// positions: the local maps, else the target maps. `None` if the mesh has neither.
     #[inline(always)]
     pub(crate) fn maps(&self) -> Option<&[[f32; 3]]> {
-        self.map_kind.is_some().then_some(&self.maps)
+        self.local_maps.as_deref().or(self.targets())
     }
 
-    /// Returns whether the vertices have target maps, local maps or no maps.
-    #[inline(always)]
+    /// Returns the kind of maps that a device stores. A problem must not have both kinds there.
+    #[cfg(feature = "gpu")]
     pub(crate) fn map_kind(&self) -> MapKind {
-        self.map_kind
+        debug_assert!(!self.is_for_cpu_alone());
+        match (&self.targets, &self.local_maps) {
+            (Some(_), _) => MapKind::Targets,
+            (None, Some(_)) => MapKind::Local,
+            (None, None) => MapKind::None,
+        }
     }
 
-    /// Returns whether some map of the vertices is anisotropic.
+    /// Returns whether the vertices have both target maps and local maps. A device has room for a single map per vertex.
+    pub(crate) fn is_for_cpu_alone(&self) -> bool {
+        self.targets.is_some() && self.local_maps.is_some()
+    }
+
+    /// Returns whether some map of the vertices is anisotropic. Coarse levels then work in coordinates transformed by
+    /// the maps, in which neighbors across a layer are as near as neighbors along the layer.
     pub(crate) fn is_stretched(&self) -> bool {
-        self.is_stretched
+        self.has_local_maps() || self.has_stretched_targets
     }
 
     /// Returns whether coarse levels work in the coordinates of the plane, whatever the maps are.

@@ -124,10 +124,11 @@ impl<E: Engine> Session<E> {
             _ => false,
         };
         let is_finite = !log.is_empty() && self.history.first_not_finite(0).is_none();
-        if let Strategy::Corrected(corrections) = &self.strategy
-            && let Some(problem) = corrections.in_plane()
-        {
-            self.engine.set_maps(problem)?;
+        if let Strategy::Corrected(corrections) = &mut self.strategy {
+            corrections.restore_local_maps(&state);
+            if let Some(problem) = corrections.in_plane() {
+                self.engine.set_maps(problem)?;
+            }
         }
         match fits && is_finite && self.engine.restore(&state).await? {
             true => Ok(()),
@@ -201,11 +202,11 @@ impl<E: Engine> Session<E> {
         }
     }
 
-    /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the run's problem.
-    pub(crate) fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
+    pub(crate) fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
         let problem = match &mut self.strategy {
             Strategy::Sweeps => problem,
-            Strategy::Corrected(corrections) => corrections.set_maps(problem),
+            Strategy::Corrected(corrections) => corrections.set_targets(problem),
         };
         self.engine.set_maps(problem)
     }

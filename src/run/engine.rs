@@ -48,7 +48,7 @@ pub(crate) trait Engine: Send {
     /// Holds free vertices. Later sweeps and corrections move exactly the vertices for which `held` is false.
     fn hold(&mut self, held: &[bool]) -> Result<(), GpuError>;
 
-    /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the engine's problem.
+    /// Replaces the targets and local maps by those of `problem`. Its layout must equal that of the engine's problem.
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError>;
 
     /// Returns the present positions of all vertices.

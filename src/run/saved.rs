@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use glam::DVec2;
 
-use crate::layout::{MapKind, Problem};
+use crate::layout::Problem;
 use crate::run::objectives::Objectives;
 
 /// Name of the CPU engine in [`EngineState::engine`].
@@ -72,7 +72,7 @@ impl EngineState {
 
     /// Adds the local maps of a problem, if it has any.
     pub(crate) fn add_local_maps(&mut self, problem: &Problem) {
-        if let (MapKind::Local, Some(maps)) = (problem.map_kind(), problem.maps()) {
+        if let (true, Some(maps)) = (problem.has_local_maps(), problem.maps()) {
             self.add(LOCAL_MAPS, maps);
         }
     }
@@ -82,7 +82,7 @@ impl EngineState {
     pub(crate) fn restore_local_maps(&self, problem: &mut Problem) -> bool {
         let maps = self.own::<[f32; 3]>(LOCAL_MAPS, problem.positions().len());
         let maps = maps.filter(|maps| maps.as_flattened().iter().all(|x| x.is_finite()));
-        let maps = maps.filter(|_| problem.map_kind() == MapKind::Local);
+        let maps = maps.filter(|_| problem.has_local_maps());
         maps.map(|maps| problem.set_local_maps(maps)).is_some()
     }
 

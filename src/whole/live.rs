@@ -1,5 +1,6 @@
 //! The sweeps of a whole run on several engines: in double precision while triangles are too flat for a device, on the
-//! device, and on the CPU after a failure of the device.
+//! device, and on the CPU after a failure of the device. A run with targets on a strongly stretched mesh is done on the
+//! CPU alone.
 
 use std::cmp::Ordering;
 
@@ -46,7 +47,7 @@ struct Point {
 
 /// A run in progress, on a single engine unless that engine fails.
 pub(crate) struct Live<'s> {
-    /// Layout of the mesh, with the present targets, or with local maps if the mesh is strongly stretched.
+    /// Layout of the mesh, with the present targets, and with local maps if the mesh is strongly stretched.
     pub(crate) problem: Problem,
     pub(crate) plan: Plan,
     spec: Spec<'s>,
@@ -58,8 +59,8 @@ pub(crate) struct Live<'s> {
     last: Point,
     held: Vec<bool>,
     opened: Option<DoublePrelude>,
-    /// Number of sweeps before the CPU replaced a device for which triangles are too flat or too small. `None` without
-    /// such a change.
+    /// Number of sweeps before the CPU replaced a device for which triangles are too flat or too small; 0 also if the
+    /// vertices have more maps than a device stores. `None` without such a change.
     on_cpu_from: Option<u32>,
     fault: Option<DeviceFault>,
 }
@@ -86,10 +87,17 @@ impl<'s> Live<'s> {
         resumed: Option<&Checkpoint>,
         checkpointer: &mut Checkpointer<'_>,
     ) -> Result<Self, SmoothError> {
+        let mut problem = spec.problem.clone();
+        if spec.options.is_multilevel() && problem.is_strongly_stretched(from) {
+            problem.set_local_maps_at(from).await;
+        }
+        let is_for_cpu_alone = problem.is_for_cpu_alone();
         let (device, opened) = match resumed {
             Some(Checkpoint { about, saved, .. }) => {
-                (spec.device.filter(|_| saved.engine.engine != CPU), about.opened.clone())
+                let is_on_device = saved.engine.engine != CPU && !is_for_cpu_alone;
+                (spec.device.filter(|_| is_on_device), about.opened.clone())
             }
+            None if is_for_cpu_alone => (None, None),
             None => opened(&spec, &plan, from).await?,
         };
         if let Some(about) = &mut checkpointer.about {
@@ -100,7 +108,8 @@ impl<'s> Live<'s> {
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
         let start = opened.as_ref().map_or(from, |opened| &opened.positions);
         let positions = paced::copied(start).await;
-        let is_refused = spec.device.is_some() && device.is_none() && resumed.is_none();
+        let is_refused =
+            spec.device.is_some() && (is_for_cpu_alone || device.is_none() && resumed.is_none());
         let period = resumed.and_then(|resumed| Some((resumed, resumed.period.as_ref()?)));
         let (last, held, on_cpu_from) = match period {
             Some((Checkpoint { saved, .. }, period)) => {
@@ -110,13 +119,6 @@ impl<'s> Live<'s> {
             }
             None => (Point { log: Vec::new(), positions }, Vec::new(), is_refused.then_some(0)),
         };
-        let mut problem = spec.problem.clone();
-        if spec.options.is_multilevel()
-            && problem.targets().is_none()
-            && problem.is_strongly_stretched(from)
-        {
-            problem.set_local_maps_at(from).await;
-        }
         Ok(Self {
             problem,
             plan,
@@ -286,7 +288,7 @@ impl<'s> Live<'s> {
         }
         let mut changed = || -> Result<(), GpuError> {
             if let Some(problem) = targets {
-                session.set_maps(problem)?;
+                session.set_targets(problem)?;
             }
             if is_held_anew {
                 session.engine.hold(held)?;

@@ -136,6 +136,23 @@ fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
     }
 }
 
+/// Checkpoints contain the local maps, which a change of the targets does not replace.
+#[test]
+fn a_run_with_a_target_field_on_a_strongly_stretched_mesh_goes_on_to_the_same_bits() {
+    let lattice = support::perturb_random(&support::lattice(16, 16), 0.6, 4);
+    let points: Vec<_> = lattice.points.iter().map(|&[x, y]| [200.0 * x, y]).collect();
+    let mesh = with_points(&lattice, &points);
+    let sizes: Vec<f64> = (0..points.len()).map(|v| 1.0 + (v % 3) as f64).collect();
+    let field = TargetField::new(&mesh, &Targets::sizes(&sizes).unwrap()).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_target_field(field).unwrap();
+    for backend in backends() {
+        let options =
+            Options { scheme: Metric::SoftSize.into(), max_sweeps: 20, ..Options::default() };
+        assert_goes_on_as("stretched", &smoother, &options, backend, 1);
+    }
+}
+
 /// Curves and target fields belong to a run, like the mesh.
 #[test]
 fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
@@ -166,10 +183,18 @@ fn a_hard_run_goes_on_to_the_same_bits() {
         let points: Vec<_> = lattice.points.iter().map(|&[x, y]| [ratio * x, y]).collect();
         with_points(&lattice, &points)
     };
-    // The last mesh has local maps.
-    let meshes = [(perturbed().clone(), false), (stretched(40.0), true), (stretched(100.0), false)];
-    for (mesh, accelerated) in meshes {
-        let smoother = Smoother::new(&mesh).unwrap();
+    // The last two meshes have local maps.
+    for (mesh, accelerated, has_targets) in [
+        (perturbed().clone(), false, false),
+        (stretched(40.0), true, false),
+        (stretched(100.0), false, false),
+        (stretched(100.0), false, true),
+    ] {
+        let mut smoother = Smoother::new(&mesh).unwrap();
+        if has_targets {
+            let sizes: Vec<f64> = mesh.points.iter().map(|[x, _]| 3000.0 + x).collect();
+            smoother.set_targets(&Targets::sizes(&sizes).unwrap()).unwrap();
+        }
         for backend in backends() {
             let options = Options::default();
             let mut all = All::default();

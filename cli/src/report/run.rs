@@ -28,8 +28,8 @@ pub(crate) struct Report {
     pub(crate) sweeps: u32,
     /// Number of sweeps corrected from coarser levels.
     pub(crate) corrections: u32,
-    /// Number of first sweeps computed in double precision on the CPU, because triangles were too flat or too small
-    /// for the GPU.
+    /// Number of first sweeps computed in double precision on the CPU, because triangles were too flat, too small, or too
+    /// stretched relative to their targets, for the GPU.
     pub(crate) opening_sweeps: u32,
     pub(crate) levels_left_out: bool,
     /// The sweep whose result was written; 0 for the mesh as it was.

@@ -282,7 +282,7 @@ impl Report {
             let n = self.opening_sweeps;
             let _ = write!(
                 text,
-                "; the first {n} on the CPU, as triangles were too flat or small for the GPU"
+                "; the first {n} on the CPU, as triangles were too flat, small or stretched for the GPU"
             );
         }
         if self.lost > 0.01 {

@@ -17,7 +17,7 @@ use crate::gpu::run::levels::{Fitting, Levels};
 use crate::gpu::run::secants::Secants;
 use crate::gpu::run::stiffness;
 use crate::gpu::scope::scoped;
-use crate::layout::{MapKind, Problem};
+use crate::layout::Problem;
 use crate::metric::Smoothing;
 use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
@@ -257,7 +257,7 @@ impl Engine for GpuEngine<'_> {
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
         self.mesh.write_maps(self.gpu, problem)?;
-        if problem.map_kind() == MapKind::Local {
+        if problem.has_local_maps() {
             // Secant pairs belong to levels in the coordinates of the earlier maps.
             self.secants = None;
         }

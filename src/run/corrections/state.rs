@@ -2,10 +2,11 @@
 
 use super::plan_steps::exponents;
 use crate::error::GpuError;
-use crate::layout::{MapKind, Problem};
+use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::history::History;
 use crate::run::plan::Plan;
+use crate::run::saved::EngineState;
 use crate::run::sweep_params::SweepParams;
 
 /// Number of successive estimates below the tolerance that end a run with accelerated corrections, whose gains are
@@ -168,12 +169,12 @@ impl Corrections {
         }
     }
 
-    /// Replaces the targets or local maps by those of `problem`. Its layout must equal that of the run's problem. The
+    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem. Local maps and the
     /// coordinates of the levels do not change. Returns the problem for the engine.
-    pub(crate) fn set_maps(&mut self, problem: &Problem) -> &Problem {
-        let in_plane = self.problem.are_levels_in_plane();
-        self.problem = problem.clone();
-        if in_plane {
+    pub(crate) fn set_targets(&mut self, problem: &Problem) -> &Problem {
+        let before = std::mem::replace(&mut self.problem, problem.clone());
+        self.problem.share_local_maps(&before);
+        if before.are_levels_in_plane() {
             self.problem.set_levels_in_plane();
         }
         &self.problem
@@ -185,9 +186,14 @@ impl Corrections {
         self.problem.are_levels_in_plane().then_some(&self.problem)
     }
 
+    /// Sets the local maps to those of a saved state, if it has any.
+    pub(crate) fn restore_local_maps(&mut self, state: &EngineState) {
+        state.restore_local_maps(&mut self.problem);
+    }
+
     /// Returns whether the mesh has local maps, which follow its triangles.
     pub(super) fn has_local_maps(&self) -> bool {
-        self.problem.map_kind() == MapKind::Local
+        self.problem.has_local_maps()
     }
 
     /// Returns the lower limit of f.
