@@ -182,7 +182,7 @@ impl Problem {
         self.local_maps = Some(maps.into());
     }
 
-    /// Sets the local maps to those of another problem of equal layout, which may have none.
+    /// Copies the local maps of another problem of equal layout. Removes the local maps if the other problem has none.
     pub(crate) fn share_local_maps(&mut self, other: &Self) {
         self.local_maps.clone_from(&other.local_maps);
     }
@@ -266,7 +266,7 @@ impl Problem {
         self.local_maps.as_deref().or(self.targets())
     }
 
-    /// Returns the kind of maps that a device stores. A problem must not have both kinds there.
+    /// Returns the kind of maps that a device stores. Call the method on problems with at most one kind of maps.
     #[cfg(feature = "gpu")]
     pub(crate) fn map_kind(&self) -> MapKind {
         debug_assert!(!self.is_for_cpu_alone());

@@ -31,8 +31,8 @@ const MIN_FIRST_FOR_EDGE: f64 = 0.1;
 const MAX_REFUSED: u32 = 2;
 /// Smallest number of sweeps alone before corrections begin again.
 const SWEEPS_BETWEEN: usize = 5;
-/// Number of corrections in one stage after which levels leave the coordinates of target maps. Most runs end before. Where
-/// neighbors have different maps, levels in the coordinates of the plane then take a fifth to a half of the sweeps.
+/// Number of corrections in one stage after which levels leave the coordinates of target maps. Most runs end before. Two
+/// meshes adapted to several shocks then take 77 and 98 sweeps instead of 269 and 442.
 const MOST_IN_MAPS: u32 = 32;
 
 /// Ratio of the slopes along two successive corrections above which corrections are accelerated. On most meshes, the

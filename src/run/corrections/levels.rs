@@ -64,8 +64,9 @@ impl Corrections {
     }
 
     /// Drops levels in the coordinates of the maps after refused corrections, or after many corrections. Later levels
-    /// work in the coordinates of the plane. Around vertices of 50 with the targets of `keep_shape`, lengths of
-    /// corrections by the former levels were below 0.001, and runs took 59 to 204 sweeps; by the latter levels, 22 to 40.
+    /// work in the coordinates of the plane. Around a vertex of 50 with the targets of `keep_shape`, corrections
+    /// by the former levels had lengths below 0.001, and five runs took 59 to 204 sweeps. By the latter levels, the five
+    /// runs take 22 to 40.
     pub(super) fn leave_maps(&mut self, engine: &mut impl Engine) -> Result<(), GpuError> {
         if !self.problem.is_stretched() || self.problem.are_levels_in_plane() {
             return Ok(());

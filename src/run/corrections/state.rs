@@ -186,7 +186,7 @@ impl Corrections {
         self.problem.are_levels_in_plane().then_some(&self.problem)
     }
 
-    /// Sets the local maps to those of a saved state, if it has any.
+    /// Replaces the local maps by the local maps of a saved state. Without local maps in the state, nothing changes.
     pub(crate) fn restore_local_maps(&mut self, state: &EngineState) {
         state.restore_local_maps(&mut self.problem);
     }
