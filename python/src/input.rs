@@ -94,12 +94,10 @@ impl Input {
     }
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.
-    pub(crate) fn smoother(
-        &self,
-        options: &MeshOptions,
-        moves_in: Coordinates,
-    ) -> Result<Smoother<'_>, Failure> {
-        self.layout.smoother(&self.mesh, options, moves_in)
+    pub(crate) fn smoother(&self, options: &MeshOptions) -> Result<Smoother<'_>, Failure> {
+        let mut smoother = Smoother::new(&self.mesh)?;
+        self.layout.set_up(options, &mut smoother)?;
+        Ok(smoother)
     }
 
     /// Prepares the mesh as [`smoother`](Self::smoother) does, and moves the mesh into the smoother.
@@ -109,7 +107,7 @@ impl Input {
     ) -> Result<(Smoother<'static>, Layout), Failure> {
         let Self { mesh, layout } = self;
         let mut smoother = Smoother::from_mesh(mesh)?;
-        layout.set_up(options, &mut smoother, Coordinates::Projected)?;
+        layout.set_up(options, &mut smoother)?;
         Ok((smoother, layout))
     }
 }
@@ -120,42 +118,11 @@ enum Chosen {
     OfPlaces(Box<TargetField>),
 }
 
-/// Coordinates in which runs move vertices.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Coordinates {
-    /// The coordinates of the mesh, in which some options measure.
-    OfMesh,
-    /// The projection of the sphere, for meshes on the sphere. Vertices that slide, and targets of places, need the
-    /// coordinates of the mesh all the same.
-    Projected,
-}
-
 impl Layout {
-    /// Prepares a mesh for runs, with its targets and its sliding vertices.
-    pub(crate) fn smoother<'m>(
-        &self,
-        mesh: &'m Mesh,
-        options: &MeshOptions,
-        moves_in: Coordinates,
-    ) -> Result<Smoother<'m>, Failure> {
-        let mut smoother = Smoother::new(mesh)?;
-        self.set_up(options, &mut smoother, moves_in)?;
-        Ok(smoother)
-    }
-
     /// Sets the projection, the targets and the sliding vertices of a smoother.
-    fn set_up(
-        &self,
-        options: &MeshOptions,
-        smoother: &mut Smoother<'_>,
-        moves_in: Coordinates,
-    ) -> Result<(), Failure> {
+    fn set_up(&self, options: &MeshOptions, smoother: &mut Smoother<'_>) -> Result<(), Failure> {
         let targets = self.targets(options, smoother)?;
-        if options.surface == Surface::Sphere
-            && moves_in == Coordinates::Projected
-            && !options.slides
-            && !matches!(targets, Some(Chosen::OfPlaces(_)))
-        {
+        if options.surface == Surface::Sphere {
             // A mesh with slivers that the projection would invert is smoothed in longitude and latitude.
             smoother.project_from_sphere()?;
         }
@@ -244,8 +211,8 @@ pub(crate) fn untangled(
         Untangled { bad_before: 0, .. } => Ok(None),
         Untangled { hopeless, .. } if !hopeless.is_empty() => Err(Failure::Tangled {
             text: format!(
-                "triangles: triangle {} and {} more cannot be untangled, as none of their vertices is free. Correct the \
-                 points of their vertices, or fix fewer vertices",
+                "triangles: triangle {} and {} more cannot be untangled, as none of their vertices is free, or two fixed \
+                 vertices are at the same point. Correct the points of their vertices, or fix fewer vertices",
                 hopeless[0].triangle,
                 hopeless.len() - 1
             ),

@@ -93,11 +93,6 @@ pub(crate) struct RunOptions {
 }
 
 impl RunOptions {
-    /// Returns whether an option measures in the coordinates of the mesh.
-    pub(crate) fn measures_in_coordinates(&self) -> bool {
-        self.max_move.is_some() || self.keep_altitude || self.improve_worst.is_some()
-    }
-
     /// Sets an option. Returns false if no option of a run has the name.
     pub(crate) fn set(&mut self, given: Given<'_, '_>) -> PyResult<bool> {
         match given.name {

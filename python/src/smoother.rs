@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use gpu_smooth::options::Feature;
 use gpu_smooth::plane::Plane;
-use gpu_smooth::targets::Surface;
 use gpu_smooth::{Backend, Checkpoint, Mesh, Options, Smoother as PreparedMesh};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,7 +11,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{self, Points, PointsForm};
 use crate::engine;
 use crate::error;
-use crate::input::{Coordinates, Failure, Input};
+use crate::input::{Failure, Input};
 use crate::mesh_options::{CallOptions, MeshOptions, Target};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
@@ -56,15 +55,10 @@ impl Smoother {
             run.set_named(&name, &value, "Smoother.run")?;
         }
         run.check(py)?;
-        let Prepared { smoother, options, form, layout } = &*self.0;
+        let Prepared { smoother, options, form, .. } = &*self.0;
         let plan = RunPlan::new(py, &run, options, form, smoother)?;
         let observer = RunObserver::new(&run);
-        let outcome = threads::watched(py, &observer, || match coordinates(options, &run) {
-            Coordinates::Projected => plan.run(smoother, &observer),
-            coordinates => {
-                plan.run(&layout.smoother(smoother.mesh(), options, coordinates)?, &observer)
-            }
-        })?;
+        let outcome = threads::watched(py, &observer, || plan.run(smoother, &observer))?;
         let outcome = finished(py, &observer, outcome)?;
         Ok(Outcome::new(outcome, Arc::clone(&self.0), plan.options.scheme.base(), &plan.backend))
     }
@@ -168,14 +162,6 @@ impl<'a> RunPlan<'a> {
     }
 }
 
-/// Returns the coordinates in which a run moves vertices. A mesh in the plane has no projection, whatever the result.
-fn coordinates(mesh: &MeshOptions, run: &RunOptions) -> Coordinates {
-    match mesh.surface == Surface::Sphere && run.measures_in_coordinates() {
-        true => Coordinates::OfMesh,
-        false => Coordinates::Projected,
-    }
-}
-
 /// Returns the result of finished work, or the exception that ended the work.
 fn finished<T>(
     py: Python<'_>,
@@ -205,8 +191,7 @@ pub(crate) fn smooth<'py>(
         Ok(input) => input,
         failed => finished(py, &observer, failed)?,
     };
-    let coordinates = coordinates(&options, &run);
-    let smoother = threads::watched(py, &observer, || input.smoother(&options, coordinates))?;
+    let smoother = threads::watched(py, &observer, || input.smoother(&options))?;
     let smoother = match smoother {
         Ok(smoother) => smoother,
         failed => finished(py, &observer, failed)?,

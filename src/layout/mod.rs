@@ -4,6 +4,7 @@
 mod coloring;
 mod curve;
 mod local_maps;
+mod mercator;
 mod normalization;
 mod prepare;
 mod problem;
@@ -11,6 +12,7 @@ mod sizes;
 mod smallest_last;
 
 pub use coloring::Coloring;
+pub(crate) use mercator::{Mercator, MeshCoordinates};
 pub use prepare::prepare;
 #[cfg(feature = "gpu")]
 pub(crate) use prepare::prepare_to_untangle;

@@ -1,5 +1,6 @@
 //! The input of the engines: normalized positions and one-rings, numbered color by color.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,6 +9,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use glam::DVec2;
 
 use crate::layout::curve::along_curve;
+use crate::layout::mercator::{Mercator, MeshCoordinates};
 use crate::layout::normalization::normalization;
 use crate::layout::{Coloring, UNCOLORED};
 use crate::mesh::Mesh;
@@ -15,7 +17,7 @@ use crate::metric::{Corner, TargetMap};
 use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
 use crate::parallel::pace::now;
 use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges, paced};
-use crate::targets::Tensor;
+use crate::targets::{Surface, Targets, Tensor};
 use crate::topology::Topology;
 
 /// Number of vertices or triangles that one task handles.
@@ -37,6 +39,9 @@ const LONG: usize = 1 << 14;
 #[derive(Clone, Debug)]
 pub struct Problem {
     layout: Arc<Layout>,
+    /// Projection from the coordinates of the mesh to the plane in which sweeps move vertices. `None` if sweeps move
+    /// vertices in the coordinates of the mesh.
+    projection: Option<Mercator>,
     /// Target map of each vertex. `None` without targets.
     targets: Option<Arc<[[f32; 3]]>>,
     /// Local map of each vertex. `None` unless the mesh is strongly stretched.
@@ -137,12 +142,18 @@ impl Problem {
             Layout { positions, colors, ring_start, ring, triangles, vertices, center, scale };
         Self {
             layout: Arc::new(layout),
+            projection: None,
             targets: None,
             local_maps: None,
             has_stretched_targets: false,
             levels_in_plane: false,
             mean_area,
         }
+    }
+
+    /// Returns the problem of a projected mesh as the problem of the mesh before the projection.
+    pub(crate) fn with_projection(self, projection: Mercator) -> Self {
+        Self { projection: Some(projection), ..self }
     }
 
     /// Sets the target maps of all vertices of the mesh, in any unit. A common factor scales the maps so that the mean
@@ -339,15 +350,52 @@ impl Problem {
     }
 
     /// Returns the center and the scale of the normalization: normalized positions are (x - center) · scale, without
-    /// rounding.
+    /// rounding. x are the images of the coordinates of the mesh if vertices move in a projection.
     pub fn normalization(&self) -> (DVec2, f64) {
         (self.layout.center, self.layout.scale)
+    }
+
+    /// Returns the conversion between normalized positions and the coordinates of the mesh.
+    pub(crate) fn coordinates(&self) -> MeshCoordinates {
+        MeshCoordinates::new(self.projection, self.layout.center, self.layout.scale)
+    }
+
+    /// Returns whether vertices move in a projection of the coordinates of the mesh.
+    pub(crate) fn is_projected(&self) -> bool {
+        self.projection.is_some()
+    }
+
+    /// Returns the images of points of the mesh in the plane in which vertices move.
+    pub(crate) fn images<'p>(&self, points: &'p [[f64; 2]]) -> Cow<'p, [[f64; 2]]> {
+        match self.projection {
+            None => points.into(),
+            Some(projection) => points.iter().map(|&point| projection.image(point)).collect(),
+        }
+    }
+
+    /// Converts targets in the coordinates of the mesh to the plane in which vertices move, with the vertices at
+    /// `points`, in the coordinates of the mesh.
+    pub(crate) fn converted<'t>(
+        &self,
+        targets: &'t Targets,
+        points: &[[f64; 2]],
+    ) -> Cow<'t, Targets> {
+        match self.projection {
+            None => Cow::Borrowed(targets),
+            Some(_) => Cow::Owned(targets.in_conformal_coordinates(Surface::Sphere, points)),
+        }
+    }
+
+    /// Returns the point of a normalized position, in the coordinates of the mesh.
+    fn point(&self, position: DVec2) -> [f64; 2] {
+        let point = (self.layout.center + position / self.layout.scale).to_array();
+        self.projection.map_or(point, |_| Mercator::point(point))
     }
 
     /// Converts the normalized positions of all vertices, fixed ones included, to the unit of the mesh. Returns each
     /// position with the index that its vertex has in the mesh.
     pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
-        let point = |&now: &DVec2| (self.layout.center + now / self.layout.scale).to_array();
+        let point = |&now: &DVec2| self.point(now);
         self.layout.vertices.iter().copied().zip(positions.iter().map(point))
     }
 
@@ -356,8 +404,9 @@ impl Problem {
         room.resize(self.layout.vertices.len(), DVec2::ZERO);
         paced::for_each_chunk(&mut room, CHUNK, |first, positions| {
             for (position, &v) in positions.iter_mut().zip(&self.layout.vertices[first..]) {
-                *position =
-                    (DVec2::from(points[v as usize]) - self.layout.center) * self.layout.scale;
+                let point = points[v as usize];
+                let image = self.projection.map_or(point, |projection| projection.image(point));
+                *position = (DVec2::from(image) - self.layout.center) * self.layout.scale;
             }
         })
         .await;
@@ -413,8 +462,7 @@ impl Problem {
             for i in vertices {
                 let (now, was) = (positions[i], self.layout.positions[i]);
                 if now != was {
-                    let point = self.layout.center + now / self.layout.scale;
-                    points[self.layout.vertices[i] as usize] = point.to_array();
+                    points[self.layout.vertices[i] as usize] = self.point(now);
                 }
             }
         })

@@ -22,8 +22,6 @@ const BETWEEN: &str =
 const CHANGING: &str =
     "targets of places change during the run; drop one of the two, or take targets of vertices";
 const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
-const IN_COORDINATES: &str =
-    "it measures in the coordinates of the mesh; let the run move vertices in these coordinates";
 const TANGLED: &str = "inverted triangles give no bound; untangle the mesh in a separate run";
 
 /// All conflicts. A run with several conflicts reports the first matching row.
@@ -33,11 +31,6 @@ pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::TargetField, Feature::KeepAltitude, CHANGING),
     row(Feature::TargetField, Feature::Goal, CHANGING),
     row(Feature::TargetField, Feature::UnevenScheme, ONE_METRIC),
-    row(Feature::Projection, Feature::TargetField, IN_COORDINATES),
-    row(Feature::Projection, Feature::Slide, IN_COORDINATES),
-    row(Feature::Projection, Feature::MaxMove, IN_COORDINATES),
-    row(Feature::Projection, Feature::KeepAltitude, IN_COORDINATES),
-    row(Feature::Projection, Feature::ImproveWorst, IN_COORDINATES),
     row(Feature::KeepAltitude, Feature::MaxMove, BETWEEN),
     row(Feature::KeepAltitude, Feature::UnevenScheme, ONE_METRIC),
     row(Feature::KeepAltitude, Feature::FiniteDifferences, ANALYTIC),

@@ -33,9 +33,6 @@ pub enum Feature {
     Targets,
     /// Targets of places; see [`Smoother::set_target_field`](crate::Smoother::set_target_field).
     TargetField,
-    /// The projection of a mesh on the sphere; see
-    /// [`Smoother::project_from_sphere`](crate::Smoother::project_from_sphere).
-    Projection,
     /// [`untangle`](fn@crate::untangle) before the run.
     Untangle,
     /// Sweeps that an application encodes, in place of a run.
@@ -52,7 +49,7 @@ impl Feature {
     }
 
     /// Every feature, in the order of the variants.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 16] = [
         Self::UnevenScheme,
         Self::UncorrectedScheme,
         Self::Multilevel,
@@ -66,7 +63,6 @@ impl Feature {
         Self::Slide,
         Self::Targets,
         Self::TargetField,
-        Self::Projection,
         Self::Untangle,
         Self::Encoded,
         Self::EncodedCorrections,
@@ -89,7 +85,6 @@ impl fmt::Display for Feature {
             Self::Slide => "a Slide",
             Self::Targets => "Targets",
             Self::TargetField => "a TargetField",
-            Self::Projection => "a projection from the sphere",
             Self::Untangle => "untangling",
             Self::Encoded => "encoding sweeps",
             Self::EncodedCorrections => "encoding corrected sweeps",

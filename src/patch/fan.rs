@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::layout::Problem;
+use crate::layout::{MeshCoordinates, Problem};
 use crate::measure::altitude;
 use crate::metric::{Corner, Dual, Own, TargetMap};
 use crate::patch::corners::Corners;
@@ -47,7 +47,8 @@ impl Fan {
             map: problem.target_map(t),
         };
         let corners = self.0.iter().map(corner).collect();
-        FanPatch { corners, mean_area: problem.mean_area(), min_altitude }
+        let (mean_area, coordinates) = (problem.mean_area(), problem.coordinates());
+        FanPatch { corners, mean_area, coordinates, min_altitude }
     }
 }
 
@@ -74,6 +75,8 @@ pub(crate) struct FanPatch {
     pub(crate) corners: Vec<FanCorner>,
     /// Mean area of the mesh's triangles, after their target maps are applied.
     pub(crate) mean_area: f64,
+    /// Coordinates in which altitudes are measured.
+    pub(crate) coordinates: MeshCoordinates,
     /// Lower limit of triangles' altitudes, normalized; 0 for no limit.
     pub(crate) min_altitude: f64,
 }
@@ -104,6 +107,8 @@ impl Corners<f64> for FanPatch {
         let [p, q] = self.corners[i].ends;
         is_positive(&[at, p.into(), q.into()], &[0, 1, 2])
             && corner.doubled_area() > 0.0
-            && (self.min_altitude <= 0.0 || altitude([at.into(), p, q]) >= self.min_altitude)
+            && (self.min_altitude <= 0.0
+                || altitude([at.into(), p, q].map(|at| self.coordinates.at(at)))
+                    >= self.min_altitude)
     }
 }

@@ -34,7 +34,8 @@ fn fan(problem: &Problem) -> FanPatch {
         map: problem.target_map(&[0, p, q]),
     };
     let corners = ring.iter().zip(next).map(corner).collect();
-    FanPatch { corners, mean_area: problem.mean_area(), min_altitude: 0.0 }
+    let (mean_area, coordinates) = (problem.mean_area(), problem.coordinates());
+    FanPatch { corners, mean_area, coordinates, min_altitude: 0.0 }
 }
 
 /// Returns positions of the vertex: well inside the hexagon, and so near an edge that first trials are lengthened.

@@ -1,5 +1,7 @@
 //! A curve together with the vertices on it.
 
+use glam::DVec2;
+
 use crate::layout::Problem;
 use crate::patch::Fan;
 use crate::slide::chains::Chain;
@@ -46,7 +48,16 @@ impl BoundaryCurve {
     pub(crate) fn at(&self, problem: &Problem, param: f64, near: usize) -> Place {
         let (center, scale) = problem.normalization();
         let Place { point, first, second } = self.curve.at(param, near);
-        Place { point: (point - center) * scale, first: first * scale, second: second * scale }
+        let (first, second) = (first * scale, second * scale);
+        let coordinates = problem.coordinates();
+        if !coordinates.is_projected() {
+            return Place { point: (point - center) * scale, first, second };
+        }
+        let point = coordinates.position(DVec2::new(point.x - center.x, point.y) * scale);
+        let [slope, bend] = coordinates.slopes(point);
+        let first = DVec2::new(first.x, first.y / slope);
+        let second = DVec2::new(second.x, (second.y - bend * first.y * first.y) / slope);
+        Place { point, first, second }
     }
 
     /// Returns whether the vertex of index `k` slides.

@@ -5,7 +5,6 @@ mod goal;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod prepared;
-mod projection;
 mod run;
 mod running;
 mod stages;

@@ -8,7 +8,7 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::layout::{Problem, laid_out, prepare_to_slide};
+use crate::layout::{Mercator, Problem, laid_out, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::parallel::pace::now;
@@ -16,8 +16,6 @@ use crate::slide::{Slide, Sliding};
 use crate::targets::{OutsideReport, Surface, TargetField, Targets};
 use crate::topology::{Topology, certified};
 use crate::whole::set_targets_of;
-
-use super::projection::Projection;
 
 /// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
@@ -31,8 +29,6 @@ pub struct Smoother<'a> {
     pairs: [usize; 2],
     /// Field of targets that belong to points of the plane; `None` if targets belong to vertices or are not set.
     pub(super) field: Option<TargetField>,
-    /// The mesh in the projection in which runs move vertices; `None` if runs move them in the coordinates of the mesh.
-    pub(super) projection: Option<Projection>,
     prepare: Duration,
 }
 
@@ -69,9 +65,9 @@ impl<'a> Smoother<'a> {
     ) -> Self {
         // Runs need only the problem. The stars are computed again when a vertex has to be set back.
         topology.forget_stars();
-        let (slide, sliding, field, projection) = (None, None, None, None);
+        let (slide, sliding, field) = (None, None, None);
         let (pairs, prepare) = ([0; 2], start.elapsed());
-        Self { mesh, topology, problem, slide, sliding, pairs, field, projection, prepare }
+        Self { mesh, topology, problem, slide, sliding, pairs, field, prepare }
     }
 
     /// Fails with [`MeshError::NothingFree`] if no vertex is free and no vertex slides.
@@ -98,53 +94,29 @@ impl<'a> Smoother<'a> {
             sliding: self.sliding,
             pairs: self.pairs,
             field: self.field,
-            projection: self.projection,
             prepare: self.prepare,
         }
     }
 
     /// Lets further runs move the vertices of a mesh of longitudes and latitudes, in degrees, in the Mercator projection,
     /// so that f is that of the triangles on the sphere wherever the vertices move. Runs still take and return longitudes
-    /// and latitudes, and no triangle is inverted in these coordinates. Removes the targets: set them afterwards, as lengths
-    /// in these coordinates ([`Targets::seen_on`]).
+    /// and latitudes, and no triangle is inverted in these coordinates. Distances, altitudes and curves of a run are measured
+    /// in these coordinates too. Removes the targets and the sliding vertices: set both afterwards, targets as lengths in
+    /// these coordinates ([`Targets::seen_on`], [`TargetField::seen_on`]).
     ///
     /// Returns false, and changes nothing, if the projection would invert or flatten a triangle. Slivers may, as straight
-    /// edges have curved images. Runs that measure in the coordinates of the mesh refuse a projection: those with
-    /// [`set_slide`](Self::set_slide), [`set_target_field`](Self::set_target_field),
-    /// [`max_move`](crate::Options::max_move), [`keep_altitude`](crate::Options::keep_altitude) or
-    /// [`improve_worst`](crate::Options::improve_worst).
+    /// edges have curved images.
     ///
     /// # Errors
     /// [`MeshError::Target`] if a vertex is not on the sphere.
     pub fn project_from_sphere(&mut self) -> Result<bool, MeshError> {
         Surface::Sphere.check(&self.mesh.points, self.topology.triangles())?;
-        let Some(projection) = Projection::new(&self.mesh, &self.topology) else {
+        let Some((projection, projected)) = Mercator::of(&self.mesh, &self.topology) else {
             return Ok(false);
         };
-        self.problem = laid_out(&projection.mesh, &self.topology);
-        (self.field, self.projection) = (None, Some(projection));
+        self.problem = laid_out(&projected, &self.topology).with_projection(projection);
+        (self.slide, self.sliding, self.pairs, self.field) = (None, None, [0; 2], None);
         Ok(true)
-    }
-
-    /// Returns the normalized positions of points given in the order and coordinates of the mesh. Reuses the memory of
-    /// `room`.
-    pub(super) async fn positions_of(&self, points: &[[f64; 2]], room: Vec<DVec2>) -> Vec<DVec2> {
-        match &self.projection {
-            None => self.problem.normalized(points, room).await,
-            Some(projection) => self.problem.normalized(&projection.projected(points), room).await,
-        }
-    }
-
-    /// Converts normalized positions to the order and coordinates of the mesh. Vertices that have not moved keep their
-    /// bits.
-    pub(super) async fn points_at(&self, positions: &[DVec2]) -> Vec<[f64; 2]> {
-        match &self.projection {
-            None => self.problem.in_unit_of(&self.mesh, positions).await,
-            Some(projection) => {
-                let images = self.problem.in_unit_of(&projection.mesh, positions).await;
-                projection.unprojected(&images, &self.mesh.points)
-            }
-        }
     }
 
     /// Sets the targets of elements in further runs, one target per vertex of the mesh. Without targets, elements are
@@ -155,13 +127,8 @@ impl<'a> Smoother<'a> {
     /// [`MeshError::ValueCount`] if `targets` does not have one target per vertex.
     pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
         targets.check_count(self.mesh.points.len())?;
-        match &self.projection {
-            None => self.problem.set_targets(targets.maps()),
-            Some(projection) => {
-                let targets = projection.targets(targets, &self.mesh.points);
-                self.problem.set_targets(targets.maps());
-            }
-        }
+        let converted = self.problem.converted(targets, &self.mesh.points);
+        self.problem.set_targets(converted.maps());
         self.field = None;
         Ok(())
     }
@@ -217,7 +184,7 @@ impl<'a> Smoother<'a> {
     /// that needs a target has an infinite or NaN coordinate.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
-        let positions = now(self.positions_of(points, Vec::new()));
+        let positions = now(self.problem.normalized(points, Vec::new()));
         let Some(field) = &self.field else {
             return Ok(now(self.objective(metric, &positions)));
         };

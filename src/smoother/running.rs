@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use glam::DVec2;
 use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::metric::Metric;
+use crate::metric::{Corner, Metric};
 use crate::options::{Feature, Goal, Options};
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::parallel::paced;
@@ -24,7 +25,7 @@ use crate::whole::{Device, Improvement, Live, RunEnd, Spec, altitude, drive};
 use super::prepared::Smoother;
 use super::stages::Stages;
 
-/// Number of coordinates that one task rounds.
+/// Number of coordinates that one task rounds, and of triangles that one task measures.
 const CHUNK: usize = 1 << 14;
 
 impl Smoother<'_> {
@@ -105,7 +106,7 @@ impl Smoother<'_> {
     async fn about(&self, options: &Options) -> RunFingerprint {
         let of_slide = self.slide.as_ref().map(Slide::words);
         let of_field = self.field.as_ref().map(TargetField::words);
-        let of_projection = self.projection.as_ref().map(|_| vec![1]);
+        let of_projection = self.problem.is_projected().then(|| vec![1]);
         let words = of_slide.into_iter().chain(of_field).chain(of_projection);
         let more: Vec<u64> = words.flatten().collect();
         resume::about(&self.mesh, self.problem.targets(), &more, options).await
@@ -117,7 +118,6 @@ impl Smoother<'_> {
             (Feature::Slide, self.sliding.is_some()),
             (Feature::Targets, self.problem.targets().is_some()),
             (Feature::TargetField, self.field.is_some()),
-            (Feature::Projection, self.projection.is_some()),
         ])
     }
 
@@ -185,7 +185,7 @@ impl Smoother<'_> {
         let improving =
             Improvement::after(&mut ended, options, &problem, stages.bounds(), observe).await;
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
-        let mut points = self.points_at(&ended.positions).await;
+        let mut points = self.problem.in_unit_of(&self.mesh, &ended.positions).await;
         stages.slide_into(&mut points);
         if !matches!(options.stored, Precision::Double) {
             paced::for_each_chunk(points.as_flattened_mut(), CHUNK, |_, coordinates| {
@@ -210,7 +210,7 @@ impl Smoother<'_> {
                 Some(base.ideal_squared() + mean_excess(base, &problem, &ended.positions).await)
             }
         };
-        let judged = self.positions_of(&points, ended.positions).await;
+        let judged = self.problem.normalized(&points, ended.positions).await;
         stages.set_targets_at(&mut problem, &judged)?;
         let problem = &problem;
         let written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
@@ -233,6 +233,7 @@ impl Smoother<'_> {
             None => (exact.unwrap_or(written) - swept).abs() / written.max(MIN_SCALE),
             Some(_) => 0.0,
         };
+        let error = error.max(self.projection_error(&points).await);
         let slid = stages.slid(gains, &points);
         let best = if gains { written } else { initial };
         let least = base.least_objective(problem.targets().is_some());
@@ -281,15 +282,48 @@ impl Smoother<'_> {
         if is_exact || self.problem.targets().is_some() || self.field.is_some() {
             return Ok(true);
         }
-        let now = Quality::with_pauses(Surface::Plane, points, &self.topology).await?;
-        let before = Quality::with_pauses(Surface::Plane, &self.mesh.points, &self.topology);
-        Ok(now.f(metric) < before.await?.f(metric))
+        let f = async |points: &[[f64; 2]]| {
+            let images = self.problem.images(points);
+            let quality = Quality::with_pauses(Surface::Plane, &images, &self.topology);
+            quality.await.map(|quality| quality.f(metric))
+        };
+        Ok(f(points).await? < f(&self.mesh.points).await?)
     }
 
-    /// Returns the largest inverse mean ratio that the guard of a run allows; infinite without a guard, and with
-    /// targets, by which the guard is no property of the triangles alone.
+    /// Returns an upper estimate, as a share of f, of the distance between the optimum in the projection of a sphere and
+    /// the optimum on the sphere; 0 without a projection. With vertices at `points`, f by the inverse mean ratio in the
+    /// projection differs from f on the sphere, where triangles are measured at their centers. f at the other optimum
+    /// differs about as much, so the estimate is twice the difference. Triangles without a free vertex do not count.
+    async fn projection_error(&self, points: &[[f64; 2]]) -> f64 {
+        if !self.problem.is_projected() {
+            return 0.0;
+        }
+        let images = self.problem.images(points);
+        let square = |points: &[[f64; 2]], t: &[u32; 3], lengths: [f64; 2]| {
+            let [p, q, r] = t.map(|v| DVec2::from(points[v as usize]) * DVec2::from(lengths));
+            let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
+            corner.inverse_mean_ratio().powi(2)
+        };
+        let squares = |_, triangles: &[[u32; 3]]| {
+            let movable =
+                triangles.iter().filter(|t| t.iter().any(|&v| self.topology.free()[v as usize]));
+            movable.fold([0.0; 2], |[on_sphere, projected], t| {
+                let lengths = Surface::Sphere.lengths_in(points, t);
+                let [s, p] = [square(points, t, lengths), square(&images, t, [1.0; 2])];
+                [on_sphere + s, projected + p]
+            })
+        };
+        let parts = paced::map_parts(self.topology.triangles().chunks(CHUNK), squares).await;
+        let [on_sphere, projected] =
+            [0, 1].map(|k| parts.iter().map(|part: &[f64; 2]| part[k]).sum::<f64>());
+        let share = 2.0 * (on_sphere - projected).abs() / on_sphere;
+        if share.is_finite() { share } else { 0.0 }
+    }
+
+    /// Returns the largest inverse mean ratio that the guard of a run allows; infinite without a guard, with targets,
+    /// and in a projection, as the guard is no property of the triangles of the mesh alone then.
     async fn final_guard(&self, options: &Options) -> f64 {
-        if self.problem.targets().is_some() {
+        if self.problem.targets().is_some() || self.problem.is_projected() {
             return f64::INFINITY;
         }
         let mut plan = Plan::new(options);

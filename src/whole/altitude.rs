@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use glam::DVec2;
 
 use crate::error::MeshError;
-use crate::layout::Problem;
+use crate::layout::{MeshCoordinates, Problem};
 use crate::measure::altitude;
 use crate::metric::Corner;
 use crate::patch::is_kept;
@@ -28,15 +28,22 @@ fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
     triangles.iter().map(|t| altitude(t.map(&at))).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the smallest normalized altitude of the triangles, with vertices at the problem's positions.
+/// Returns the smallest normalized altitude of the triangles in the coordinates of the mesh, with vertices at the
+/// problem's positions.
 pub(crate) fn least_of(problem: &Problem) -> f64 {
-    least(problem.triangles(), |v| problem.positions()[v as usize])
+    least_at(problem, problem.positions())
+}
+
+fn least_at(problem: &Problem, positions: &[DVec2]) -> f64 {
+    let coordinates = problem.coordinates();
+    least(problem.triangles(), |v| coordinates.at(positions[v as usize]))
 }
 
 /// The bounds that triangles keep after a move. `corner` returns a triangle with vertices at given positions.
 struct Bounds<F> {
-    /// Smallest altitude.
+    /// Smallest altitude in the coordinates of the mesh.
     floor: f64,
+    coordinates: MeshCoordinates,
     /// Largest inverse mean ratio of a triangle that becomes worse; infinite for no guard.
     guard: f64,
     corner: F,
@@ -55,7 +62,7 @@ impl<F: Fn(&[u32; 3], &[DVec2]) -> Corner<f64>> Bounds<F> {
     ) -> Vec<u32> {
         // An altitude of NaN counts as below the floor.
         let is_low = |t: &[u32; 3], at: &[DVec2]| {
-            let altitude = altitude(t.map(|v| at[v as usize]));
+            let altitude = altitude(t.map(|v| self.coordinates.at(at[v as usize])));
             altitude.partial_cmp(&self.floor).is_none_or(|order| order == Ordering::Less)
         };
         let mut returned = bring_back(triangles, before, points, is_low, halved);
@@ -118,7 +125,9 @@ pub(crate) fn restore(
         let [p, q, r] = t.map(|v| at[v as usize]);
         Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 }
     };
-    let bounds = Bounds { floor: least(triangles, |v| old[v as usize]), guard, corner };
+    let (floor, coordinates) =
+        (least(triangles, |v| old[v as usize]), MeshCoordinates::OF_POSITIONS);
+    let bounds = Bounds { floor, coordinates, guard, corner };
     let returned = bounds.restore(triangles, &old, &mut new, 0);
     for &v in &returned {
         points[v as usize] = before[v as usize];
@@ -165,7 +174,8 @@ impl Stage for AltitudeStage<'_> {
         let guard = host.guard();
         let Host { problem, before, positions, held, .. } = host;
         let corner = |t: &[u32; 3], at: &[DVec2]| problem.corner(t, |v| at[v as usize]);
-        let bounds = Bounds { floor: self.least, guard, corner };
+        let (floor, coordinates) = (self.least, problem.coordinates());
+        let bounds = Bounds { floor, coordinates, guard, corner };
         let returned = bounds.restore(problem.triangles(), before, positions, MAX_HALVINGS);
         let mut is_settled = true;
         for v in returned {
@@ -178,7 +188,7 @@ impl Stage for AltitudeStage<'_> {
     }
 
     fn allows(&self, positions: &[DVec2]) -> bool {
-        least(self.problem.triangles(), |v| positions[v as usize]) >= self.least
+        least_at(self.problem, positions) >= self.least
     }
 
     fn judge(&mut self, period: &Period) -> Judgment {

@@ -26,7 +26,7 @@ const MAX_HALVINGS: u32 = 5;
 /// Distance from the start at which a vertex is held, as a share of the bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
 
-/// The stage that limits the distance of each vertex from its start.
+/// The stage that limits the distance of each vertex from its start. Distances are in the coordinates of the mesh.
 pub(crate) struct MoveLimitStage<'s> {
     problem: &'s Problem,
     /// Largest distance of each vertex of the mesh from its start, in the unit of the mesh.
@@ -78,14 +78,20 @@ impl<'s> MoveLimitStage<'s> {
         sliding.for_each_vertex(|v| self.all[v as usize])
     }
 
-    /// Returns the circle around its start that bounds a free vertex.
-    fn bound(&self, v: usize) -> Circle {
-        Circle { center: self.problem.positions()[v], radius: self.bounds[v] }
+    /// Returns `to` if the position is within the bound of a free vertex, or else the position on the bound that is
+    /// nearest in the coordinates of the mesh.
+    fn within(&self, v: usize, to: DVec2) -> DVec2 {
+        let coordinates = self.problem.coordinates();
+        let at = coordinates.at(to);
+        let center = coordinates.at(self.problem.positions()[v]);
+        let nearest = Circle { center, radius: self.bounds[v] }.nearest(at);
+        if nearest == at { to } else { coordinates.position(nearest) }
     }
 
-    /// Returns the position nearest to `to` within the bound of a free vertex.
-    fn within(&self, v: usize, to: DVec2) -> DVec2 {
-        self.bound(v).nearest(to)
+    /// Returns the distance of a free vertex from its start, normalized, with the vertex at `position`.
+    fn distance(&self, v: usize, position: DVec2) -> f64 {
+        let coordinates = self.problem.coordinates();
+        coordinates.at(position).distance(coordinates.at(self.problem.positions()[v]))
     }
 
     /// Moves each vertex to its swept position, or to its bound if the position is beyond. Halves the moves until f
@@ -159,15 +165,14 @@ impl Stage for MoveLimitStage<'_> {
 
     /// Returns whether all free vertices are within their bounds.
     fn allows(&self, positions: &[DVec2]) -> bool {
-        let start = self.problem.positions().iter().zip(positions);
-        start.zip(&self.bounds).all(|((start, now), bound)| now.distance(*start) <= *bound)
+        let bounds = self.bounds.iter().zip(positions).enumerate();
+        bounds.into_iter().all(|(v, (bound, now))| self.distance(v, *now) <= *bound)
     }
 
     /// Holds the vertices at their bound, and releases all other vertices.
     fn follow(&mut self, host: &mut Host<'_>) {
         for (v, held) in host.held.iter_mut().enumerate() {
-            let distance = host.positions[v].distance(self.problem.positions()[v]);
-            *held = distance >= AT_BOUND * self.bounds[v];
+            *held = self.distance(v, host.positions[v]) >= AT_BOUND * self.bounds[v];
         }
     }
 

@@ -34,7 +34,8 @@ pub(crate) fn set_targets_of(
 ) -> Result<(), MeshError> {
     let points = problem.denormalize(mesh, positions);
     let (targets, _) = field.at(&points)?;
-    problem.set_targets_at(targets.maps(), positions);
+    let converted = problem.converted(&targets, &points);
+    problem.set_targets_at(converted.maps(), positions);
     Ok(())
 }
 

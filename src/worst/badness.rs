@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::layout::Problem;
+use crate::layout::{MeshCoordinates, Problem};
 use crate::metric::{Corner, Dual, Real};
 use crate::options::WorstBy;
 use crate::patch::{FanCorner, FanPatch};
@@ -40,13 +40,21 @@ impl Badness {
         self.0 != WorstBy::Altitude
     }
 
-    /// Returns a triangle with one corner at `at`, transformed by its target map if the measure applies to targets.
-    pub(crate) fn seen(self, triangle: &FanCorner, at: DVec2, mean_area: f64) -> Corner<f64> {
-        let corner = triangle.in_plane(at, mean_area);
-        match triangle.map {
-            Some(map) if self.is_of_targets() => map.transform(&corner),
-            _ => corner,
+    /// Returns a triangle with one corner at `at`, transformed by its target map if the measure applies to targets, and
+    /// in the coordinates of the mesh otherwise.
+    pub(crate) fn seen(
+        self,
+        triangle: &FanCorner,
+        at: DVec2,
+        mean_area: f64,
+        coordinates: MeshCoordinates,
+    ) -> Corner<f64> {
+        if !self.is_of_targets() {
+            let ends = triangle.ends.map(|end| coordinates.at(end));
+            return FanCorner { ends, map: None }.in_plane(coordinates.at(at), mean_area);
         }
+        let corner = triangle.in_plane(at, mean_area);
+        triangle.map.map_or(corner, |map| map.transform(&corner))
     }
 
     /// Returns the badness of a triangle given by [`seen`](Self::seen); infinite for an inverted or flat triangle.
@@ -60,7 +68,9 @@ impl Badness {
 
     /// Returns the badness of the worst triangle of a patch, with the visited vertex at `at`.
     pub(crate) fn worst_of(self, patch: &FanPatch, at: DVec2) -> f64 {
-        let of = |triangle: &FanCorner| self.of(&self.seen(triangle, at, patch.mean_area));
+        let of = |triangle: &FanCorner| {
+            self.of(&self.seen(triangle, at, patch.mean_area, patch.coordinates))
+        };
         patch.corners.iter().map(of).fold(0.0, f64::max)
     }
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 
-use crate::layout::Problem;
+use crate::layout::{MeshCoordinates, Problem};
 use crate::metric::{Dual, Smoothing, TargetMap};
 use crate::parallel::pace::pause;
 use crate::patch::{
@@ -49,9 +49,10 @@ pub(crate) struct Region<'a> {
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
     stars: Vec<Vec<PatchTriangle>>,
-    /// For each moving vertex, the circle that limits its position.
+    /// For each moving vertex, the circle that limits its coordinates of the mesh.
     bounds: Vec<Circle>,
     mean_area: f64,
+    coordinates: MeshCoordinates,
 }
 
 impl<'a> Region<'a> {
@@ -78,13 +79,14 @@ impl<'a> Region<'a> {
             };
             stars.push(ring.iter().zip(next).map(side).collect());
         }
+        let coordinates = problem.coordinates();
         let bound = |&v: &u32| {
             let radius = rules.bounds.map_or(f64::INFINITY, |bounds| bounds[v as usize]);
-            Circle { center: problem.positions()[v as usize], radius }
+            Circle { center: coordinates.at(problem.positions()[v as usize]), radius }
         };
         let bounds = vertices.iter().map(bound).collect();
         let mean_area = problem.mean_area();
-        Self { rules, vertices, positions: places, stars, bounds, mean_area }
+        Self { rules, vertices, positions: places, stars, bounds, mean_area, coordinates }
     }
 
     /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
@@ -133,7 +135,8 @@ impl<'a> Region<'a> {
             map: side.map,
         };
         let corners = self.stars[v].iter().map(corner).collect();
-        FanPatch { corners, mean_area: self.mean_area, min_altitude: self.rules.floor }
+        let Self { mean_area, coordinates, rules, .. } = *self;
+        FanPatch { corners, mean_area, coordinates, min_altitude: rules.floor }
     }
 
     /// Returns the badness of the worst triangle of the region.
@@ -196,11 +199,13 @@ impl Objective<f64> for PowerObjective<'_> {
     fn expansion(&self, at: [f64; 2]) -> Dual {
         let Self { patch, badness, unit, doublings } = *self;
         patch.corners.iter().fold(Dual::default(), |sum, triangle| {
-            let seen = badness.seen(triangle, at.into(), patch.mean_area);
+            let coordinates = patch.coordinates;
+            let seen = badness.seen(triangle, at.into(), patch.mean_area, coordinates);
             let transformed = badness.power_derivatives(&seen, unit, doublings);
             sum + match triangle.map {
                 Some(map) if badness.is_of_targets() => map.pull_back(transformed),
-                _ => transformed,
+                None if badness.is_of_targets() => transformed,
+                _ => coordinates.pull_back(transformed, at.into()),
             }
         })
     }
@@ -208,7 +213,7 @@ impl Objective<f64> for PowerObjective<'_> {
     fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
         let Self { patch, badness, unit, doublings } = *self;
         let power = |triangle: &FanCorner| {
-            let seen = badness.seen(triangle, to.into(), patch.mean_area);
+            let seen = badness.seen(triangle, to.into(), patch.mean_area, patch.coordinates);
             badness.power(&seen, unit, doublings)
         };
         (patch.corners.iter().map(power).sum(), true)
@@ -232,7 +237,7 @@ impl Objective<f64> for Constrained<'_> {
 
     fn trial(&self, to: [f64; 2], max_imr: f64) -> (f64, bool) {
         let Self { objective, patch, rules, bound, limit } = *self;
-        let is_allowed = bound.contains(to.into())
+        let is_allowed = bound.contains(patch.coordinates.at(to.into()))
             && is_acceptable(patch, rules.step.metric.formulas(), to, rules.shape)
             && (limit.is_infinite() || rules.badness.worst_of(patch, to.into()) <= limit);
         if is_allowed { objective.trial(to, max_imr) } else { (f64::INFINITY, false) }

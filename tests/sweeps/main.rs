@@ -24,6 +24,7 @@ mod requests;
 mod resumed;
 mod safety;
 mod slide;
+mod sphere;
 mod stretched;
 mod stuck;
 mod targets;

@@ -154,7 +154,6 @@ fn flag(feature: Feature, args: &SmoothArgs) -> String {
         Feature::Targets if args.target.target == Target::Equilateral => "--surface sphere".into(),
         Feature::Targets => "--target".into(),
         Feature::TargetField => "--target-of place".into(),
-        Feature::Projection => "--surface sphere".into(),
         Feature::Untangle => "--untangle".into(),
         other => other.to_string(),
     }

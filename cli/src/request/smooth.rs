@@ -171,17 +171,6 @@ impl SmoothRequest {
         self.run.max_sweeps
     }
 
-    /// Returns whether vertices move in a projection of the sphere. Options that measure in coordinates of the mesh need
-    /// runs in these coordinates.
-    pub(crate) fn is_projected(&self) -> bool {
-        let measures_in_coordinates = self.slide.is_some()
-            || self.target.is_of_places()
-            || self.run.max_move.is_some()
-            || self.run.keep_altitude
-            || self.run.improve_worst.is_some();
-        self.surface == Surface::Sphere && !measures_in_coordinates
-    }
-
     /// Returns the largest distance that a vertex may move, in lengths of an edge; `None` without a limit.
     pub(crate) fn max_move(&self) -> Option<f64> {
         self.run.max_move

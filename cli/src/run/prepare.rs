@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother, targets::Adaptation};
+use gpu_smooth::targets::{Adaptation, Surface};
+use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
 
 use crate::error::CliError;
 use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection};
@@ -113,7 +114,7 @@ pub(super) fn set_up<'a>(
         _ => taken,
     };
     let points = mended.map_or(&mesh.points, |mended| &mended.mesh.points);
-    if request.is_projected() {
+    if surface == Surface::Sphere {
         // A mesh with slivers that the projection would invert is smoothed in longitude and latitude.
         smoother.project_from_sphere().map_err(|error| explain::mesh_error(file, &error))?;
     }
