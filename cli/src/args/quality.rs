@@ -11,7 +11,9 @@ use crate::args::ReadArgs;
 use crate::args::SurfaceArgs;
 use crate::args::names;
 
+// Arrows need a run. The option is accepted here only for the message that says so.
 #[derive(Args)]
+#[command(mut_arg("picture_arrows", |arrows| arrows.hide(true)))]
 pub(crate) struct QualityArgs {
     /// The meshes; several are shown side by side
     #[arg(required = true, value_name = "MESH")]
