@@ -17,6 +17,9 @@ const ESTIMATES_FOR_EDGE: usize = 2;
 const MOST_ATTEMPTS: u32 = ATTEMPTS + 2;
 /// Multiple of the tolerance that a refused correction must promise to prevent the end of a run.
 const DOUBT: f64 = 5.0;
+/// Smallest remaining gain that a run reports because a correction and a sweep gained next to nothing. Gains below
+/// [`NOISE`] are not seen, and slow modes hold many such gains: up to 1.9e-8 was found to remain.
+const LEAST_SETTLED: f64 = 10.0 * NOISE;
 /// Ratio of two successive gains of f, below which f decays steadily and a single estimate suffices.
 const STEADY: f64 = 0.3;
 /// Factor on the estimates. In some runs, each correction gained half as much as the previous one, and modes remained
@@ -24,12 +27,14 @@ const STEADY: f64 = 0.3;
 /// starts estimated too little, by up to a third.
 const CAUTION: f64 = 1.5;
 
-/// The state of the stop rule after a sweep.
+/// The judgment of the stop rule after a sweep.
 struct Judged {
     /// Estimate of the remaining gain as a share of f. `None` without an estimate.
     remaining: Option<f64>,
-    /// Window in sweeps, over which the stop rule extrapolates the decay.
-    window: usize,
+    /// Reason for which the objective of the stage ends the run. `None` if the run continues.
+    end: Option<Stop>,
+    /// Whether f decays so slowly that more than the tolerance remains.
+    is_slow: bool,
 }
 
 impl Corrections {
@@ -45,65 +50,76 @@ impl Corrections {
             tolerance: self.tolerance_of_norm(whole.tolerance),
             max_sweeps: u32::MAX,
         };
-        let (of_stage, window) = self.values_of_stage(history);
-        let mut judged = Judged { remaining: rule.remaining(&of_stage, window), window };
-        if self.accelerated {
-            judged = self.confirmed(judged, &of_stage, &rule);
-        }
-        let slow = self.slow_decay(&rule, history, noise);
-        let is_slow = slow.is_some_and(|left| left > rule.tolerance);
-        if let Some(left) = slow {
-            judged.remaining =
-                judged.remaining.map(|least| least.max(left)).filter(|left| left.is_finite());
-        }
-        if is_slow {
-            judged.window = NO_ESTIMATE;
-        }
-        let mut of_decay = rule.judge(&of_stage, least(&of_stage), judged.window);
-        if of_decay == Some(Stop::Converged) && judged.remaining.is_none() {
-            judged.remaining = Some(rule.level(&of_stage, judged.window));
-        }
+        let mut judged = self.judged_by_decay(&rule, history, noise);
         // In single precision, corrections at the end of a run are refused because of rounding.
-        let is_precise = noise <= NOISE;
-        if is_precise && self.tries_again(history, of_decay) {
-            // Only tries at the end count: a stage that has doubled the number of sweeps may be far from the end.
-            self.attempts += u32::from(of_decay.take().is_some());
-            self.begin_correcting(history.f().len() - 1, 1.0);
-            self.lowered.push(history.last());
-        } else if of_decay == Some(Stop::Converged)
-            && let Some(promised) = self.promised(history)
-            && promised > DOUBT * rule.tolerance
-            && is_precise
-        {
-            // The decay of f in sweeps alone is then no evidence for convergence.
-            judged.remaining = judged.remaining.map(|left| left.max(promised));
-            of_decay = of_decay.filter(|_| self.attempts >= MOST_ATTEMPTS);
+        if noise <= NOISE {
+            self.doubt(&mut judged, &rule, history);
         }
-        let is_settled = self.settled && self.is_sharpest() && !is_slow;
+        let is_settled = self.settled && self.is_sharpest() && !judged.is_slow;
         if is_settled {
             // Another sweep may gain as much as the last.
-            judged.remaining = Some((SWEPT * rule.tolerance).max(NOISE));
-            of_decay = of_decay.or(match (rule.target, rule.tolerance > 0.0) {
+            judged.remaining = Some((SWEPT * rule.tolerance).max(LEAST_SETTLED));
+            judged.end = judged.end.or(match (rule.target, rule.tolerance > 0.0) {
                 (Some(_), _) => Some(Stop::Stalled),
                 (None, true) => Some(Stop::Converged),
                 (None, false) => None,
             });
         }
         let bound = self.bound(history);
-        of_decay = of_decay.or(bound.filter(|_| rule.target.is_none()).map(|_| Stop::Converged));
+        let is_at_bound = bound.is_some() && rule.target.is_none();
+        let end = judged.end.or(is_at_bound.then_some(Stop::Converged));
         // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
-        let is_extrapolated = of_decay == Some(Stop::Converged) && !is_settled;
+        let is_extrapolated = end == Some(Stop::Converged) && !is_settled;
         let least_left = if is_extrapolated { whole.tolerance } else { 0.0 };
         let remaining = judged.remaining.map(|left| (left + self.above()).max(least_left));
         let remaining = remaining.into_iter().chain(bound).reduce(f64::min);
         let stop = match of_f {
             Some(Stop::Reached) => of_f,
-            _ => of_decay.or(of_f),
+            _ => end.or(of_f),
         };
         if stop.is_none() && !self.is_sharpest() && self.gains_little(history) {
             self.raise_exponent(history.f().len() - 1);
         }
         history.end(stop, remaining);
+    }
+
+    /// Applies the stop rule to the decay of the objective in the present stage, and to the slow decay of f.
+    fn judged_by_decay(&mut self, rule: &StopRule, history: &History, noise: f64) -> Judged {
+        let (of_stage, mut window) = self.values_of_stage(history);
+        let mut remaining = rule.remaining(&of_stage, window);
+        if self.accelerated {
+            (remaining, window) = self.confirmed(remaining, window, &of_stage, rule);
+        }
+        let slow = self.slow_decay(rule, history, noise);
+        let is_slow = slow.is_some_and(|left| left > rule.tolerance);
+        if let Some(left) = slow {
+            remaining = remaining.map(|least| least.max(left)).filter(|left| left.is_finite());
+        }
+        if is_slow {
+            window = NO_ESTIMATE;
+        }
+        let end = rule.judge(&of_stage, least(&of_stage), window);
+        let is_level = end == Some(Stop::Converged) && remaining.is_none();
+        let level = is_level.then(|| rule.level(&of_stage, window));
+        Judged { remaining: remaining.or(level), end, is_slow }
+    }
+
+    /// Prevents the end of a stage of sweeps alone if corrections have not had a fair trial: corrections begin again if
+    /// they are due, and a refused correction that promises a large gain prevents the end.
+    fn doubt(&mut self, judged: &mut Judged, rule: &StopRule, history: &History) {
+        if self.tries_again(history, judged.end) {
+            // Only tries at the end count: a stage that has doubled the number of sweeps may be far from the end.
+            self.attempts += u32::from(judged.end.take().is_some());
+            self.begin_correcting(history.f().len() - 1, 1.0);
+            self.lowered.push(history.last());
+        } else if judged.end == Some(Stop::Converged)
+            && let Some(promised) = self.promised(history)
+            && promised > DOUBT * rule.tolerance
+        {
+            // The decay of f in sweeps alone is then no evidence for convergence.
+            judged.remaining = judged.remaining.map(|left| left.max(promised));
+            judged.end = judged.end.filter(|_| self.attempts >= MOST_ATTEMPTS);
+        }
     }
 
     /// Returns whether corrections begin again after a stage of sweeps alone, because the stage would end the run for
@@ -143,11 +159,16 @@ impl Corrections {
     }
 
     /// Records an estimate of a run with accelerated corrections, whose gains are irregular. Returns the largest of the
-    /// latest estimates, and no window for the stop rule if that estimate is above the tolerance.
-    fn confirmed(&mut self, judged: Judged, of_stage: &[f64], rule: &StopRule) -> Judged {
+    /// latest estimates and the window for the stop rule, or no window if that estimate is above the tolerance.
+    fn confirmed(
+        &mut self,
+        remaining: Option<f64>,
+        window: usize,
+        of_stage: &[f64],
+        rule: &StopRule,
+    ) -> (Option<f64>, usize) {
         self.estimates.rotate_left(1);
-        self.estimates[ESTIMATES - 1] =
-            judged.remaining.map_or(f64::INFINITY, |left| CAUTION * left);
+        self.estimates[ESTIMATES - 1] = remaining.map_or(f64::INFINITY, |left| CAUTION * left);
         let asked = match self.metric().is_smooth() {
             // New levels on a strongly stretched mesh gain much at first, and slow modes remain.
             _ if decays_steadily(of_stage) && !self.has_local_maps() => 1,
@@ -155,10 +176,8 @@ impl Corrections {
             false => ESTIMATES_FOR_EDGE,
         };
         let most = self.estimates.iter().rev().take(asked).copied().fold(0.0, f64::max);
-        Judged {
-            remaining: Some(most).filter(|most| most.is_finite()),
-            window: if most <= rule.tolerance { judged.window } else { NO_ESTIMATE },
-        }
+        let window = if most <= rule.tolerance { window } else { NO_ESTIMATE };
+        (Some(most).filter(|most| most.is_finite()), window)
     }
 
     /// Returns the remaining gain by the windows of a slow decay. `None` before many corrections, and where f is no
