@@ -72,7 +72,8 @@ pub struct Untangled {
     /// ([`Smoother::beyond_precision`](crate::Smoother::beyond_precision)) are listed as flat if they have a free
     /// vertex.
     pub left: Vec<BadTriangle>,
-    /// Bad triangles of the given mesh without a free vertex. No move of vertices can turn such triangles.
+    /// Bad triangles of the given mesh without a free vertex, or with two fixed vertices at the same point. No move of
+    /// vertices can make such triangles feasible.
     pub hopeless: Vec<BadTriangle>,
     /// A free vertex around which triangles wind more than once, although every triangle is feasible. `None` if there
     /// is no such vertex, or if triangles are left bad.
@@ -124,7 +125,12 @@ pub fn untangle(
     {
         return Err(MeshError::Closed { triangle });
     }
-    let is_hopeless = |bad: &BadTriangle| !topology.can_move(bad.triangle);
+    let is_hopeless = |bad: &BadTriangle| {
+        let [p, q, r] =
+            bad.vertices.map(|v| (!topology.free()[v as usize], mesh.points[v as usize]));
+        let coincide = |(a, b): ((bool, [f64; 2]), (bool, [f64; 2]))| a.0 && a == b;
+        !topology.can_move(bad.triangle) || [(p, q), (q, r), (r, p)].into_iter().any(coincide)
+    };
     let hopeless: Vec<BadTriangle> = before.iter().copied().filter(is_hopeless).collect();
     let mut result = Untangled {
         points: mesh.points.clone(),

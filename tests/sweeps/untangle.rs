@@ -50,6 +50,21 @@ fn meshes_of_every_kind_of_tangle_are_untangled() {
     }
 }
 
+/// A former defect: the triangles at the hole were swept a thousand times.
+#[test]
+fn a_hole_shrunk_to_a_point_is_hopeless_at_once() {
+    let around = 30;
+    let mut mesh = tangle::turned_hole(around, 0.0);
+    let first = mesh.points.len() - around;
+    mesh.points[first..].fill([0.1, 0.0]);
+    let result = mend(&mesh);
+    assert_eq!((result.hopeless.len(), result.left.len()), (around, around));
+    assert!(result.sweeps < 50, "{} sweeps", result.sweeps);
+    for bad in &result.hopeless {
+        assert_eq!(bad.vertices.iter().filter(|&&v| v as usize >= first).count(), 2);
+    }
+}
+
 /// Damaged files put a vertex far away, or leave the fill value of netCDF in coordinates.
 #[test]
 fn free_vertices_far_away_are_brought_back() {

@@ -129,7 +129,7 @@ fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
 struct TangledRest<'a> {
     /// All remaining inverted or flat triangles.
     triangles: &'a [BadTriangle],
-    /// The remaining triangles without a free vertex.
+    /// The remaining triangles that no move of vertices can mend.
     hopeless: &'a [BadTriangle],
     /// Number of completed sweeps.
     sweeps: u32,
@@ -151,9 +151,9 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
             (left, left.len(), why)
         }
         count => {
-            let why = "cannot be mended by moving vertices, as none of their vertices is free: they are on the \
-                       boundary, on constraint lines, between regions or of other elements. Mend the file, or let \
-                       those between regions move: --free-interfaces"
+            let why = "cannot be mended by moving vertices, as none of their vertices is free, or two fixed vertices \
+                       are at the same point. Vertices are fixed on the boundary, on constraint lines, between regions \
+                       and of other elements. Mend the file, or let those between regions move: --free-interfaces"
                 .to_owned();
             (hopeless, count, why)
         }
