@@ -135,7 +135,7 @@ impl Pipelines {
 
 #[cfg(test)]
 mod tests {
-    use naga::{AddressSpace, StorageAccess};
+    use wgpu::naga::{self, AddressSpace, StorageAccess};
 
     use super::*;
     use crate::gpu::kernels::layouts::Access;

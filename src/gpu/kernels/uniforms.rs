@@ -463,6 +463,8 @@ pub(crate) fn join([x, y, x_low, y_low]: [f32; 4]) -> DVec2 {
 mod tests {
     use std::mem::offset_of;
 
+    use wgpu::naga;
+
     use super::*;
     use crate::gpu::Kernel;
 
