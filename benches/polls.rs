@@ -91,7 +91,7 @@ fn measured(gpu: &Gpu, smoother: &Smoother<'_>, options: &Options) -> Measured {
                 break outcome.unwrap();
             }
             let now = Instant::now();
-            gpu.device().poll(wgpu::PollType::Poll).unwrap();
+            gpu.device().poll(gpu_smooth::wgpu::PollType::Poll).unwrap();
             of_device.push(now.elapsed());
         }
     };

@@ -31,7 +31,7 @@ fn examples_find_their_mesh_from_any_directory() {
 
 #[test]
 fn embed_draws_a_better_mesh_within_the_same_boundary() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate.node");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes/plate.node");
     let mesh = support::read_mesh(&path);
     let [before, after] = embed::smooth_and_draw(&mesh, 5).unwrap();
 

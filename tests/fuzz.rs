@@ -36,7 +36,6 @@ fn meshes_of_any_shape() {
     }
 }
 
-#[cfg(feature = "gpu")]
 #[test]
 fn meshes_of_any_shape_on_a_gpu() {
     let mut random = SplitMix64::new(14);

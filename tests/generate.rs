@@ -115,7 +115,7 @@ const DOMAINS: [(&str, i64, usize); 6] = [
 #[test]
 fn domains_meet_their_bounds() {
     for (name, holes, paper) in DOMAINS {
-        let path = format!("{}/meshes/{name}.outline", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/../meshes/{name}.outline", env!("CARGO_MANIFEST_DIR"));
         let outline = Outline::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
         for vertices in [1000, 1500, 3000, paper] {
             let mesh = support::triangulate(&outline, vertices).unwrap();
@@ -345,9 +345,11 @@ fn meshes_keep_their_bytes() {
 /// If this test fails after an update of spade, see `meshes/README.md`.
 #[test]
 fn committed_meshes_are_what_their_commands_make() {
+    // The commands name files from the top of the repository. The other tests here name files by absolute paths.
+    std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).unwrap();
     for name in DOMAINS.map(|(name, ..)| name).into_iter().chain(["plate"]) {
         let [node, ele] = ["node", "ele"].map(|ending| {
-            let path = format!("{}/meshes/{name}.{ending}", env!("CARGO_MANIFEST_DIR"));
+            let path = format!("{}/../meshes/{name}.{ending}", env!("CARGO_MANIFEST_DIR"));
             std::fs::read_to_string(path).unwrap()
         });
         let command = node.lines().next().unwrap().to_owned();

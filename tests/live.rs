@@ -17,7 +17,7 @@ use live::app::App;
 const SIZE: [u32; 2] = [240, 300];
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
 fn plate() -> Mesh {

@@ -387,7 +387,7 @@ fn histograms_worst_triangles_and_counts_are_those_of_the_values() {
 
 /// Returns the text of a document in the repository, without carriage returns.
 fn document(name: &str) -> String {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name);
     std::fs::read_to_string(path).unwrap().replace("\r\n", "\n")
 }
 

@@ -72,7 +72,7 @@ fn add_entry_points(folder: &Path, names: &mut BTreeSet<String>) {
 #[test]
 fn every_entry_point_of_the_shader_files_has_a_row_in_the_table() {
     let mut declared = BTreeSet::new();
-    add_entry_points(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), &mut declared);
+    add_entry_points(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders"), &mut declared);
     let of_rows = Kernel::all().iter().map(|kernel| kernel.entry_point().to_owned()).collect();
     assert_eq!(declared, of_rows);
 }

@@ -28,7 +28,7 @@ pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 pub(crate) type Vertex = [f32; 4];
 
 /// The mesh of a command line without MESH. The path is absolute, so that the example runs in any directory.
-pub(crate) const DEFAULT_MESH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/plate.node");
+pub(crate) const DEFAULT_MESH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../meshes/plate.node");
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1).map(PathBuf::from);

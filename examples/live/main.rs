@@ -49,7 +49,7 @@ pub(crate) struct Request {
 }
 
 pub(crate) fn run(args: &[String]) -> Result<()> {
-    let mut mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/plate.node").to_owned();
+    let mut mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../meshes/plate.node").to_owned();
     let (mut script, mut out, mut headless, mut size) = (None, PathBuf::new(), false, [1200, 880]);
     let mut args = args.iter();
     while let Some(arg) = args.next() {

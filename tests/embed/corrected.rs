@@ -322,7 +322,7 @@ fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
 /// Levels built for the triangles of a rough mesh never fit the mesh that sweeps make of it: a former defect.
 #[test]
 fn a_rough_mesh_is_near_the_limit_after_a_dozen_corrected_sweeps() {
-    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes");
     let fish = read_mesh(&meshes.join("fish.node"));
     let cases = [
         ("plate", read_mesh(&meshes.join("plate.node"))),

@@ -42,7 +42,7 @@ impl Hash {
 /// Parses a mesh file of `meshes/`.
 fn shipped(name: &str) -> Mesh {
     let path = |ending: &str| {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes").join(name).with_extension(ending)
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes").join(name).with_extension(ending)
     };
     let rows = |ending: &str| -> Vec<Vec<f64>> {
         let text = std::fs::read_to_string(path(ending)).unwrap();
@@ -64,7 +64,7 @@ fn shipped(name: &str) -> Mesh {
 
 /// Makes a plate with two holes.
 fn plate(vertices: usize) -> Mesh {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate.outline");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes/plate.outline");
     let outline = Outline::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
     support::triangulate(&outline, vertices).unwrap()
 }
@@ -286,7 +286,7 @@ fn compare(file: &str, found: &str) {
 }
 
 fn recorded(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(file)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(file)
 }
 
 /// Returns all results of the CPU engine, computed on `threads` threads.
@@ -319,7 +319,6 @@ fn results_on_two_threads_have_the_recorded_bits() {
 }
 
 /// Small meshes without pairs of changes, because lavapipe needs a second to compile each kernel.
-#[cfg(feature = "gpu")]
 #[test]
 fn results_on_lavapipe_have_the_recorded_bits() {
     let gpu =

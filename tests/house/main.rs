@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
 fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
@@ -175,12 +175,15 @@ fn no_function_takes_a_tuple_apart_in_its_signature() {
         let mut files = Vec::new();
         rust_files(&root().join(source), &mut files);
         files.sort();
-        for path in files.iter().filter(|path| !path.to_string_lossy().contains("tests")) {
+        for path in files {
+            let name = path.strip_prefix(root()).unwrap().display();
+            if name.to_string().contains("tests") {
+                continue;
+            }
             count += 1;
-            let parsed = syn::parse_file(&fs::read_to_string(path).unwrap()).unwrap();
+            let parsed = syn::parse_file(&fs::read_to_string(&path).unwrap()).unwrap();
             let mut functions = Functions(Vec::new());
             syn::visit::Visit::visit_file(&mut functions, &parsed);
-            let name = path.strip_prefix(root()).unwrap().display();
             found.extend(functions.0.into_iter().map(|function| format!("{name}: {function}")));
         }
     }

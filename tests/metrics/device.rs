@@ -1,7 +1,7 @@
 //! Execution of test entry points, appended to WGSL of the library, on the library's default adapter.
 
 use bytemuck::Pod;
-use wgpu::util::DeviceExt;
+use gpu_smooth::wgpu::{self, util::DeviceExt};
 
 /// Returns WGSL to append to a module of the library. In each invocation, the entry point reads a row of numbers and
 /// writes another, through bindings beside those of a run. `body` reads its row from `x` and writes its results to `y`.

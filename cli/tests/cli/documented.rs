@@ -193,16 +193,15 @@ fn every_documented_command_of_a_clone_names_a_target_or_a_file_of_the_clone() {
             let program = line.split_whitespace().next().unwrap();
             match program {
                 "cargo" => {
-                    let package = match argument(line, "-p") {
-                        Some("gpu-smooth-cli") => "cli",
-                        Some("mesh-io") => "mesh-io",
-                        None => ".",
-                        Some(other) => panic!("{place}: no package {other}"),
-                    };
-                    let manifest = root().join(package).join("Cargo.toml");
-                    let manifest = fs::read_to_string(manifest).unwrap();
-                    for option in ["--bench", "--example"] {
+                    let package = argument(line, "-p").map(|package| match package {
+                        "gpu-smooth-cli" => "cli",
+                        "mesh-io" => "mesh-io",
+                        other => panic!("{place}: no package {other}"),
+                    });
+                    for (option, own) in [("--bench", "benches"), ("--example", "examples")] {
                         if let Some(name) = argument(line, option) {
+                            let manifest = root().join(package.unwrap_or(own)).join("Cargo.toml");
+                            let manifest = fs::read_to_string(manifest).unwrap();
                             assert_holds(&manifest, &[&format!("name = \"{name}\"")]);
                         }
                     }
