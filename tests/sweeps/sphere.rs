@@ -141,9 +141,12 @@ fn the_least_altitude_in_degrees_is_kept_or_improved() {
     let smoother = on_sphere(&mesh);
     let least = |points: &[[f64; 2]]| {
         let altitude = |t: &[u32; 3]| {
-            let [p, q, r] = t.map(|v| glam::DVec2::from(points[v as usize]));
-            let longest = (q - p).length().max((r - q).length()).max((p - r).length());
-            (q - p).perp_dot(r - p) / longest
+            let [p, q, r] = t.map(|v| points[v as usize]);
+            let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+            let edges = [way(p, q), way(q, r), way(r, p)];
+            let longest = edges.map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
+            let [a, b] = [edges[0], edges[1]];
+            (a[0] * b[1] - a[1] * b[0]) / longest
         };
         mesh.triangles.iter().map(altitude).fold(f64::INFINITY, f64::min)
     };
