@@ -21,7 +21,7 @@ pub(crate) mod secant;
 mod shape_guard;
 mod stop;
 mod sweep_params;
-mod sweeps;
+pub(crate) mod sweeps;
 
 pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::RunFingerprint;
@@ -36,7 +36,7 @@ pub use objectives::Objectives;
 
 pub use plan::Plan;
 pub(crate) use saved::{CPU, EngineState, PeriodState, Saved};
-pub(crate) use shape_guard::set_guards;
+pub(crate) use shape_guard::{set_guards, worst_movable};
 pub(crate) use stop::{JITTER, MIN_SCALE, NOISE, ROUNDING};
 pub use stop::{Stop, StopRule};
 pub use sweep_params::SweepParams;

@@ -21,6 +21,7 @@ use crate::run::{
 use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;
 use crate::whole::host::objectives;
+use crate::whole::relief::{Relief, relieved};
 
 /// Largest sum of q² - ideal² with which a device begins. The limit is far below the largest f32, 3e38, as metrics of
 /// size multiply powers of their arguments.
@@ -58,6 +59,8 @@ pub(crate) struct Live<'s> {
     /// State at the start of the run, or at the end of the latest stage that moved vertices.
     last: Point,
     held: Vec<bool>,
+    /// Tracked objectives of the given mesh, if the run begins at means of neighbors instead.
+    given: Option<Objectives>,
     opened: Option<DoublePrelude>,
     /// Number of sweeps before the CPU replaced a device for which triangles are too flat or too small; 0 also if the
     /// vertices have more maps than a device stores. `None` without such a change.
@@ -78,8 +81,8 @@ pub(crate) struct RunEnd {
 }
 
 impl<'s> Live<'s> {
-    /// Prepares a run by `plan` from the positions `from`. With `resumed`, the run continues from a checkpoint of a run
-    /// from these positions.
+    /// Prepares a run by `plan` from the positions `from`, or from means of neighbors if sweeps cannot open extremely flat
+    /// triangles at `from`. With `resumed`, the run continues from a checkpoint of a run from these positions.
     pub(crate) async fn new(
         spec: Spec<'s>,
         mut plan: Plan,
@@ -87,9 +90,18 @@ impl<'s> Live<'s> {
         resumed: Option<&Checkpoint>,
         checkpointer: &mut Checkpointer<'_>,
     ) -> Result<Self, SmoothError> {
-        let mut problem = spec.problem.clone();
-        if spec.options.is_multilevel() && problem.is_strongly_stretched(from) {
-            problem.set_local_maps_at(from).await;
+        let mut problem = with_local_maps(&spec, from).await;
+        // Stages bound moves from the given positions, and plain sweeps are a sequence that the caller determines.
+        let relief = match spec.options.is_multilevel() && !spec.is_staged {
+            true => relieved(spec.problem, &problem, &plan, from).await?,
+            false => None,
+        };
+        let (from, given) = match &relief {
+            Some(Relief { positions, given }) => (&positions[..], Some(*given)),
+            None => (from, None),
+        };
+        if relief.is_some() {
+            problem = with_local_maps(&spec, from).await;
         }
         let is_for_cpu_alone = problem.is_for_cpu_alone();
         let (device, opened) = match resumed {
@@ -127,6 +139,7 @@ impl<'s> Live<'s> {
             session: None,
             last,
             held,
+            given,
             opened,
             on_cpu_from,
             fault: None,
@@ -342,10 +355,17 @@ impl<'s> Live<'s> {
         }
         let opened = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         let on_cpu = self.on_cpu_from.map_or(0, |from| history.sweeps() - from);
-        let (history, positions) = match self.opened {
+        let (mut history, positions) = match self.opened {
             Some(opened) => opened.followed_by(history, positions),
             None => (history.into_log(), positions),
         };
+        if let Some(given) = self.given {
+            // The move to means of neighbors belongs to the first sweep. Without sweeps, the move counts as a sweep.
+            match history.len() {
+                1 => history.insert(0, given),
+                _ => history[0] = given,
+            }
+        }
         RunEnd {
             history,
             positions,
@@ -357,6 +377,15 @@ impl<'s> Live<'s> {
             fault: self.fault,
         }
     }
+}
+
+/// Returns the layout of the mesh, with local maps if a run with corrections needs local coordinates at `positions`.
+async fn with_local_maps(spec: &Spec<'_>, positions: &[DVec2]) -> Problem {
+    let mut problem = spec.problem.clone();
+    if spec.options.is_multilevel() && problem.is_strongly_stretched(positions) {
+        problem.set_local_maps_at(positions).await;
+    }
+    problem
 }
 
 /// The changes that stages on the host make between sweeps.

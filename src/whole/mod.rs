@@ -10,6 +10,7 @@ mod host;
 mod improving;
 mod live;
 mod move_limit;
+mod relief;
 mod slide;
 mod stage;
 mod target_field;

@@ -1,7 +1,7 @@
 //! Triangles so flat that single precision cannot distinguish them from inverted ones.
 
 use crate::{backends, history, name, run, scheme, support, with_points};
-use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Quality, Smoother, Stop};
+use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Quality, Smoother, Stop, Stopping};
 
 /// Makes a lattice with several vertices at distance `height` from an opposite edge.
 fn flattened(height: f64) -> Mesh {
@@ -101,5 +101,66 @@ fn a_triangle_as_flat_as_coordinates_allow_is_opened() {
                 assert!(outcome.sweeps <= most, "{label}: {} sweeps", outcome.sweeps);
             }
         }
+    }
+}
+
+/// Makes a lattice whose triangles grow to the right and upward.
+pub(crate) fn bent(columns: usize, rows: usize) -> Mesh {
+    let mut mesh = support::lattice(columns, rows);
+    for point in &mut mesh.points {
+        let sides = [columns, rows].map(|n| n as f64);
+        *point = [0, 1].map(|k| point[k] + point[k] * point[k] / sides[k]);
+    }
+    mesh
+}
+
+/// Multiplies the distances of the free vertices from a vertical line at `x` by `factor`.
+pub(crate) fn pressed_to_a_line(mut mesh: Mesh, x: f64, factor: f64) -> Mesh {
+    let held = support::check::held(&mesh);
+    for (point, _) in mesh.points.iter_mut().zip(&held).filter(|(_, held)| !**held) {
+        point[0] = x + (point[0] - x) * factor;
+    }
+    mesh
+}
+
+/// A former defect: sweeps left clusters in which each vertex was at the minimum of its own patch. With a tolerance of
+/// 0.01, a run by imr ended as converged at f = 5e19 instead of 1.1.
+#[test]
+fn vertices_pressed_to_a_line_spread_over_the_mesh() {
+    let bent = bent(24, 20);
+    let pressed = pressed_to_a_line(bent.clone(), 18.0, 1e-12);
+    assert!(support::is_ccw(&pressed) && support::worst_imr(&pressed) > 1e13);
+    let [from_bent, from_pressed] = [&bent, &pressed].map(|mesh| Smoother::new(mesh).unwrap());
+    for metric in [Metric::Imr, Metric::SoftSize, Metric::Tmop80] {
+        let options = Options { scheme: metric.into(), ..Options::default() };
+        let best = run(&from_bent, &options, &Backend::Cpu);
+        let best = from_bent.f(metric, &best.points).unwrap();
+        let options = Options { stopping: Stopping::Tolerance(0.01), ..options };
+        for backend in backends() {
+            let outcome = run(&from_pressed, &options, backend);
+            let label = format!("{metric} on the {}", name(backend));
+            let f = history(&outcome, metric);
+            let start = from_pressed.f(metric, &pressed.points).unwrap();
+            assert!((f[0] / start - 1.0).abs() < 1e-9, "{label}: {} for {start}", f[0]);
+            let found = from_pressed.f(metric, &outcome.points).unwrap();
+            assert!(found < 1.02 * best, "{label}: {found} for {best}");
+            assert!(support::is_ccw(&with_points(&pressed, &outcome.points)), "{label}");
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            assert!(outcome.sweeps < 20, "{label}: {} sweeps", outcome.sweeps);
+            assert_eq!(outcome.opening_sweeps, 0, "{label}");
+        }
+    }
+}
+
+/// The paper's sweeps, few sweeps, and bounds of moves presuppose the given positions.
+#[test]
+fn runs_that_follow_a_given_sequence_of_sweeps_begin_at_extremely_flat_triangles() {
+    let mesh = pressed_to_a_line(bent(24, 20), 18.0, 1e-12);
+    let smoother = Smoother::new(&mesh).unwrap();
+    for (method, max_sweeps) in [(Method::RELAXED, 50), (Method::Auto, 40)] {
+        let options = Options { method, max_sweeps, ..Options::default() };
+        let outcome = run(&smoother, &options, &Backend::Cpu);
+        assert_eq!((outcome.stop, outcome.sweeps), (Stop::MaxSweeps, max_sweeps));
+        assert!(history(&outcome, Metric::Imr)[1] > 1e20, "{method:?}");
     }
 }

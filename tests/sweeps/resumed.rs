@@ -9,6 +9,7 @@ use gpu_smooth::{
     options::WorstBy,
 };
 
+use super::flat::{bent, pressed_to_a_line};
 use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
 
 /// A policy that collects all checkpoints.
@@ -172,6 +173,17 @@ fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
     assert!(matches!(error, SmoothError::Checkpoint(_)), "{error}");
     smoother.set_slide(Some(&slide(40.0))).unwrap();
     smoother.run(&options).resume(from).block().unwrap();
+}
+
+/// A run that continues finds the start at means of neighbors again.
+#[test]
+fn a_run_that_begins_at_means_of_neighbors_goes_on_to_the_same_bits() {
+    let mesh = pressed_to_a_line(bent(24, 20), 18.0, 1e-12);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options { scheme: Metric::Tmop80.into(), ..Options::default() };
+    for backend in backends() {
+        assert_goes_on_as("pressed", &smoother, &options, backend, 1);
+    }
 }
 
 /// A hard mesh: on the CPU, opening sweeps prepare flat triangles for the device; secant pairs accelerate corrections;
