@@ -4,7 +4,7 @@
 use crate::support::{self, SplitMix64, check};
 use crate::{backends, name, run, with_points};
 use gpu_smooth::{
-    Mesh, Metric, Options, Slide, Smoother, Stop, Stopping, TargetField, Targets, measure::Change,
+    Mesh, Options, Slide, Smoother, Stop, Stopping, TargetField, Targets, measure::Change,
     options::WorstBy, precision::Precision, targets::Surface,
 };
 
