@@ -43,11 +43,17 @@ pub struct Outcome {
     /// The estimate has lower bounds. After a run that has converged by the estimate, the bound is the tolerance, or a
     /// tenth of the tolerance if the last correction gained nothing. After a run that has converged because f is level
     /// up to rounding, the bound is the variation of f over the last sweeps. On a device, the bound is the error of the f
-    /// that the run was judged by, in single precision.
+    /// that the run was judged by, in single precision. In a projection, the bound is
+    /// [`projection_error`](Self::projection_error).
     ///
     /// `None` if the run has not converged and its sweeps allow no estimate: the run did too few sweeps, or the gains per
     /// sweep do not decay.
     pub remaining: Option<f64>,
+    /// Estimate, as a share of f, of the distance between the optimum in the projection of a sphere
+    /// ([`Smoother::project_from_sphere`](crate::Smoother::project_from_sphere)) and the optimum on the sphere, where
+    /// triangles are measured at their centers. The estimate falls with the square of the edge length. 0 without a
+    /// projection.
+    pub projection_error: f64,
     /// Number of vertices that a guard kept from moving further at the end of a run. Computed only if the run has
     /// converged or has done [`Options::max_sweeps`](crate::Options::max_sweeps) sweeps. If the number is above 0, a
     /// run that has converged without [`Guard::Worst`](crate::Guard::Worst) reports [`Stop::HeldBack`].

@@ -233,7 +233,7 @@ impl Smoother<'_> {
             None => (exact.unwrap_or(written) - swept).abs() / written.max(MIN_SCALE),
             Some(_) => 0.0,
         };
-        let error = error.max(self.projection_error(&points).await);
+        let projection_error = self.projection_error(&points).await;
         let slid = stages.slid(gains, &points);
         let best = if gains { written } else { initial };
         let least = base.least_objective(problem.targets().is_some());
@@ -261,7 +261,10 @@ impl Smoother<'_> {
             levels_left_out: ended.counts.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
             // A decay that has just begun may promise more than the distance between f and its lower limit.
-            remaining: ended.remaining.map(|left| left.max(error).min(possible)),
+            remaining: ended
+                .remaining
+                .map(|left| left.max(error).max(projection_error).min(possible)),
+            projection_error,
             held_back: ended.held_back,
             lost,
             history: ended.history,
@@ -345,6 +348,7 @@ impl Smoother<'_> {
             levels_left_out: false,
             best_sweep: 0,
             remaining: None,
+            projection_error: 0.0,
             held_back: 0,
             lost: 0.0,
             history: vec![objectives],

@@ -39,6 +39,10 @@ pub(crate) struct Report {
     /// Whether a GPU ended the run as converged, although its single precision cannot tell a gain of the tolerance.
     #[serde(skip)]
     pub(crate) imprecise: bool,
+    /// Estimated distance, as a fraction of f, between the optimum in the projection of the sphere and the optimum on the
+    /// sphere. `None` if the distance is within the tolerance.
+    #[serde(skip)]
+    pub(crate) projection_error: Option<f64>,
     /// reached, converged, stalled, held-back, max-sweeps, canceled, time-limit, not-finite or nothing-to-do.
     pub(crate) stop: &'static str,
     /// Sweeps completed at the checkpoint from which the run continued; `None` for uninterrupted runs.

@@ -253,7 +253,13 @@ impl Report {
                 "converged after {sweeps}, as far as single precision tells{}; --engine cpu has double precision",
                 self.left()
             ),
-            ("converged", None) => format!("converged after {sweeps}"),
+            ("converged", None) => match self.projection_error {
+                None => format!("converged after {sweeps}"),
+                Some(error) => format!(
+                    "converged after {sweeps} in the projection; on the sphere, f may be {error:.1e} of itself above its \
+                     limit, as edges are long"
+                ),
+            },
             ("stalled", None) => format!("no more progress after {sweeps}{}", self.left()),
             ("held-back", None) => {
                 format!("held back by the shape guard at {held} after {sweeps}")

@@ -62,6 +62,7 @@ pub(super) fn report(
         best_sweep: outcome.best_sweep,
         remaining: outcome.remaining,
         imprecise: is_imprecise(input, ran),
+        projection_error: projection_error(input, ran),
         stop: stop(input, ran),
         continued_from: input.task.resumed.map(Checkpoint::sweeps),
         nothing_to_do: choice.nothing_to_do.clone(),
@@ -89,11 +90,19 @@ fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
     let is_gpu = matches!(&*ran.taken.backend, Backend::Gpu(_));
     // The estimate of EDGE includes a distance that is no error.
     let is_smooth = request.scheme().base() != Metric::Edge;
-    let exceeds = |tolerance: f64| outcome.remaining.is_some_and(|left| left > tolerance);
+    let least = |tolerance: f64| tolerance.max(outcome.projection_error);
+    let exceeds = |tolerance| outcome.remaining.is_some_and(|left| left > least(tolerance));
     is_gpu
         && is_smooth
         && outcome.stop == Stop::Converged
         && request.estimated_end().is_some_and(exceeds)
+}
+
+/// Returns the estimated distance between the optima in the projection of the sphere and on the sphere, if the distance
+/// exceeds the tolerance.
+fn projection_error(input: &Input<'_>, ran: &FinishedRun) -> Option<f64> {
+    let tolerance = input.request().estimated_end()?;
+    Some(ran.outcome.projection_error).filter(|error| *error > tolerance)
 }
 
 /// Returns the name of the reason why a run ended.

@@ -285,8 +285,9 @@ fn a_mesh_of_high_latitudes_ends_at_the_optimum_on_the_sphere() {
             writeln!(text, "{} 3 {a} {b} {c}", i + 1).unwrap();
         }
         let folder = Folder::new(&[("in.gr3", &(text + "0 = Number of open boundaries\n"))]);
-        let run = folder.line("in.gr3 out.gr3 --surface sphere --engine cpu");
+        let run = folder.line("in.gr3 out.gr3 --surface sphere --engine cpu --report r.json");
         assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.out, &["in the projection; on the sphere, f may be"]);
         let written = folder.text("out.gr3");
         let rows = written.lines().skip(2).take(points.len());
         let point = |row: &str| -> [f64; 2] {
@@ -302,5 +303,7 @@ fn a_mesh_of_high_latitudes_ends_at_the_optimum_on_the_sphere() {
         optimum(&mut smoothed, &triangles);
         let excess = reached / f(&smoothed) - 1.0;
         assert!(excess < 1e-4, "{south} to {north}: {excess} above the optimum");
+        let remaining = number(&folder.json("r.json")["remaining"]);
+        assert!(remaining > 0.5 * excess, "{south} to {north}: {excess} and {remaining}");
     }
 }
