@@ -4,7 +4,7 @@ use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::newton;
-use crate::layout::Problem;
+use crate::layout::{DEGREE_BLOCK, Problem};
 use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::pace::pause;
@@ -14,7 +14,7 @@ use crate::patch::{MetricObjective, Objective, Rings, Scratch};
 use crate::run::SweepParams;
 
 /// Number of vertices that one task visits.
-const CHUNK: usize = Problem::BLOCK;
+const CHUNK: usize = DEGREE_BLOCK;
 
 /// Number of positions that one task copies. Fewer positions do not repay a second thread.
 const COPY: usize = 1 << 14;

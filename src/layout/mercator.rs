@@ -52,7 +52,7 @@ pub(crate) struct MeshCoordinates {
 }
 
 impl MeshCoordinates {
-    /// The coordinates of a mesh that is neither projected nor normalized.
+    /// The conversion for positions that equal the coordinates of the mesh.
     pub(crate) const OF_POSITIONS: Self = Self { projection: None, center: 0.0, scale: 1.0 };
 
     /// Returns the conversion for positions (x - `center`) · `scale` of images x.

@@ -2,10 +2,12 @@
 //! positions.
 
 mod coloring;
+mod conversion;
 mod curve;
 mod local_maps;
 mod mercator;
 mod normalization;
+mod numbering;
 mod prepare;
 mod problem;
 mod sizes;
@@ -13,6 +15,7 @@ mod smallest_last;
 
 pub use coloring::Coloring;
 pub(crate) use mercator::{Mercator, MeshCoordinates};
+pub(crate) use numbering::DEGREE_BLOCK;
 pub use prepare::prepare;
 #[cfg(feature = "gpu")]
 pub(crate) use prepare::prepare_to_untangle;

@@ -1,6 +1,5 @@
 //! The input of the engines: normalized positions and one-rings, numbered color by color.
 
-use std::borrow::Cow;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,23 +7,20 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use glam::DVec2;
 
+use crate::layout::Coloring;
 use crate::layout::curve::along_curve;
-use crate::layout::mercator::{Mercator, MeshCoordinates};
+use crate::layout::mercator::Mercator;
 use crate::layout::normalization::normalization;
-use crate::layout::{Coloring, UNCOLORED};
+use crate::layout::numbering::{order, rings, triangles};
 use crate::mesh::Mesh;
 use crate::metric::{Corner, TargetMap};
-use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
-use crate::parallel::pace::now;
-use crate::parallel::{collect, for_each_chunk, for_each_part, map_parts, map_ranges, paced};
-use crate::targets::{Surface, Targets, Tensor};
+use crate::parallel::counting_sort::{atomics, plain};
+use crate::parallel::{collect, for_each_part, map_parts, paced};
+use crate::targets::Tensor;
 use crate::topology::Topology;
 
 /// Number of vertices or triangles that one task handles.
 const CHUNK: usize = 1 << 12;
-/// Number of vertices per task when vertices are sorted by color. Larger than [`CHUNK`], as every task has a counter
-/// for each color.
-const LONG: usize = 1 << 14;
 
 /// A mesh laid out for sweeping. Vertices are renumbered: first the free vertices, color by color, then the fixed
 /// vertices that some triangle uses. The vertices of a color are in blocks along a space-filling curve, and within a
@@ -38,10 +34,10 @@ const LONG: usize = 1 << 14;
 /// Maps are in single precision, so that both engines use equal values. A clone shares the layout and the maps.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    layout: Arc<Layout>,
+    pub(super) layout: Arc<Layout>,
     /// Projection from the coordinates of the mesh to the plane in which sweeps move vertices. `None` if sweeps move
     /// vertices in the coordinates of the mesh.
-    projection: Option<Mercator>,
+    pub(super) projection: Option<Mercator>,
     /// Target map of each vertex. `None` without targets.
     targets: Option<Arc<[[f32; 3]]>>,
     /// Local map of each vertex. `None` unless the mesh is strongly stretched.
@@ -81,23 +77,18 @@ impl MapKind {
 
 /// Layout of a [`Problem`]: positions, order and connectivity, independent of targets.
 #[derive(Debug)]
-struct Layout {
-    positions: Vec<DVec2>,
+pub(super) struct Layout {
+    pub(super) positions: Vec<DVec2>,
     colors: Vec<Range<u32>>,
     ring_start: Vec<u32>,
     ring: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    vertices: Vec<u32>,
-    center: DVec2,
-    scale: f64,
+    pub(super) vertices: Vec<u32>,
+    pub(super) center: DVec2,
+    pub(super) scale: f64,
 }
 
 impl Problem {
-    /// Number of vertices in a block. Blocks are sorted by degree, so that vertices visited at once have equally many
-    /// neighbors. Larger blocks let more vertices meet others of equal degree; smaller blocks keep vertices closer
-    /// together.
-    pub(crate) const BLOCK: usize = 512;
-
     /// Lays out a mesh with its topology and coloring.
     pub fn new(mesh: &Mesh, topology: &Topology<'_>, coloring: &Coloring) -> Self {
         Self::along(mesh, topology, coloring, &along_curve(mesh, topology))
@@ -277,7 +268,7 @@ impl Problem {
         self.local_maps.as_deref().or(self.targets())
     }
 
-    /// Returns the kind of maps that a device stores. Call the method on problems with at most one kind of maps.
+    /// Returns the kind of maps that a device stores. The problem must have at most one kind of maps.
     #[cfg(feature = "gpu")]
     pub(crate) fn map_kind(&self) -> MapKind {
         debug_assert!(!self.is_for_cpu_alone());
@@ -349,70 +340,6 @@ impl Problem {
         numbers
     }
 
-    /// Returns the center and the scale of the normalization: normalized positions are (x - center) · scale, without
-    /// rounding. x are the images of the coordinates of the mesh if vertices move in a projection.
-    pub fn normalization(&self) -> (DVec2, f64) {
-        (self.layout.center, self.layout.scale)
-    }
-
-    /// Returns the conversion between normalized positions and the coordinates of the mesh.
-    pub(crate) fn coordinates(&self) -> MeshCoordinates {
-        MeshCoordinates::new(self.projection, self.layout.center, self.layout.scale)
-    }
-
-    /// Returns whether vertices move in a projection of the coordinates of the mesh.
-    pub(crate) fn is_projected(&self) -> bool {
-        self.projection.is_some()
-    }
-
-    /// Returns the images of points of the mesh in the plane in which vertices move.
-    pub(crate) fn images<'p>(&self, points: &'p [[f64; 2]]) -> Cow<'p, [[f64; 2]]> {
-        match self.projection {
-            None => points.into(),
-            Some(projection) => points.iter().map(|&point| projection.image(point)).collect(),
-        }
-    }
-
-    /// Converts targets in the coordinates of the mesh to the plane in which vertices move, with the vertices at
-    /// `points`, in the coordinates of the mesh.
-    pub(crate) fn converted<'t>(
-        &self,
-        targets: &'t Targets,
-        points: &[[f64; 2]],
-    ) -> Cow<'t, Targets> {
-        match self.projection {
-            None => Cow::Borrowed(targets),
-            Some(_) => Cow::Owned(targets.in_conformal_coordinates(Surface::Sphere, points)),
-        }
-    }
-
-    /// Returns the point of a normalized position, in the coordinates of the mesh.
-    fn point(&self, position: DVec2) -> [f64; 2] {
-        let point = (self.layout.center + position / self.layout.scale).to_array();
-        self.projection.map_or(point, |_| Mercator::point(point))
-    }
-
-    /// Converts the normalized positions of all vertices, fixed ones included, to the unit of the mesh. Returns each
-    /// position with the index that its vertex has in the mesh.
-    pub fn denormalized(&self, positions: &[DVec2]) -> impl Iterator<Item = (u32, [f64; 2])> {
-        let point = |&now: &DVec2| self.point(now);
-        self.layout.vertices.iter().copied().zip(positions.iter().map(point))
-    }
-
-    /// Returns the normalized positions of points given in the order and unit of the mesh. Reuses the memory of `room`.
-    pub(crate) async fn normalized(&self, points: &[[f64; 2]], mut room: Vec<DVec2>) -> Vec<DVec2> {
-        room.resize(self.layout.vertices.len(), DVec2::ZERO);
-        paced::for_each_chunk(&mut room, CHUNK, |first, positions| {
-            for (position, &v) in positions.iter_mut().zip(&self.layout.vertices[first..]) {
-                let point = points[v as usize];
-                let image = self.projection.map_or(point, |projection| projection.image(point));
-                *position = (DVec2::from(image) - self.layout.center) * self.layout.scale;
-            }
-        })
-        .await;
-        room
-    }
-
     /// Returns the triangles for which the inverse mean ratio or its square overflows, computed in double precision
     /// from any of the three corners. Metrics with a barrier cannot judge them: they are too flat, or too small beside
     /// other triangles.
@@ -448,143 +375,10 @@ impl Problem {
         let sought: HashSet<[u32; 3]> = triangles.iter().map(of).collect();
         (0..given.len()).filter(|&t| sought.contains(&sorted(given[t]))).collect()
     }
-
-    /// Converts normalized positions to the order and unit of the mesh. Fixed vertices and vertices that have not moved
-    /// keep the bits of their positions in the mesh.
-    pub fn denormalize(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
-        now(self.in_unit_of(mesh, positions))
-    }
-
-    /// Does the work of [`Self::denormalize`], with pauses.
-    pub(crate) async fn in_unit_of(&self, mesh: &Mesh, positions: &[DVec2]) -> Vec<[f64; 2]> {
-        let mut points = paced::copied(&mesh.points).await;
-        paced::in_order(self.free_count(), CHUNK, |vertices| {
-            for i in vertices {
-                let (now, was) = (positions[i], self.layout.positions[i]);
-                if now != was {
-                    points[self.layout.vertices[i] as usize] = self.point(now);
-                }
-            }
-        })
-        .await;
-        points
-    }
 }
 
 /// Returns the sum of `of` over triangles, added in an order that does not depend on the number of threads.
 fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
     let sums = map_parts(triangles.chunks(4096), |_, part| part.iter().map(&of).sum::<f64>());
     sums.iter().sum()
-}
-
-/// Returns the one-rings of the free `vertices`, by new indices, in compressed rows: the start of each row with the
-/// total length at the end, and the neighbors of all rows.
-fn rings(
-    topology: &Topology<'_>,
-    vertices: &[u32],
-    curve: &[u32],
-    number: &[u32],
-) -> (Vec<u32>, Vec<u32>) {
-    let length = |i| vertices.get(i).map_or(0, |&v: &u32| topology.star(v).len() as u32);
-    let mut start = collect(vertices.len() + 1, length);
-    let end = running_sum(&mut start, |start| start);
-    let ring = atomics(end as usize, 0);
-    // Rows are filled along the curve: most triangles around a vertex are also around the vertices before it, so they
-    // are in the cache. No two tasks write the same entry; entries are atomic only because the rows of a task are
-    // scattered.
-    for_each_part(curve.chunks(CHUNK), |_, chunk| {
-        for &v in chunk.iter().filter(|&&v| topology.free()[v as usize]) {
-            let row = &ring[start[number[v as usize] as usize] as usize..];
-            for (to, from) in row.iter().zip(topology.ring_of(v)) {
-                to.store(number[from as usize], Relaxed);
-            }
-        }
-    });
-    (start, plain(ring))
-}
-
-/// Returns all triangles by the new indices of their `vertices` vertices, sorted by their least corner. Triangles so
-/// follow the vertices along the curve, which keeps reads for the objective in the cache, and their order does not
-/// depend on that of the mesh.
-fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
-    let given = topology.triangles();
-    let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
-    let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
-    let all = atomics(3 * given.len(), 0);
-    let keys = |t| [least(&renumbered(t))];
-    place(given.len(), vertices, keys, |t, at| {
-        for (corner, to) in renumbered(t).into_iter().zip(&all[3 * at..]) {
-            to.store(corner, Relaxed);
-        }
-    });
-    let mut all = collect(given.len(), |t| [0, 1, 2].map(|i| all[3 * t + i].load(Relaxed)));
-    // The list is cut into chunks whose triangles are then sorted. No chunk ends between two triangles with equal least
-    // corners.
-    let mut rest = &mut all[..];
-    let runs = std::iter::from_fn(|| {
-        let mut end = rest.len().min(CHUNK);
-        while end > 0 && end < rest.len() && least(&rest[end - 1]) == least(&rest[end]) {
-            end += 1;
-        }
-        rest.split_off_mut(..end).filter(|runs| !runs.is_empty())
-    });
-    for_each_part(runs, |_, runs| {
-        runs.chunk_by_mut(|a, b| least(a) == least(b)).for_each(<[_]>::sort_unstable);
-    });
-    all
-}
-
-/// Returns the vertices in the order that [`Problem`] documents, and the range of each color.
-fn order(
-    topology: &Topology<'_>,
-    coloring: &Coloring,
-    curve: &[u32],
-) -> (Vec<u32>, Vec<Range<u32>>) {
-    let colors = coloring.count() as usize;
-    // Fixed vertices have no color and come last.
-    let slot = |v: u32| match coloring.colors()[v as usize] {
-        UNCOLORED => colors,
-        color => color as usize,
-    };
-    let counts: Vec<Vec<usize>> = map_ranges(curve.len(), LONG, |range| {
-        let mut counts = vec![0; colors + 1];
-        curve[range].iter().for_each(|&v| counts[slot(v)] += 1);
-        counts
-    });
-    // Within a color, the vertices of each chunk follow the vertices of the previous chunk.
-    let mut vertices = vec![0; curve.len()];
-    let lengths = (0..=colors).flat_map(|color| counts.iter().map(move |counts| counts[color]));
-    let mut targets: Vec<Vec<&mut [u32]>> = counts.iter().map(|_| Vec::new()).collect();
-    for (i, part) in split(&mut vertices, lengths).into_iter().enumerate() {
-        targets[i % counts.len()].push(part);
-    }
-    for_each_part(curve.chunks(LONG).zip(targets), |_, (chunk, mut targets)| {
-        for &v in chunk {
-            if let Some(to) = targets[slot(v)].split_off_first_mut() {
-                *to = v;
-            }
-        }
-    });
-    let mut rest = &mut vertices[..];
-    let mut ranges = Vec::new();
-    let mut end = 0;
-    for color in 0..=colors {
-        let length = counts.iter().map(|counts| counts[color]).sum();
-        ranges.push(end..end + length as u32);
-        end += length as u32;
-        let color = rest.split_off_mut(..length).unwrap_or_default();
-        for_each_chunk(color, Problem::BLOCK, |_, block| {
-            let mut keyed = [(0, 0); Problem::BLOCK];
-            let keyed = &mut keyed[..block.len()];
-            for (keyed, &v) in keyed.iter_mut().zip(&*block) {
-                *keyed = (topology.star(v).len(), v);
-            }
-            keyed.sort_by_key(|&(degree, _)| degree);
-            for (vertex, &(_, v)) in block.iter_mut().zip(&*keyed) {
-                *vertex = v;
-            }
-        });
-    }
-    ranges.truncate(colors);
-    (vertices, ranges)
 }

@@ -179,9 +179,9 @@ mod tests {
         Mesh { points, triangles, fixed: Vec::new() }
     }
 
-    /// With a budget of zero, each thread does one task in a poll: at most [`Problem::BLOCK`] visits of a sweep.
+    /// With a budget of zero, each thread does one task in a poll: at most [`DEGREE_BLOCK`] visits of a sweep.
     ///
-    /// [`Problem::BLOCK`]: crate::layout::Problem::BLOCK
+    /// [`DEGREE_BLOCK`]: crate::layout::DEGREE_BLOCK
     fn assert_polls(device: Option<Device<'_>>, backend: &Backend, options: &Options) {
         let mesh = lattice(80);
         let smoother = Smoother::new(&mesh).unwrap();
@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(history(&awaited), history(&blocked));
         let in_f64 = if device.is_none() { awaited.sweeps } else { awaited.opening_sweeps };
         assert!(in_f64 > 0);
-        let tasks = 79 * 79 / crate::layout::Problem::BLOCK * in_f64 as usize;
+        let tasks = 79 * 79 / crate::layout::DEGREE_BLOCK * in_f64 as usize;
         let least = tasks / rayon::current_num_threads();
         assert!(polls > least, "{polls} polls, {least} expected at least");
     }
