@@ -41,7 +41,7 @@ pub struct Outcome {
     /// includes the distance between the minima of f and of EDGE's p-norm.
     ///
     /// The estimate has lower bounds. After a run that has converged by the estimate, the bound is the tolerance, or a
-    /// tenth of the tolerance if the last correction gained nothing. After a run that has converged because f is level
+    /// tenth of the tolerance, and 1e-8, if the last correction gained nothing. After a run that has converged because f is level
     /// up to rounding, the bound is the variation of f over the last sweeps. On a device, the bound is the error of the f
     /// that the run was judged by, in single precision. In a projection, the bound is
     /// [`projection_error`](Self::projection_error).

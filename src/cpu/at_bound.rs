@@ -20,7 +20,7 @@ const CHUNK: usize = 64;
 
 /// Returns the positions of vertices after a step by [`SearchRule::BOUND`]. No two of the vertices may be neighbors. The
 /// circles around the positions of the problem with the given radii (normalized, one for each free vertex) limit the
-/// moves. The circles are in the coordinates of the mesh.
+/// moves, in the coordinates of the mesh.
 pub(crate) fn steps_at_bound(
     problem: &Problem,
     positions: &[DVec2],
@@ -75,11 +75,8 @@ impl<S: Simd> BoundObjective<'_, S> {
         for lane in 0..LANES {
             let [to, center] = [on_line, self.center].map(|[x, y]| DVec2::new(x[lane], y[lane]));
             let circle = Circle { center: coordinates.at(center), radius: self.radius[lane] };
-            let at = coordinates.at(to);
-            if !circle.contains(at) {
-                let nearest = coordinates.position(circle.nearest(at));
-                (found[0][lane], found[1][lane]) = (nearest.x, nearest.y);
-            }
+            let nearest = circle.nearest_position(coordinates, to);
+            (found[0][lane], found[1][lane]) = (nearest.x, nearest.y);
         }
         found
     }

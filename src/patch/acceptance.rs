@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::layout::MeshCoordinates;
 use crate::metric::{Corner, Formulas, OfEdges};
 use crate::patch::numbers::Numbers;
 
@@ -64,5 +65,13 @@ impl Circle {
         } else {
             self.center + (to - self.center) * (self.radius / distance)
         }
+    }
+
+    /// Returns the position `to`, or the position nearest in the coordinates of the mesh if `to` is outside. The circle is
+    /// in these coordinates.
+    pub(crate) fn nearest_position(self, coordinates: MeshCoordinates, to: DVec2) -> DVec2 {
+        let at = coordinates.at(to);
+        let nearest = self.nearest(at);
+        if nearest == at { to } else { coordinates.position(nearest) }
     }
 }

@@ -295,8 +295,8 @@ impl Smoother<'_> {
 
     /// Returns an upper estimate, as a share of f, of the distance between the optimum in the projection of a sphere and
     /// the optimum on the sphere; 0 without a projection. With vertices at `points`, f by the inverse mean ratio in the
-    /// projection differs from f on the sphere, where triangles are measured at their centers. f at the other optimum
-    /// differs about as much, so the estimate is twice the difference. Triangles without a free vertex do not count.
+    /// projection differs from f on the sphere, where triangles are measured at their centers. At the other optimum, the
+    /// difference is about as large, and the estimate is twice the difference. Only triangles with a free vertex count.
     async fn projection_error(&self, points: &[[f64; 2]]) -> f64 {
         if !self.problem.is_projected() {
             return 0.0;
@@ -323,8 +323,8 @@ impl Smoother<'_> {
         if share.is_finite() { share } else { 0.0 }
     }
 
-    /// Returns the largest inverse mean ratio that the guard of a run allows; infinite without a guard, with targets,
-    /// and in a projection, as the guard is no property of the triangles of the mesh alone then.
+    /// Returns the largest inverse mean ratio that the guard of a run allows; infinite without a guard. Also infinite
+    /// with targets and in a projection, where the guard applies to transformed triangles.
     async fn final_guard(&self, options: &Options) -> f64 {
         if self.problem.targets().is_some() || self.problem.is_projected() {
             return f64::INFINITY;

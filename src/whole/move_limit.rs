@@ -26,7 +26,7 @@ const MAX_HALVINGS: u32 = 5;
 /// Distance from the start at which a vertex is held, as a share of the bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
 
-/// The stage that limits the distance of each vertex from its start. Distances are in the coordinates of the mesh.
+/// The stage that limits the distance of each vertex from its start, measured in the coordinates of the mesh.
 pub(crate) struct MoveLimitStage<'s> {
     problem: &'s Problem,
     /// Largest distance of each vertex of the mesh from its start, in the unit of the mesh.
@@ -82,10 +82,8 @@ impl<'s> MoveLimitStage<'s> {
     /// nearest in the coordinates of the mesh.
     fn within(&self, v: usize, to: DVec2) -> DVec2 {
         let coordinates = self.problem.coordinates();
-        let at = coordinates.at(to);
         let center = coordinates.at(self.problem.positions()[v]);
-        let nearest = Circle { center, radius: self.bounds[v] }.nearest(at);
-        if nearest == at { to } else { coordinates.position(nearest) }
+        Circle { center, radius: self.bounds[v] }.nearest_position(coordinates, to)
     }
 
     /// Returns the distance of a free vertex from its start, normalized, with the vertex at `position`.

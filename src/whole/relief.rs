@@ -2,8 +2,8 @@
 //!
 //! A sweep moves a vertex next to a triangle of inverse mean ratio 1e12 until the triangles on its other side are nearly
 //! as flat. Where many vertices are close to one long edge, their triangles become clusters of 1e-8 of the edge, in which
-//! every vertex is at the minimum of its own patch. Sweeps then lower f by less than a percent each, and corrections from
-//! the coarser levels are as short as the clusters are small. A run from means of neighbors has no clusters.
+//! every vertex is at the minimum of its own patch. Each sweep then lowers f by less than a percent, and a correction from
+//! the coarser levels moves no vertex farther than the size of a cluster. A run from means of neighbors has no clusters.
 
 use glam::DVec2;
 
@@ -71,6 +71,9 @@ pub(super) async fn relieved(
     let Some(positions) = feasible_means(problem, from) else { return Ok(None) };
     let f = objectives(problem, plan, &positions).await.of(base).unwrap_or(f64::NAN);
     let is_better = f < GAIN * history.least() && worst_movable(problem, &positions).await < worst;
+    if !is_better {
+        return Ok(None);
+    }
     let given = objectives(problem, plan, from).await;
-    Ok(is_better.then_some(Relief { given, positions }))
+    Ok(Some(Relief { given, positions }))
 }

@@ -126,7 +126,7 @@ fn the_promise_holds_on_strongly_stretched_lattices_with_targets() {
     }
 }
 
-/// Under the targets, triangles of this mesh are as stretched as those of the stretched lattice.
+/// Transformed by their targets, the triangles of this mesh equal those of the stretched lattice in stretching.
 #[test]
 fn an_even_lattice_with_strongly_stretched_targets_becomes_regular() {
     let ratio = 1e3;
