@@ -123,7 +123,6 @@ impl Layout {
     fn set_up(&self, options: &MeshOptions, smoother: &mut Smoother<'_>) -> Result<(), Failure> {
         let targets = self.targets(options, smoother)?;
         if options.surface == Surface::Sphere {
-            // A mesh with slivers that the projection would invert is smoothed in longitude and latitude.
             smoother.project_from_sphere()?;
         }
         match targets {

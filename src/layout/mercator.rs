@@ -19,15 +19,20 @@ impl Mercator {
     /// Returns the projection of a mesh and the projected mesh. `None` if the projection inverts or flattens a triangle:
     /// straight edges in longitude and latitude have curved images, which a sliver does not survive.
     pub(crate) fn of(mesh: &Mesh, topology: &Topology<'_>) -> Option<(Self, Mesh)> {
+        let (projection, projected) = Self::with_slivers(mesh, topology);
+        let is_valid = topology.bad_triangles(&projected.points).is_ok_and(|bad| bad.is_empty());
+        is_valid.then_some((projection, projected))
+    }
+
+    /// Returns the projection of a mesh and the projected mesh, in which slivers may be inverted or flat.
+    pub(crate) fn with_slivers(mesh: &Mesh, topology: &Topology<'_>) -> (Self, Mesh) {
         let used =
             || topology.triangles().as_flattened().iter().map(|&v| mesh.points[v as usize][1]);
         let near = used().map(f64::abs).filter(|y| *y < 90.0).fold(0.0, f64::max);
         // The image of a pole is infinitely far. Vertices at a pole do not move.
         let projection = Self { most: 0.5 * (near + 90.0) };
-        let points: Vec<[f64; 2]> =
-            mesh.points.iter().map(|&point| projection.image(point)).collect();
-        let is_valid = topology.bad_triangles(&points).is_ok_and(|bad| bad.is_empty());
-        is_valid.then(|| (projection, Mesh { points, ..mesh.clone() }))
+        let points = mesh.points.iter().map(|&point| projection.image(point)).collect();
+        (projection, Mesh { points, ..mesh.clone() })
     }
 
     /// Returns the image of a longitude and latitude.

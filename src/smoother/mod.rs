@@ -7,6 +7,7 @@ mod on_device;
 mod prepared;
 mod run;
 mod running;
+mod slivers;
 mod stages;
 
 pub use backend::Backend;

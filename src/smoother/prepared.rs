@@ -11,11 +11,14 @@ use crate::error::{MeshError, SmoothError};
 use crate::layout::{Mercator, Problem, laid_out, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
+use crate::options::{Guard, Options};
 use crate::parallel::pace::now;
 use crate::slide::{Slide, Sliding};
 use crate::targets::{OutsideReport, Surface, TargetField, Targets};
 use crate::topology::{Topology, certified};
 use crate::whole::set_targets_of;
+
+use super::slivers;
 
 /// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
 pub struct Smoother<'a> {
@@ -29,6 +32,10 @@ pub struct Smoother<'a> {
     pairs: [usize; 2],
     /// Field of targets that belong to points of the plane; `None` if targets belong to vertices or are not set.
     pub(super) field: Option<TargetField>,
+    /// Smoother of the mesh with opened [slivers], in the projection of the sphere. Serves the runs for which
+    /// [`serving`](Self::serving) returns it, while the fields above serve all other runs. `None` unless the
+    /// projection would invert slivers.
+    pub(super) opened: Option<Box<Smoother<'static>>>,
     prepare: Duration,
 }
 
@@ -65,9 +72,9 @@ impl<'a> Smoother<'a> {
     ) -> Self {
         // Runs need only the problem. The stars are computed again when a vertex has to be set back.
         topology.forget_stars();
-        let (slide, sliding, field) = (None, None, None);
+        let (slide, sliding, field, opened) = (None, None, None, None);
         let (pairs, prepare) = ([0; 2], start.elapsed());
-        Self { mesh, topology, problem, slide, sliding, pairs, field, prepare }
+        Self { mesh, topology, problem, slide, sliding, pairs, field, opened, prepare }
     }
 
     /// Fails with [`MeshError::NothingFree`] if no vertex is free and no vertex slides.
@@ -94,6 +101,7 @@ impl<'a> Smoother<'a> {
             sliding: self.sliding,
             pairs: self.pairs,
             field: self.field,
+            opened: self.opened,
             prepare: self.prepare,
         }
     }
@@ -104,19 +112,38 @@ impl<'a> Smoother<'a> {
     /// in these coordinates too. Removes the targets and the sliding vertices: set both afterwards, targets as lengths in
     /// these coordinates ([`Targets::seen_on`], [`TargetField::seen_on`]).
     ///
-    /// Returns false, and changes nothing, if the projection would invert or flatten a triangle. Slivers may, as straight
-    /// edges have curved images.
+    /// Slivers may be inverted or flat in the projection, as straight edges have curved images. Runs on a mesh with such
+    /// slivers begin with the vertices near the slivers moved until the projection inverts no triangle. Returns false if no
+    /// such positions are found. Then all runs move the vertices in longitude and latitude, as do runs on a mesh with such
+    /// slivers that compare positions or triangles with the given mesh, by [`Options::max_move`],
+    /// [`Options::keep_altitude`] or [`Guard::Worst`].
     ///
     /// # Errors
     /// [`MeshError::Target`] if a vertex is not on the sphere.
     pub fn project_from_sphere(&mut self) -> Result<bool, MeshError> {
         Surface::Sphere.check(&self.mesh.points, self.topology.triangles())?;
-        let Some((projection, projected)) = Mercator::of(&self.mesh, &self.topology) else {
-            return Ok(false);
-        };
-        self.problem = laid_out(&projected, &self.topology).with_projection(projection);
+        if let Some((projection, projected)) = Mercator::of(&self.mesh, &self.topology) {
+            self.problem = laid_out(&projected, &self.topology).with_projection(projection);
+            (self.slide, self.sliding, self.pairs, self.field) = (None, None, [0; 2], None);
+            return Ok(true);
+        }
+        let Some(opened) = slivers::opened(&self.mesh, &self.topology) else { return Ok(false) };
+        let mut opened = Smoother::from_mesh(opened)?;
+        opened.project_from_sphere()?;
+        self.problem = laid_out(&self.mesh, &self.topology);
         (self.slide, self.sliding, self.pairs, self.field) = (None, None, [0; 2], None);
+        self.opened = Some(Box::new(opened));
         Ok(true)
+    }
+
+    /// Returns the smoother that serves a run with the given options.
+    pub(super) fn serving(&self, options: &Options) -> &Smoother<'_> {
+        let is_compared =
+            options.max_move.is_some() || options.keep_altitude || options.guard == Guard::Worst;
+        match &self.opened {
+            Some(opened) if !is_compared => opened,
+            _ => self,
+        }
     }
 
     /// Sets the targets of elements in further runs, one target per vertex of the mesh. Without targets, elements are
@@ -130,6 +157,11 @@ impl<'a> Smoother<'a> {
         let converted = self.problem.converted(targets, &self.mesh.points);
         self.problem.set_targets(converted.maps());
         self.field = None;
+        if let Some(opened) = &mut self.opened {
+            let converted = opened.problem.converted(targets, &self.mesh.points);
+            opened.problem.set_targets(converted.maps());
+            opened.field = None;
+        }
         Ok(())
     }
 
@@ -145,6 +177,9 @@ impl<'a> Smoother<'a> {
     pub fn set_target_field(&mut self, field: TargetField) -> Result<OutsideReport, MeshError> {
         let (targets, outside) = field.at(&self.mesh.points)?;
         self.set_targets(&targets)?;
+        if let Some(opened) = &mut self.opened {
+            opened.set_target_field(field.clone())?;
+        }
         self.field = Some(field);
         Ok(outside)
     }
@@ -157,6 +192,9 @@ impl<'a> Smoother<'a> {
     /// not exist.
     pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
         (self.slide, self.sliding, self.pairs) = (None, None, [0; 2]);
+        if let Some(opened) = &mut self.opened {
+            opened.set_slide(slide)?;
+        }
         let Some(slide) = slide else { return Ok(0) };
         let vertices = self.mesh.points.len();
         slide.check(vertices)?;
@@ -177,13 +215,19 @@ impl<'a> Smoother<'a> {
     }
 
     /// Returns the objective f by a metric with the vertices at `points`, after target maps are applied if targets are
-    /// set; see [`Self::set_targets`] and [`Self::set_target_field`].
+    /// set; see [`Self::set_targets`] and [`Self::set_target_field`]. In the projection of a sphere, f is that of the
+    /// projected triangles, unless the projection inverts one.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex, [`MeshError::NotFinite`] if a point
     /// that needs a target has an infinite or NaN coordinate.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
+        if let Some(opened) = &self.opened
+            && opened.topology.bad_triangles(&opened.problem.images(points))?.is_empty()
+        {
+            return opened.f(metric, points);
+        }
         let positions = now(self.problem.normalized(points, Vec::new()));
         let Some(field) = &self.field else {
             return Ok(now(self.objective(metric, &positions)));
@@ -255,7 +299,6 @@ impl<'a> Smoother<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::options::Options;
 
     #[test]
     fn a_smoother_that_keeps_its_mesh_runs_as_one_that_borrows_the_mesh() {

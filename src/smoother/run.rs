@@ -105,6 +105,7 @@ impl<'r> Run<'r> {
 
     async fn begin(mut self, device: Option<Device<'r>>) -> Result<Outcome, SmoothError> {
         let Self { smoother, options, resumed, .. } = self;
+        let smoother = smoother.serving(options);
         smoother.run_at(options, device, resumed, &mut *self.policy, &mut *self.observer).await
     }
 }

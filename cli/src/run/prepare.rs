@@ -115,7 +115,6 @@ pub(super) fn set_up<'a>(
     };
     let points = mended.map_or(&mesh.points, |mended| &mended.mesh.points);
     if surface == Surface::Sphere {
-        // A mesh with slivers that the projection would invert is smoothed in longitude and latitude.
         smoother.project_from_sphere().map_err(|error| explain::mesh_error(file, &error))?;
     }
     if let Some(remark) = mended.and_then(|mended| mended.remark.as_ref()) {
