@@ -147,9 +147,13 @@ impl Report {
         }
         // Sizes in a mesh of bad elements are hardly intended.
         let is_sound = self.before.f["imr"] < SOUND;
-        let keeps = match self.target.is_none() && is_sound && size.p95 > LARGE_CHANGE {
-            true => "; --target keep-size keeps sizes",
-            false => "",
+        let has_large_change = size.p95 > LARGE_CHANGE;
+        let keeps = match self.target.as_ref().map(|target| target.kind.as_str()) {
+            None if is_sound && has_large_change => "; --target keep-size keeps sizes",
+            Some("keep-size") if has_large_change && self.base() != Metric::Tmop80.name() => {
+                "; --scheme tmop-80 keeps sizes closer, and --target keep-shape keeps the stretching of triangles"
+            }
+            _ => "",
         };
         format!(
             "vertices moved {:.2} edges (median), {:.2} (95 %), {:.2} (most); sizes around them changed by {}, {}, {}{keeps}",

@@ -72,6 +72,21 @@ fn the_target_that_keeps_an_adapted_mesh_is_named_before_the_run() {
 }
 
 #[test]
+fn the_metric_that_keeps_the_sizes_of_stretched_triangles_closer_is_named_after_the_run() {
+    let [node, ele] = node_ele(&support::layered(24, 60.0));
+    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    let hint = "--scheme tmop-80 keeps sizes closer";
+    let changes = [("", true), ("--scheme tmop-80", false)].map(|(scheme, has_hint)| {
+        let args = "in out --engine cpu --target keep-size --force --report r.json";
+        let run = folder.line(&format!("{args} {scheme}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_eq!(run.out.contains(hint), has_hint, "{}", run.out);
+        number(&folder.json("r.json")["change"]["size"]["p95"])
+    });
+    assert!(changes[0] > 1.25 && changes[1] < changes[0], "{changes:?}");
+}
+
+#[test]
 fn keep_shape_fixes_the_first_layer_and_counts_it() {
     let mesh = support::layered(24, 60.0);
     let [node, ele] = node_ele(&mesh);
