@@ -36,7 +36,7 @@ impl Checkpoint {
     /// First bytes of a checkpoint file in every version of the format.
     pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
     /// Version of the format that the library reads and writes. The version follows [`Self::MAGIC`], on the same line.
-    const VERSION: &str = "4";
+    const VERSION: &str = "5";
     /// Start of the second line. The rest of the line names the program and version that wrote the checkpoint.
     const WRITER: &str = "written by ";
     /// Name and version of this library.

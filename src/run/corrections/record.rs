@@ -27,6 +27,11 @@ const STEADY: f64 = 0.3;
 /// starts estimated too little, by up to a third.
 const CAUTION: f64 = 1.5;
 
+/// Smallest remaining gain that a run reports after many corrections, as a multiple of the tolerance. Levels that take
+/// more than 16 corrections leave modes that decay by a hundredth per correction once the other modes are gone. 2.6 times
+/// the tolerance was found to remain around a vertex of 50.
+const SLOW_MODES: f64 = 2.0;
+
 /// Decrease of the objective by a sweep, as a share of the objective, above which gains do not predict the remaining
 /// gain. The first correction of a stage may lower f to a third and the second by a tenth of that, with f a thousand
 /// times the limit. No run with a tolerance of 0.01 was found to depend on this bound.
@@ -75,7 +80,12 @@ impl Corrections {
         let end = judged.end.or(is_at_bound.then_some(Stop::Converged));
         // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
         let is_extrapolated = end == Some(Stop::Converged) && !is_settled;
-        let least_left = if is_extrapolated { whole.tolerance } else { 0.0 };
+        let has_slow_modes = self.taken as usize > 2 * WINDOW && self.metric().is_smooth();
+        let least_left = match is_extrapolated {
+            true if has_slow_modes => SLOW_MODES * whole.tolerance,
+            true => whole.tolerance,
+            false => 0.0,
+        };
         let remaining = judged.remaining.map(|left| (left + self.above()).max(least_left));
         let remaining = remaining.into_iter().chain(bound).reduce(f64::min);
         let stop = match of_f {
@@ -92,7 +102,8 @@ impl Corrections {
     fn judged_by_decay(&mut self, rule: &StopRule, history: &History, noise: f64) -> Judged {
         let (of_stage, mut window) = self.values_of_stage(history);
         let mut remaining = rule.remaining(&of_stage, window);
-        if self.accelerated {
+        let is_correcting = matches!(self.stage, Stage::Correcting(_));
+        if self.accelerated || is_correcting && self.has_stretched_hub() {
             (remaining, window) = self.confirmed(remaining, window, &of_stage, rule);
         }
         let slow = self.slow_decay(rule, history, noise);
@@ -110,21 +121,38 @@ impl Corrections {
     }
 
     /// Prevents the end of a stage of sweeps alone if corrections have not had a fair trial: corrections begin again if
-    /// they are due, and a refused correction that promises a large gain prevents the end.
+    /// they are due, and a refused correction that promises a large gain prevents the end. Ends the run if corrections
+    /// that began again at its end gained little and promise little.
     fn doubt(&mut self, judged: &mut Judged, rule: &StopRule, history: &History) {
+        let promised = self.promised(history);
         if self.tries_again(history, judged.end) {
             // Only tries at the end count: a stage that has doubled the number of sweeps may be far from the end.
-            self.attempts += u32::from(judged.end.take().is_some());
+            let end = judged.end.take();
+            self.attempts += u32::from(end.is_some());
             self.begin_correcting(history.f().len() - 1, 1.0);
+            self.from_end = end == Some(Stop::Converged);
             self.lowered.push(history.last());
         } else if judged.end == Some(Stop::Converged)
-            && let Some(promised) = self.promised(history)
-            && promised > DOUBT * rule.tolerance
+            && let Some(promised) = promised.filter(|left| *left > DOUBT * rule.tolerance)
         {
             // The decay of f in sweeps alone is then no evidence for convergence.
             judged.remaining = judged.remaining.map(|left| left.max(promised));
             judged.end = judged.end.filter(|_| self.attempts >= MOST_ATTEMPTS);
+        } else if self.gained_little_from_end(history, rule.tolerance)
+            && let Some(promised) = promised.filter(|left| *left <= DOUBT * rule.tolerance)
+        {
+            judged.remaining = Some(promised.max(rule.tolerance));
+            judged.end = judged.end.or(Some(Stop::Converged));
         }
+    }
+
+    /// Returns whether corrections that began when sweeps alone would have ended the run have just been refused, and have
+    /// gained less than the tolerance, as a share of f.
+    fn gained_little_from_end(&self, history: &History, tolerance: f64) -> bool {
+        let last = history.f().len() - 1;
+        let was_refused = matches!(self.stage, Stage::Without { since } if since == last);
+        let gained = self.lowered.first().map_or(f64::INFINITY, |f| f - history.last());
+        was_refused && self.from_end && gained <= tolerance * history.last().max(MIN_SCALE)
     }
 
     /// Returns whether corrections begin again after a stage of sweeps alone, because the stage would end the run for
@@ -163,7 +191,7 @@ impl Corrections {
         (values.to_vec(), if self.is_sharpest() { window } else { NO_ESTIMATE })
     }
 
-    /// Records an estimate of a run with accelerated corrections, whose gains are irregular. Returns the largest of the
+    /// Records an estimate of a run with accelerated corrections or around a stretched hub, whose gains are irregular. Returns the largest of the
     /// latest estimates and the window for the stop rule, or no window if that estimate is above the tolerance.
     fn confirmed(
         &mut self,
@@ -176,7 +204,12 @@ impl Corrections {
         self.estimates[ESTIMATES - 1] = remaining.map_or(f64::INFINITY, |left| CAUTION * left);
         let asked = match self.metric().is_smooth() {
             // New levels on a strongly stretched mesh gain much at first, and slow modes remain.
-            _ if decays_steadily(of_stage) && !self.has_local_maps() => 1,
+            _ if decays_steadily(of_stage)
+                && !self.has_local_maps()
+                && !self.has_stretched_hub() =>
+            {
+                1
+            }
             true => ESTIMATES,
             false => ESTIMATES_FOR_EDGE,
         };

@@ -17,6 +17,10 @@ pub(super) const ESTIMATES: usize = 4;
 /// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 pub(super) const SWEPT: f64 = 0.1;
 
+/// Number of neighbors of a vertex above which gains with stretched targets are as irregular as those of accelerated
+/// corrections. In usual meshes, vertices have at most 14 neighbors.
+const MOST_USUAL: u32 = 24;
+
 /// Number of times that corrections begin after a few sweeps alone. Refused once more, corrections wait until sweeps alone
 /// would end the run.
 pub(super) const ATTEMPTS: u32 = 5;
@@ -25,6 +29,8 @@ pub(super) const ATTEMPTS: u32 = 5;
 pub(crate) struct Corrections {
     pub(super) problem: Problem,
     pub(super) plan: Plan,
+    /// Whether a free vertex has more than [`MOST_USUAL`] neighbors.
+    pub(super) has_hub: bool,
     /// Whether stages of the driver change positions between sweeps, so that the history of f is not a decay.
     pub(super) is_staged: bool,
     pub(super) stage: Stage,
@@ -36,6 +42,9 @@ pub(crate) struct Corrections {
     pub(super) alternated: u32,
     /// Whether neither the last correction nor a further sweep can gain anything.
     pub(super) settled: bool,
+    /// Whether the present stage of corrections, or the last one, began because sweeps alone would have ended the run as
+    /// converged.
+    pub(super) from_end: bool,
     /// Slope along the last correction of the present stage. `None` before the first correction.
     pub(super) slope: Option<f64>,
     /// Binary logarithm of the present exponent of EDGE's p-norm.
@@ -96,12 +105,14 @@ impl Corrections {
         Self {
             problem: problem.clone(),
             plan: plan.clone(),
+            has_hub: problem.ring_start().windows(2).any(|range| range[1] - range[0] > MOST_USUAL),
             is_staged,
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
             alternated: 0,
             settled: false,
+            from_end: false,
             slope: None,
             sharpness: *exponents(plan).start(),
             lowered: Vec::new(),
@@ -154,6 +165,7 @@ impl Corrections {
         self.anew = self.accelerated;
         self.estimates = [f64::INFINITY; ESTIMATES];
         self.lowered.clear();
+        self.from_end = false;
         self.stage = Stage::Correcting(Correcting { since: done, length, proposed: 0, refused: 0 });
     }
 
@@ -194,6 +206,11 @@ impl Corrections {
     /// Returns whether the mesh has local maps, which follow its triangles.
     pub(super) fn has_local_maps(&self) -> bool {
         self.problem.has_local_maps()
+    }
+
+    /// Returns whether a free vertex has more than [`MOST_USUAL`] neighbors, in a mesh with stretched targets.
+    pub(super) fn has_stretched_hub(&self) -> bool {
+        self.has_hub && self.problem.targets().is_some() && self.problem.is_stretched()
     }
 
     /// Returns the lower limit of f.

@@ -16,8 +16,9 @@ impl Corrections {
         let counts = [self.attempts, self.taken, proposed, refused].map(u64::from);
         let levels = [self.built as u64, self.fitted as u64];
         let in_plane = self.problem.are_levels_in_plane();
+        let (settled, left_out) = (self.settled, self.is_left_out());
         let flags =
-            [self.settled, self.accelerated, self.is_left_out(), self.was_reopened, in_plane];
+            [settled, self.accelerated, left_out, self.was_reopened, in_plane, self.from_end];
         let flags = flags.map(u64::from);
         let slope = [self.slope.is_some().into(), self.slope.unwrap_or(0.0).to_bits()];
         let mut words = vec![stage, at as u64, length.to_bits()];
@@ -44,6 +45,7 @@ impl Corrections {
                 left_out,
                 was_reopened,
                 in_plane,
+                from_end,
                 has_slope,
                 slope,
                 ref estimates @ ..,
@@ -53,7 +55,7 @@ impl Corrections {
                 fitted,
             ],
             lowered,
-        )) = rest.split_first_chunk::<{ 11 + ESTIMATES }>()
+        )) = rest.split_first_chunk::<{ 12 + ESTIMATES }>()
         else {
             return false;
         };
@@ -105,7 +107,7 @@ impl Corrections {
         (self.built, self.fitted) = (built as usize, fitted as usize);
         (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
         (self.was_left_out, self.has_levels) = (left_out != 0, has_levels);
-        self.was_reopened = was_reopened != 0;
+        (self.was_reopened, self.from_end) = (was_reopened != 0, from_end != 0);
         if in_plane != 0 {
             self.problem.set_levels_in_plane();
         }
