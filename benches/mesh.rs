@@ -1,8 +1,8 @@
 //! Generators of large meshes, within seconds.
 #![allow(dead_code, reason = "each benchmark uses a part of it")]
 
-use crate::support::Mesh;
-use crate::support::{SplitMix64, lattice, perturb_random, renumbered};
+use support::Mesh;
+use support::{SplitMix64, lattice, perturb_random, renumbered};
 
 /// Makes a perturbed lattice of `side` times `side` cells. Every fourth diagonal is flipped, so that the number of
 /// neighbors varies as in real meshes.

@@ -7,8 +7,6 @@
 //! Meshes of `rows` are numbered row by row, those of `mixed` at random.
 
 mod mesh;
-#[path = "../tests/support/mod.rs"]
-mod support;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;

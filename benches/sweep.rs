@@ -7,8 +7,6 @@
 //! Without an adapter, the GPU has no rows.
 
 mod mesh;
-#[path = "../tests/support/mod.rs"]
-mod support;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;

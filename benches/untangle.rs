@@ -7,9 +7,6 @@
 
 #![allow(clippy::print_stdout)]
 
-#[path = "../tests/support/mod.rs"]
-mod support;
-
 use std::ops::ControlFlow;
 use std::time::Instant;
 

@@ -8,9 +8,6 @@
 //! Writes OUT_STEM.node and OUT_STEM.ele. `meshes/README.md` contains the command for the mesh in that folder.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
-#[path = "../tests/support/mod.rs"]
-mod support;
-
 use std::process::ExitCode;
 use std::time::Instant;
 use support::Recipe;

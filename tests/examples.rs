@@ -15,7 +15,6 @@ mod outside;
 use std::path::Path;
 
 use gpu_smooth::Metric;
-use moving_boundary::support;
 
 /// Returns the perceived brightness of a pixel, from 0 to 255.
 fn luminance([red, green, blue, _]: [u8; 4]) -> f64 {

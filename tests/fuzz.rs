@@ -3,8 +3,6 @@
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
-#[path = "support/mod.rs"]
-mod support;
 
 use std::env;
 use std::path::Path;

@@ -1,7 +1,5 @@
 //! Tests of the mesh generators and checks in `tests/support`.
 
-mod support;
-
 use gpu_smooth::Mesh;
 use support::{Outline, Recipe, SplitMix64};
 

@@ -1,8 +1,5 @@
 //! Interpolated vertex data, compared with a search through all triangles and with linear functions.
 
-#[path = "support/mod.rs"]
-mod support;
-
 use gpu_smooth::{Mesh, MeshError, Topology, interpolate::Interpolation};
 use support::{SplitMix64, lattice};
 

@@ -4,8 +4,6 @@
 #[allow(dead_code)]
 #[path = "../examples/live/main.rs"]
 mod live;
-#[path = "support/mod.rs"]
-mod support;
 
 use gpu_smooth::{Mesh, Metric, wgpu};
 use std::collections::HashSet;

@@ -3,8 +3,6 @@
 #[allow(dead_code)]
 #[path = "metrics/oracles.rs"]
 mod oracles;
-#[path = "support/mod.rs"]
-mod support;
 #[allow(dead_code)]
 #[path = "metrics/triangles.rs"]
 mod triangles;

@@ -7,9 +7,6 @@
 
 #![allow(clippy::print_stdout)]
 
-#[path = "../../tests/support/mod.rs"]
-mod support;
-
 use std::fmt::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};

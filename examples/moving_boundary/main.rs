@@ -7,9 +7,6 @@
 //! A second mesh, moved equally but without sweeps, serves as comparison.
 #![allow(clippy::print_stdout)]
 
-#[path = "../../tests/support/mod.rs"]
-pub(crate) mod support;
-
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 

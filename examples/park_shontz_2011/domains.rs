@@ -3,7 +3,7 @@
 use gpu_smooth::Mesh;
 
 use super::study::{Size, Start};
-use super::support::{Outline, distort_smooth, perturb_random, triangulate};
+use support::{Outline, distort_smooth, perturb_random, triangulate};
 
 /// A domain, with the data of its mesh in the paper's Table 2.
 pub(crate) struct Domain {

@@ -99,7 +99,7 @@ fn meshes() -> Result<String> {
             ]
         };
         svg += "<path fill=\"none\" stroke=\"#24507a\" stroke-width=\"0.6\" d=\"";
-        for [a, b] in super::support::edge_uses(&mesh).into_keys() {
+        for [a, b] in support::edge_uses(&mesh).into_keys() {
             let ([ax, ay], [bx, by]) = (at(a), at(b));
             let _ = write!(svg, "M{ax:.1} {ay:.1}L{bx:.1} {by:.1}");
         }

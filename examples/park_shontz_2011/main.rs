@@ -22,8 +22,6 @@ mod report;
 mod runs;
 mod store;
 pub(crate) mod study;
-#[path = "../../tests/support/mod.rs"]
-mod support;
 mod tables;
 
 use std::path::{Path, PathBuf};

@@ -10,10 +10,10 @@ use gpu_smooth::{
     options::{Derivatives, PNormExponent},
 };
 
+use super::Result;
 use super::domains::{Domain, started};
 use super::store::{BINS, DesiredRecord, DistributionRecord, MeshRecord, RunRecord, Sample};
 use super::study::{Batch, Case, Place, Setting, Size, Start, Study};
-use super::{Result, support};
 
 /// Fraction of the way at which Figures 4 and 5 take their distributions, as in the paper.
 const CONVERGED: f64 = 0.95;

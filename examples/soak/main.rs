@@ -3,9 +3,6 @@
 //! encodes sweeps itself. The example prints the resources in use ten times, and fails if they grow.
 #![allow(clippy::print_stdout)]
 
-#[path = "../../tests/support/mod.rs"]
-mod support;
-
 use std::error::Error;
 use std::fs;
 use std::time::Instant;

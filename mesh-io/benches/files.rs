@@ -9,8 +9,6 @@
 
 #[path = "../../benches/mesh.rs"]
 mod mesh;
-#[path = "../tests/support/mod.rs"]
-mod support;
 
 use divan::Bencher;
 use divan::counter::BytesCount;

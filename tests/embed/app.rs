@@ -13,7 +13,7 @@ use gpu_smooth::{
 use pollster::block_on;
 use wgpu::BufferUsages as Usage;
 
-use crate::support::{perturb_random, triangulate};
+use support::{perturb_random, triangulate};
 
 /// Size of the largest mesh in these tests.
 const LARGEST: MeshSize = MeshSize { vertices: 10_000, triangles: 20_000 };
@@ -210,7 +210,7 @@ impl Vertices {
 /// Makes a plate with a round hole.
 pub(crate) fn plate(vertices: usize) -> Mesh {
     let text = "loop\n0 0\n3 0\n3 2\n0 2\ncircle 1.2 1 0.5 24\n";
-    triangulate(&crate::support::Outline::parse(text).unwrap(), vertices).unwrap()
+    triangulate(&support::Outline::parse(text).unwrap(), vertices).unwrap()
 }
 
 /// Makes a plate with a round hole and perturbed interior vertices.
@@ -220,7 +220,7 @@ pub(crate) fn bad_plate(vertices: usize) -> Mesh {
 
 /// Returns the vertices that are neither on the boundary nor fixed.
 pub(crate) fn interior(mesh: &Mesh) -> Vec<u32> {
-    let held = crate::support::check::held(mesh);
+    let held = support::check::held(mesh);
     (0..mesh.points.len() as u32).filter(|&v| !held[v as usize]).collect()
 }
 

@@ -8,7 +8,7 @@ use gpu_smooth::{
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
-use crate::support::transformed;
+use support::transformed;
 
 /// Buffers of a drag: targets, and numbers with the completed fraction between fillers.
 struct Drag {

@@ -11,7 +11,7 @@ use gpu_smooth::{
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate, interior, plate};
-use crate::support::{distort_smooth, graded, lattice, orientations, perturb_random, read_mesh};
+use support::{distort_smooth, graded, lattice, orientations, perturb_random, read_mesh};
 
 fn corrected(metric: Metric) -> Options {
     Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }

@@ -10,7 +10,7 @@ use gpu_smooth::{
 use pollster::block_on;
 
 use crate::app::bad_plate;
-use crate::support::check;
+use support::check;
 
 /// Opens a device of the first adapter of `backends`, with the library's required features and limits.
 fn open(backends: wgpu::Backends) -> Gpu {

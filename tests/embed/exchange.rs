@@ -3,7 +3,7 @@
 use gpu_smooth::{Mesh, Options, gpu::Sweeps};
 
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
-use crate::support::{boundary, f_imr, perturb_random, transformed};
+use support::{boundary, f_imr, perturb_random, transformed};
 
 /// Makes a mesh with unused vertices at the front, in the middle and at the end.
 fn with_unused_vertices() -> Mesh {

@@ -7,7 +7,7 @@ use gpu_smooth::{
 };
 
 use crate::app::{App, Vertices, bad_plate, interior};
-use crate::support::{is_ccw, orientations};
+use support::{is_ccw, orientations};
 
 /// Displacement of a vertex by the application, relative to the two neighbors in one triangle.
 #[derive(Clone, Copy, Debug)]

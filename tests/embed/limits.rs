@@ -8,7 +8,7 @@ use gpu_smooth::{
 use wgpu::Limits;
 
 use crate::app::{App, Vertices, adapter, bad_plate, gpu_error, least_limits};
-use crate::support::{f_imr, lattice};
+use support::{f_imr, lattice};
 
 #[track_caller]
 fn assert_limit(error: &GpuError, name: &str, available: u64, text: &str) {

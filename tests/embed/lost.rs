@@ -14,7 +14,7 @@ use gpu_smooth::{
 };
 
 use crate::app::{App, Vertices, bad_plate, gpu_error, interior};
-use crate::support::{SplitMix64, check, f_imr};
+use support::{SplitMix64, check, f_imr};
 
 /// Executes `work` on another thread, and fails after a minute without result.
 fn within_a_minute<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {

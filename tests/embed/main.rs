@@ -3,9 +3,6 @@
 //! Each test creates a device in the way of an application. A test fails if the application's error
 //! handler receives an error that the library must handle; see [`app::App`].
 
-#[path = "../support/mod.rs"]
-mod support;
-
 mod app;
 mod budget;
 mod clamped;

@@ -9,7 +9,7 @@ use wgpu::BufferUsages as Usage;
 use gpu_smooth::wgpu;
 
 use crate::app::{App, Vertices, bad_plate, filler, interior};
-use crate::support::{orientations, transformed};
+use support::{orientations, transformed};
 
 const WORDS: usize = size_of::<ObjectiveValues>() / 4;
 

@@ -11,7 +11,7 @@ use gpu_smooth::{
 use wgpu::Limits;
 
 use crate::app::{App, Vertices, adapter, bad_plate, gpu_error, least_limits};
-use crate::support::lattice;
+use support::lattice;
 
 /// Largest binding of the small device, in bytes. The buffer of sums, which cannot be bound in parts, just fits: its
 /// size grows with the number of metrics.

@@ -10,7 +10,7 @@ use gpu_smooth::{
 use wgpu::BufferUsages as Usage;
 
 use crate::app::{App, Vertices, bad_plate};
-use crate::support::{lattice, orientations, transformed};
+use support::{lattice, orientations, transformed};
 
 /// Checks the message for a refused vertex buffer. The mesh is a lattice of 36 vertices.
 #[track_caller]

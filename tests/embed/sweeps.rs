@@ -8,7 +8,7 @@ use gpu_smooth::{
 };
 
 use crate::app::{App, bad_plate, plate};
-use crate::support::{lattice, perturb_random};
+use support::{lattice, perturb_random};
 
 fn options(scheme: &str) -> Options {
     let method = Method::RELAXED;
@@ -30,7 +30,7 @@ fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
 /// run would use the worst triangle of its mesh as the guard, unlike encoded sweeps, whose mesh may change.
 fn flattened(mesh: &Mesh) -> Mesh {
     let mesh = perturb_random(mesh, 1.0, 1);
-    assert!(crate::support::worst_imr(&mesh) > 30.0);
+    assert!(support::worst_imr(&mesh) > 30.0);
     mesh
 }
 

@@ -6,7 +6,7 @@ use gpu_smooth::{
 };
 
 use crate::app::{App, Vertices, bad_plate, filler, interior, plate};
-use crate::support::{SplitMix64, orientations, tangle};
+use support::{SplitMix64, orientations, tangle};
 
 /// Counts the inverted or flat triangles, by exact predicates.
 fn bad(mesh: &Mesh, points: &[[f64; 2]]) -> usize {

@@ -10,7 +10,7 @@ use naga::{
     TypeInner, UnaryOperator,
 };
 
-use crate::support::SplitMix64;
+use support::SplitMix64;
 
 /// A sum of products. Each product is a list of atoms, by index, with a coefficient.
 type Sum = BTreeMap<Vec<usize>, f64>;

@@ -2,9 +2,6 @@
 //! such compilers reorder sums, cancel terms and fuse products with additions.
 
 #[allow(dead_code, unreachable_pub)]
-#[path = "../support/rng.rs"]
-mod support;
-
 mod compiler;
 
 use compiler::Program;

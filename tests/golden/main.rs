@@ -10,9 +10,6 @@
 
 #![allow(clippy::print_stderr)]
 
-#[path = "../support/mod.rs"]
-mod support;
-
 use gpu_smooth::{
     Backend, Goal, Guard, Mesh, Method, Metric, Options, Slide, Smoother, Stopping, TargetField,
     Targets, options::WorstBy, precision::Precision, targets::Surface, untangle,

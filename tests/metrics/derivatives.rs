@@ -2,9 +2,9 @@
 //! numbers.
 
 use crate::oracles::is_linear_in_size;
-use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::{Metric, internal::Dual, metric::Corner};
+use support::SplitMix64;
 
 fn central(metric: Metric, t: &Corner<f64>, sharpness: u32, h: f64) -> Dual {
     let value = |i: i32, j: i32| {

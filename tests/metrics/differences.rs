@@ -1,6 +1,5 @@
 //! Finite differences of the engines: less exact than analytic derivatives, but sufficient for smoothing.
 
-use crate::support;
 use gpu_smooth::{
     Backend, Gpu, Mesh, Method, Metric, Options, Quality, Smoother, Topology,
     internal::{Coloring, Plan, Problem, Stepwise, StopRule, prepare, run_on_cpu, run_on_gpu},

@@ -1,8 +1,5 @@
 //! Tests of the metrics: documented properties, derivatives, and WGSL.
 
-#[path = "../support/mod.rs"]
-mod support;
-
 mod derivatives;
 mod device;
 mod differences;

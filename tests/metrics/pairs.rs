@@ -1,8 +1,8 @@
 //! Pairs of floats, which store positions and sums: accuracy on the adapter, of at most 48 bits.
 
 use crate::device::{Device, probe};
-use crate::support::SplitMix64;
 use gpu_smooth::{Metric, gpu::Kernel, options::Derivatives};
+use support::SplitMix64;
 
 fn split(x: f64) -> [f32; 2] {
     let high = x as f32;

@@ -1,9 +1,9 @@
 //! Properties of each metric, as stated in the metric's file.
 
 use crate::oracles;
-use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::{Metric, metric::Corner};
+use support::SplitMix64;
 
 const COUNT: usize = 500;
 const WORST: f64 = 50.0;

@@ -3,9 +3,9 @@
 
 use crate::device::{Device, probe};
 use crate::oracles::{SHARPNESS, Scales, mistakes, scales};
-use crate::support::SplitMix64;
 use crate::triangles::*;
 use gpu_smooth::{Metric, gpu::Kernel, internal::Dual, metric::Corner, options::Derivatives};
+use support::SplitMix64;
 
 /// Half a unit in the last place of a float close to 1.
 const ULP: f64 = 1.0 / 16_777_216.0;

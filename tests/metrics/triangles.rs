@@ -1,7 +1,7 @@
 //! Triangles for tests of the metrics.
 
-use crate::support::SplitMix64;
 use gpu_smooth::metric::Corner;
+use support::SplitMix64;
 
 pub(crate) type Vec2 = [f64; 2];
 

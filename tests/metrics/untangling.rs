@@ -1,8 +1,8 @@
 //! Comparison of the untangling energy in WGSL with that of the CPU, on equal single-precision input.
 
 use crate::device::{Device, probe};
-use crate::support::SplitMix64;
 use gpu_smooth::{gpu::Kernel, internal::untangling_energy};
+use support::SplitMix64;
 
 /// Input of an invocation: two edges, and ε in units of the doubled area.
 type Row = [f32; 5];

@@ -4,6 +4,7 @@ use super::{Mesh, Precision};
 
 /// The bytes of a binary file under construction.
 pub struct Binary {
+    /// Bytes written so far.
     pub bytes: Vec<u8>,
     /// Whether numbers are big-endian.
     pub big: bool,
@@ -24,6 +25,7 @@ impl Binary {
         file
     }
 
+    /// Appends a text.
     pub fn text(&mut self, text: &str) {
         self.bytes.extend_from_slice(text.as_bytes());
     }
@@ -35,14 +37,17 @@ impl Binary {
         self.bytes.extend_from_slice(&little);
     }
 
+    /// Appends integers of 4 bytes.
     pub fn ints(&mut self, numbers: &[i32]) {
         numbers.iter().for_each(|n| self.put(n.to_le_bytes()));
     }
 
+    /// Appends integers of 8 bytes.
     pub fn sizes(&mut self, numbers: &[u64]) {
         numbers.iter().for_each(|n| self.put(n.to_le_bytes()));
     }
 
+    /// Appends numbers of 8 bytes.
     pub fn doubles(&mut self, numbers: &[f64]) {
         numbers.iter().for_each(|x| self.put(x.to_le_bytes()));
     }

@@ -14,6 +14,7 @@ pub fn orient([a, b, c]: [[f64; 2]; 3]) -> f64 {
     orient2d(coord(a), coord(b), coord(c))
 }
 
+/// Returns the positions of the three vertices of a triangle.
 pub fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [[f64; 2]; 3] {
     triangle.map(|v| mesh.points[v as usize])
 }
@@ -48,6 +49,7 @@ pub fn edge_uses(mesh: &Mesh) -> BTreeMap<[u32; 2], u32> {
     uses
 }
 
+/// Returns the edges of a triangle, in its winding.
 pub fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
@@ -108,6 +110,7 @@ pub fn area(mesh: &Mesh) -> f64 {
     mesh.triangles.iter().map(|&t| orient(corners(mesh, t)).abs() / 2.0).sum()
 }
 
+/// Returns the squared distance of two points.
 pub fn squared_distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
     dx * dx + dy * dy

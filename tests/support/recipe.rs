@@ -16,7 +16,9 @@ const USAGE: &str = "usage: make_mesh OUTLINE OUT_STEM [options]
 pub struct Recipe {
     /// The command as typed, for the comment in the files.
     pub command: String,
+    /// File with the outline of the domain.
     pub outline: PathBuf,
+    /// Path of the files to write, without their endings.
     pub stem: PathBuf,
     vertices: usize,
     perturb: Option<f64>,
@@ -89,6 +91,7 @@ impl Recipe {
         Ok(triangle_text(&self.mesh()?, &self.command))
     }
 
+    /// Makes the mesh. The error names the outline and the problem.
     pub fn mesh(&self) -> Result<Mesh, String> {
         let named = |problem: String| format!("{}: {problem}", self.outline.display());
         let text = std::fs::read_to_string(&self.outline).map_err(|e| named(e.to_string()))?;

@@ -6,10 +6,12 @@
 pub struct SplitMix64(u64);
 
 impl SplitMix64 {
+    /// Creates a generator. The seed determines all of its numbers.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
+    /// Returns the next number of the generator. All 64 bits are random.
     pub fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

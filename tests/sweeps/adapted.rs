@@ -1,6 +1,5 @@
 //! Targets that keep adapted meshes: sizes and the spacing at walls, on both engines.
 
-use crate::support::{self, SplitMix64};
 use crate::{backends, name, run};
 use gpu_smooth::{
     Mesh, Metric, Options, Outcome, Smoother, Stop, Targets, Topology, measure::Change,
@@ -8,6 +7,7 @@ use gpu_smooth::{
 };
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
+use support::SplitMix64;
 
 /// Returns a perturbed lattice on the unit square, with its points mapped by `to`.
 fn mapped(columns: usize, to: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {

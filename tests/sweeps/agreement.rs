@@ -1,6 +1,6 @@
 //! Both engines execute equal sweeps, in any grouping.
 
-use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme, support};
+use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme};
 use gpu_smooth::{
     Backend, Metric, Quality, Stop, Topology,
     internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},

@@ -1,7 +1,7 @@
 //! Runs with `keep_altitude`, which preserves the smallest altitude of a mesh.
 
 use crate::random::scattered;
-use crate::{backends, history, name, plate, run, support};
+use crate::{backends, history, name, plate, run};
 use gpu_smooth::{
     Backend, Guard, Mesh, Metric, OptionError, Options, Quality, Slide, SmoothError, Smoother,
     Stop, TargetField, Targets, measure::Change, options::Feature, precision::Precision, topology,

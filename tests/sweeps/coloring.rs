@@ -1,6 +1,6 @@
 //! Colors: vertices of equal color can move at the same time.
 
-use crate::{distorted, perturbed, support};
+use crate::{distorted, perturbed};
 use gpu_smooth::{
     Mesh, Topology,
     internal::{Coloring, Problem, UNCOLORED},

@@ -1,6 +1,5 @@
 //! Targets that belong to places: fields on a background mesh, on both engines.
 
-use crate::support;
 use crate::{backends, history, name, run};
 use gpu_smooth::{
     Backend, Goal, Mesh, MeshError, Metric, OptionError, Options, Slide, SmoothError, Smoother,

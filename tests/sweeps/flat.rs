@@ -1,6 +1,6 @@
 //! Triangles so flat that single precision cannot distinguish them from inverted ones.
 
-use crate::{backends, history, name, run, scheme, support, with_points};
+use crate::{backends, history, name, run, scheme, with_points};
 use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Quality, Smoother, Stop, Stopping};
 
 /// Makes a lattice with several vertices at distance `height` from an opposite edge.

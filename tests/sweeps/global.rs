@@ -1,7 +1,7 @@
 //! Independent computation of optima: global methods on all free vertices at once, without code of the library.
 
-use crate::support::check;
 use gpu_smooth::Mesh;
+use support::check;
 
 /// The coordinates of the free vertices as unknowns, alternately x and y.
 struct Unknowns {

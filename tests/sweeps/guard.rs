@@ -1,8 +1,8 @@
 //! The guard of the worst element, `--guard worst`, on both engines.
 
-use crate::support::{self, check};
 use crate::{backends, history, name, plate, run, with_points};
 use gpu_smooth::{Guard, Metric, Options, Slide, Smoother, Stop};
+use support::check;
 
 /// On a mesh graded to a point and slightly perturbed, metrics of size would trade bad shapes for even
 /// sizes.

@@ -1,6 +1,6 @@
 //! Valid meshes at the limits of double precision, all from former failures.
 
-use crate::{backends, history, name, plate, run, support, with_points};
+use crate::{backends, history, name, plate, run, with_points};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother, Stop, Topology,
 };

@@ -1,8 +1,8 @@
 //! Independence of results from position, unit, windings, numbering, and the size of the smallest triangle.
 
-use crate::support::{self, transformed};
 use crate::{backends, history, name, perturbed, plate, run};
 use gpu_smooth::{Backend, Mesh, Method, Metric, Options, Smoother, Stopping};
+use support::transformed;
 
 fn mild() -> Mesh {
     support::perturb_random(&plate(800), 0.6, 4)

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::{self, check};
 use crate::{backends, history, name, plate, run, with_points};
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, OptionError, Options, Slide, SmoothError, Smoother, Stop,
     Stopping, Targets, measure::Change, options::Feature, precision::Precision,
 };
+use support::check;
 
 #[test]
 fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {

@@ -1,8 +1,5 @@
 //! Sweeps and runs on both engines: convergence, invariance and safety.
 
-#[path = "../support/mod.rs"]
-mod support;
-
 mod adapted;
 mod agreement;
 mod altitude;

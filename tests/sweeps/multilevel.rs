@@ -1,7 +1,7 @@
 //! Sweeps corrected from coarser levels.
 
 use crate::{
-    backends, distorted, global, history, name, perturbed, plate, run, scheme, support, with_points,
+    backends, distorted, global, history, name, perturbed, plate, run, scheme, with_points,
 };
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, OptionError, Options, Outcome, SmoothError, Smoother, Stop,

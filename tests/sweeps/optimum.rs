@@ -1,6 +1,5 @@
 //! Final states of runs: known optima, or optima found by independent methods.
 
-use crate::support;
 use crate::{backends, distorted, global, history, name, perturbed, run, with_points};
 use gpu_smooth::{
     Method, Metric, Options, Quality, Smoother, Stop, Stopping, options::PNormExponent,

@@ -1,6 +1,5 @@
 //! Periodic pairs of vertices, which slide together on both engines.
 
-use crate::support::{SplitMix64, check, trig};
 use crate::{backends, name, run};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Metric, Options, Slide, SmoothError, Smoother, Stop, Stopping,
@@ -9,6 +8,7 @@ use gpu_smooth::{
     slide::{Motion, Periodic},
     topology,
 };
+use support::{SplitMix64, check, trig};
 
 const COLUMNS: u32 = 10;
 const ROWS: u32 = 6;

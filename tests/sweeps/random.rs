@@ -7,8 +7,7 @@
 //! A failure prints the seed of its mesh. Failing meshes are not shrunk (as by proptest): with one triangle, point or
 //! map less, most failures disappear, and most meshes are small anyway.
 
-use crate::support::SplitMix64;
-use crate::{all_schemes, backends, history, name, support, with_points};
+use crate::{all_schemes, backends, history, name, with_points};
 use gpu_smooth::{
     Backend, Goal, Mesh, MeshError, Method, Options, Outcome, Quality, SmoothError, Smoother,
     Stopping,
@@ -17,6 +16,7 @@ use gpu_smooth::{
 };
 use mesh_io::MeshFile;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
+use support::SplitMix64;
 
 /// Returns a random number from 10^low to 10^high, uniform in the logarithm.
 fn decades(rng: &mut SplitMix64, low: f64, high: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Valid settings of options, and the errors for invalid ones.
 
-use crate::{backends, history, perturbed, plate, run, scheme, support, with_points};
+use crate::{backends, history, perturbed, plate, run, scheme, with_points};
 use gpu_smooth::{
     Backend, Goal, Gpu, GpuError, Method, Metric, OptionError, Options, Phase, Quality, Scheme,
     SmoothError, Smoother, Stop, Stopping,

@@ -10,7 +10,7 @@ use gpu_smooth::{
 };
 
 use super::flat::{bent, pressed_to_a_line};
-use super::{all_schemes, backends, name, perturbed, plate, stuck, support, with_points};
+use super::{all_schemes, backends, name, perturbed, plate, stuck, with_points};
 
 /// A policy that collects all checkpoints.
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! Safety of runs: no inverted triangle, no moved fixed vertex, no remaining sliver.
 
-use crate::{all_schemes, backends, name, perturbed, plate, run, support, with_points};
+use crate::{all_schemes, backends, name, perturbed, plate, run, with_points};
 use gpu_smooth::{Mesh, Metric, Options, Quality, Smoother, Stopping};
 
 /// Makes a strongly perturbed plate with some fixed inner vertices and some unused vertices.

@@ -1,11 +1,11 @@
 //! Vertices that slide along the boundary and other lines, on both engines.
 
-use crate::support::{self, SplitMix64};
 use crate::{backends, history, name, plate, run};
 use gpu_smooth::{
     Backend, Goal, Mesh, MeshError, Metric, OptionError, Options, Slide, SmoothError, Smoother,
     Stop, Stopping, Targets, Topology, options::Feature, precision::Precision, topology,
 };
+use support::SplitMix64;
 
 /// Makes a plate with two holes and a perturbed interior.
 fn worn() -> Mesh {

@@ -1,12 +1,12 @@
 //! Meshes on the sphere, whose vertices move in the Mercator projection. Bounds, curves and fields of targets are in
 //! longitude and latitude.
 
-use crate::support::{self, SplitMix64, check};
 use crate::{backends, name, run, with_points};
 use gpu_smooth::{
     Mesh, Options, Slide, Smoother, Stop, Stopping, TargetField, Targets, measure::Change,
     options::WorstBy, precision::Precision, targets::Surface,
 };
+use support::{SplitMix64, check};
 
 /// Returns a lattice of 10 by 10 squares, uniform in degrees, from 60 to 85 degrees north. Coordinates of vertices inside
 /// are perturbed by up to `noise` edges.

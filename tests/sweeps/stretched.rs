@@ -1,6 +1,6 @@
 //! Strongly stretched meshes, on which Newton directions and coarser levels use local coordinates.
 
-use crate::{backends, history, name, run, support, with_points};
+use crate::{backends, history, name, run, with_points};
 use gpu_smooth::{
     Backend, Mesh, Metric, Options, Smoother, Stop, Stopping, Targets, targets::Surface,
 };

@@ -1,6 +1,6 @@
 //! Runs by EDGE in which a shape guard could prevent convergence far from the optimum.
 
-use crate::{backends, name, run, support, with_points};
+use crate::{backends, name, run, with_points};
 use gpu_smooth::{
     Backend, Mesh, Metric, Options, Outcome, Smoother, Stop, precision::Precision, untangle,
 };

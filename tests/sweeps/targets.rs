@@ -1,6 +1,5 @@
 //! Targets: elements of given sizes and shapes, on both engines.
 
-use crate::support::{self, SplitMix64};
 use crate::{backends, history, name, perturbed, plate, run};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother, Stop,
@@ -8,6 +7,7 @@ use gpu_smooth::{
     options::{Derivatives, Feature, Paper},
     targets::Surface,
 };
+use support::SplitMix64;
 
 type Matrix = [[f64; 2]; 2];
 

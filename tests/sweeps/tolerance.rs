@@ -1,7 +1,7 @@
 //! The tolerance bounds the distance to the limit, not the change in the last sweep.
 
 use crate::flat::{bent, pressed_to_a_line};
-use crate::{backends, distorted, global, history, name, perturbed, plate, run, support};
+use crate::{backends, distorted, global, history, name, perturbed, plate, run};
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, Options, Outcome, Smoother, Stop, Stopping, TargetField,
     Targets, Topology, targets::Surface,

@@ -1,6 +1,6 @@
 //! Untangling of meshes tangled as in the literature.
 
-use crate::{plate, support, with_points};
+use crate::{plate, with_points};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Metric, Options, SmoothError, Smoother, Topology,
     precision::Precision,

@@ -1,12 +1,12 @@
 //! `improve_worst`, which improves the worst triangles after a run.
 
-use crate::support::{self, check};
 use crate::{backends, distorted, name, plate, run, with_points};
 use gpu_smooth::{
     Backend, Mesh, Metric, Options, Outcome, Phase, Progress, Slide, Smoother, Stop, Stopping,
     Targets, measure::Change, options::WorstBy,
 };
 use std::ops::ControlFlow;
+use support::check;
 
 /// Returns the smallest angle of a triangle in degrees, by the law of cosines.
 fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {

@@ -1,7 +1,7 @@
 //! The boundary as loops, and moves that are clamped before a triangle inverts.
 
-use crate::support::{self, Outline, SplitMix64, check};
 use gpu_smooth::{Mesh, MeshError, Topology, topology::signed_area};
+use support::{Outline, SplitMix64, check};
 
 /// Makes a plate with two round holes.
 fn plate(vertices: usize) -> Mesh {

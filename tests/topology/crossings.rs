@@ -1,7 +1,7 @@
 //! Detection of crossings between edges that cannot move.
 
-use super::support::{self, SplitMix64};
 use gpu_smooth::{Mesh, MeshError, Topology, topology::Crossing};
+use support::SplitMix64;
 
 fn found(mesh: &Mesh, most: usize) -> Vec<Crossing> {
     Topology::by_area(mesh).unwrap().crossings(&mesh.points, most).unwrap()

@@ -1,7 +1,7 @@
 //! Detection of hanging nodes, and of intentional slits without hanging nodes.
 
-use super::support::SplitMix64;
 use gpu_smooth::{Mesh, Topology, topology::HangingNode};
+use support::SplitMix64;
 
 fn found(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<HangingNode> {
     let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: vec![] };

@@ -2,11 +2,11 @@
 //! minutes to hours.
 
 use crate::boundary::assert_loops_are_the_boundary;
-use crate::support::{self, trig};
 use gpu_smooth::{
     Mesh, Topology,
     internal::{Coloring, prepare},
 };
+use support::trig;
 
 /// Number of triangles around the hub.
 const MANY: u32 = 200_000;

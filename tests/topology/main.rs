@@ -1,8 +1,5 @@
 //! The connectivity of meshes: windings, the boundary, clamped moves, and errors for unsound meshes.
 
-#[path = "../support/mod.rs"]
-mod support;
-
 mod boundary;
 mod crossings;
 mod hanging;

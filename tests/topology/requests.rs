@@ -1,6 +1,5 @@
 //! Invalid requests of an application are answered with an error, not a panic.
 
-use crate::support;
 use gpu_smooth::{
     Mesh, MeshError, Quality, Smoother, Topology,
     internal::Coloring,

@@ -1,10 +1,10 @@
 //! Identification of inverted triangles: the minority in each edge-connected part, by exact arithmetic.
 
-use crate::support::{self, check};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Metric, Options, Quality, SmoothError, Smoother, Topology, smooth,
     topology::BadTriangle,
 };
+use support::check;
 
 /// Returns the indices of all bad triangles of a mesh, and the indices of the flat ones.
 fn bad(mesh: &Mesh) -> (Vec<usize>, Vec<usize>) {

@@ -1,6 +1,6 @@
 //! Choice of an adapter by a run, and runs on machines without adapters.
 
-use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
+use super::{Folder, Run, assert_holds, assert_smoothed, finish, small};
 use std::process::Command;
 
 #[test]

@@ -324,7 +324,7 @@ fn command_lines_of_any_words_neither_panic_nor_damage_files() {
         "--interpolate",
     ];
     let factor = std::env::var("FUZZ_ROUNDS").ok().and_then(|text| text.parse().ok());
-    let mut random = super::support::SplitMix64::new(21);
+    let mut random = support::SplitMix64::new(21);
     let folder = small();
     let kept = ["in.node", "in.ele"].map(|name| folder.text(name));
     let mut codes = std::collections::BTreeSet::new();

@@ -5,7 +5,7 @@
 //! GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored
 //! ```
 
-use super::{Folder, assert_holds, number, plate_path, support};
+use super::{Folder, assert_holds, number, plate_path};
 use serde_json::Value;
 use std::fs::{self, File};
 use std::io::BufReader;

@@ -1,6 +1,6 @@
 //! The command `gpu-smooth compare`: statements proved from two files, and differences found.
 
-use super::{Folder, assert_holds, disturbed, small, support};
+use super::{Folder, assert_holds, disturbed, small};
 use std::fs;
 
 /// Returns the words in the row of a vertex in a `.node`.

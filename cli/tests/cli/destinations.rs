@@ -1,7 +1,7 @@
 //! Destinations of meshes and reports, and unusual file names.
 
 use super::files::{Layout, gmsh_text, middle_row, triangle_files, triangle_folder};
-use super::{Folder, assert_holds, disturbed, number, small, support};
+use super::{Folder, assert_holds, disturbed, number, small};
 use std::fs;
 
 #[test]

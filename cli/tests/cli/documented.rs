@@ -1,6 +1,6 @@
 //! The commands in README.md and docs/.
 
-use super::{Folder, assert_holds, finish, support};
+use super::{Folder, assert_holds, finish};
 use gpu_smooth::Mesh;
 use std::fmt::Write;
 use std::fs;

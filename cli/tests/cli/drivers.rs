@@ -1,6 +1,6 @@
 //! Failing drivers: a layer in front of Mesa's driver makes one function fail from a given call on (`faulty_driver.c`).
 
-use super::{Folder, Run, assert_holds, assert_smoothed, finish, small, support};
+use super::{Folder, Run, assert_holds, assert_smoothed, finish, small};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::process::Command;

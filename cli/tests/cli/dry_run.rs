@@ -1,7 +1,7 @@
 //! `--dry-run`: the facts before a run, and no file.
 
 use super::output::INVERTED;
-use super::{Folder, assert_holds, small, support};
+use super::{Folder, assert_holds, small};
 use gpu_smooth::Topology;
 use std::fs;
 

@@ -1,6 +1,6 @@
 //! Preservation of the input file in each format.
 
-use super::{Folder, assert_smoothed, disturbed, support};
+use super::{Folder, assert_smoothed, disturbed};
 use gpu_smooth::Mesh;
 use std::collections::BTreeSet;
 use std::fmt::Write;

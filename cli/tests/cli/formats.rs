@@ -1,11 +1,11 @@
 //! Runs on files of other programs, with points as text and in single precision.
 
-use super::support::{self, Binary, check};
 use super::{Folder, assert_smoothed, disturbed, number};
 use gpu_smooth::Mesh;
 use mesh_io::{Format, MeshFile, Precision};
 use std::fmt::Write;
 use std::fs;
+use support::{Binary, check};
 
 /// Returns the small mesh far from the origin, where single precision resolves few digits of the coordinates.
 fn far() -> Mesh {

@@ -1,7 +1,7 @@
 //! Effects of signals on a run, in each of its stages.
 #![cfg(unix)]
 
-use super::{Folder, assert_holds, assert_smoothed, plate_path, small, support};
+use super::{Folder, assert_holds, assert_smoothed, plate_path, small};
 use mesh_io::MeshFile;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};

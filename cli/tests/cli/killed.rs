@@ -1,7 +1,7 @@
 //! Processes that are killed at random moments while they write.
 #![cfg(unix)]
 
-use super::{Folder, disturbed, finish, support};
+use super::{Folder, disturbed, finish};
 use mesh_io::MeshFile;
 use std::fs;
 use std::io::Write;

@@ -3,7 +3,6 @@
 
 use super::interrupt::{Started, names};
 use super::{Folder, Run, assert_holds, assert_smoothed, finish, small};
-use crate::support;
 use gpu_smooth::Checkpoint;
 use mesh_io::MeshFile;
 use std::fs;

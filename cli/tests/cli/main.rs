@@ -1,8 +1,5 @@
 //! Tests of the `gpu-smooth` command as a process, judged by its output and files.
 
-#[path = "../../../tests/support/mod.rs"]
-mod support;
-
 mod adapters;
 mod arguments;
 mod bench;

@@ -1,6 +1,6 @@
 //! Batches: `gpu-smooth MESH... --out-dir DIR`.
 
-use super::{Folder, Run, assert_holds, disturbed, number, support};
+use super::{Folder, Run, assert_holds, disturbed, number};
 use serde_json::Value;
 use std::fs;
 

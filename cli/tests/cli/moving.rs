@@ -1,6 +1,6 @@
 //! Options that select movable vertices: groups, lists, arrays, boxes, regions, and neighborhoods of bad triangles.
 
-use super::{Folder, assert_holds, assert_smoothed, disturbed, support};
+use super::{Folder, assert_holds, assert_smoothed, disturbed};
 use gpu_smooth::Mesh;
 use std::collections::BTreeSet;
 use std::fmt::Write;

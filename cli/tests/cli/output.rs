@@ -1,6 +1,6 @@
 //! Printed text, and its absence with `--quiet`.
 
-use super::{Folder, assert_holds, finish, number, plate_path, small, support};
+use super::{Folder, assert_holds, finish, number, plate_path, small};
 use gpu_smooth::Metric;
 use mesh_io::MeshFile;
 use std::fs;

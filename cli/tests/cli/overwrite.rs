@@ -3,7 +3,7 @@
 
 #[cfg(unix)]
 use super::interrupt::Started;
-use super::{Folder, assert_holds, disturbed, small, support};
+use super::{Folder, assert_holds, disturbed, small};
 use std::fs;
 
 /// Returns a folder with two meshes of different triangles, `a.msh` and `b.msh`, and `moved.msh`, which is `a.msh` with

@@ -2,7 +2,7 @@
 
 use super::html::MIXED;
 use super::output::INVERTED;
-use super::{Folder, assert_holds, finish, small, support};
+use super::{Folder, assert_holds, finish, small};
 use std::fs;
 
 /// An image, decoded to its pixels.

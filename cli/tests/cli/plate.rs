@@ -1,6 +1,6 @@
 //! The example of the README: the program smooths the plate of `meshes/`.
 
-use super::{Folder, assert_holds, assert_smoothed, number, plate_path, support};
+use super::{Folder, assert_holds, assert_smoothed, number, plate_path};
 use mesh_io::MeshFile;
 use std::fs;
 

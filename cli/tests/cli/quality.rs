@@ -1,7 +1,7 @@
 //! The command `gpu-smooth quality`: text, JSON and CSV.
 
 use super::output::INVERTED;
-use super::{Folder, assert_holds, disturbed, finish, number, small, support};
+use super::{Folder, assert_holds, disturbed, finish, number, small};
 use gpu_smooth::{
     Topology,
     measure::{Measure, Measured},

@@ -1,7 +1,7 @@
 //! Meshes that cannot be smoothed: exit code 1, one line with file, line and remedy, and OUT unchanged. An indented
 //! list follows if several triangles are inverted or flat.
 
-use super::{Folder, assert_holds, output::INVERTED, plate_path, support};
+use super::{Folder, assert_holds, output::INVERTED, plate_path};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! Vertices between regions: default, report, and `--free-interfaces`.
 
 use super::files::{assert_middle_row_held, middle_row};
-use super::{Folder, assert_holds, assert_smoothed, disturbed, support};
+use super::{Folder, assert_holds, assert_smoothed, disturbed};
 use gpu_smooth::Mesh;
 use std::fs;
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{disturbed, number, small, support};
+use super::{disturbed, number, small};
 use gpu_smooth::Metric;
 use serde_json::Value;
 

@@ -1,6 +1,6 @@
 //! Every metric and the alternating schemes of the paper, on both engines.
 
-use super::{Folder, assert_smoothed, number, small, support};
+use super::{Folder, assert_smoothed, number, small};
 use gpu_smooth::Metric;
 
 /// The alternating schemes of the paper.

@@ -1,6 +1,6 @@
 //! Sliding (`--slide`): vertices on the boundary and between regions move along lines.
 
-use super::{Folder, assert_holds, number, support};
+use super::{Folder, assert_holds, number};
 use gpu_smooth::Mesh;
 
 /// Returns a square of two materials with 8 by 4 cells. Vertices on lines are displaced along their lines.

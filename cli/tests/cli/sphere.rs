@@ -1,6 +1,6 @@
 //! `--surface sphere`: meshes across the date line, around the globe, and at a pole.
 
-use super::{Folder, assert_holds, number, support};
+use super::{Folder, assert_holds, number};
 use std::fmt::Write;
 
 const COLUMNS: u32 = 18;

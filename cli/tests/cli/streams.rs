@@ -1,6 +1,6 @@
 //! Meshes through standard input and output, and compressed meshes.
 
-use super::{Folder, Run, assert_holds, assert_smoothed, disturbed, small, support};
+use super::{Folder, Run, assert_holds, assert_smoothed, disturbed, small};
 use gpu_smooth::Mesh;
 use mesh_io::MeshFile;
 use std::fs;

@@ -1,13 +1,13 @@
 //! Target sizes and shapes: kept, given, or measured on the sphere.
 
-use super::{Folder, assert_holds, assert_smoothed, disturbed, number, support};
+use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
 use gpu_smooth::Mesh;
 use mesh_io::MeshFile;
 use std::fmt::Write;
 use std::fs;
 
 fn node_ele(mesh: &Mesh) -> [String; 2] {
-    super::support::triangle_text(mesh, "")
+    support::triangle_text(mesh, "")
 }
 
 fn folder(more: &[(&str, &str)]) -> Folder {

@@ -1,7 +1,7 @@
 //! The command `gpu-smooth try`: its rows are those of runs, and the best row suits the mesh.
 
 use super::output::INVERTED;
-use super::{Folder, assert_holds, number, small, support};
+use super::{Folder, assert_holds, number, small};
 use serde_json::Value;
 use support::SplitMix64;
 

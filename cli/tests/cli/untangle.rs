@@ -1,6 +1,6 @@
 //! Untangling: `--untangle` untangles meshes with inverted triangles, which are refused otherwise.
 
-use super::{Folder, assert_holds, disturbed, support};
+use super::{Folder, assert_holds, disturbed};
 use gpu_smooth::{Mesh, Metric};
 use std::fs;
 use support::{boundaries, check};

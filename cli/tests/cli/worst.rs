@@ -1,6 +1,6 @@
 //! Improvement of the worst triangles (`--improve-worst`): printed text and report.
 
-use super::{Folder, assert_holds, assert_smoothed, number, support};
+use super::{Folder, assert_holds, assert_smoothed, number};
 
 #[test]
 fn the_worst_triangle_before_and_after_is_printed_and_reported() {

@@ -2,11 +2,11 @@
 
 use super::facts::{mesh_of, remarks};
 use super::long::{points, triangles};
-use super::support::Mesh;
-use super::support::{Binary, write_msh22_binary, write_msh41_binary};
 use super::{Folder, GMSH22, GMSH41};
 use mesh_io::{Format, Location, MeshFile};
 use std::fs;
+use support::Mesh;
+use support::{Binary, write_msh22_binary, write_msh41_binary};
 
 /// Adds a section with content that looks like lines, comments and ends of other sections.
 fn misleading(file: &mut Binary, name: &str) {

@@ -52,7 +52,7 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
             continue;
         }
         clean += 1;
-        let free = |file: &MeshFile| super::support::check::held(&mesh_of(file));
+        let free = |file: &MeshFile| support::check::held(&mesh_of(file));
         assert_eq!(free(&back), free(file), "{name}: other vertices are free");
         let (before, after) = (file.groups().unwrap(), back.groups().unwrap());
         let after: Vec<_> = after.iter().map(held).collect();

@@ -1,7 +1,7 @@
 //! Facts of a file as a program that moves vertices uses them: fixed vertices and remarks.
 
-use super::support::Mesh;
 use mesh_io::MeshFile;
+use support::Mesh;
 
 /// Returns the vertices inside the mesh between triangles of different regions that no other constraint holds,
 /// ascending.

@@ -1,7 +1,7 @@
 //! Small files of each format with groups. Each mesh is a square of four triangles around a fifth vertex. Triangles 0
 //! and 1 form one region, triangles 2 and 3 another.
 
-use super::support::Binary;
+use support::Binary;
 
 pub(crate) const GMSH22: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"the shore\"\n2 1 \"sea # deep\"\n\
 2 9 \"empty\"\n$EndPhysicalNames\n$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 1 1 0\n40 0 1 0\n50 .5 .5 0\n$EndNodes\n$Elements\n6\n\

@@ -1,12 +1,13 @@
 //! Meshes in HDF5 files of several programs, made by `h5/make.py`.
 
+use super::Folder;
 use super::damage::{self, damaged, random};
 use super::facts::{between_regions, fixed, mesh_of};
-use super::{Folder, support::check};
 use mesh_io::{Conversion, Format, MeshFile, PointField, Remark};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use support::check;
 
 /// A mesh file with its companion files.
 pub(crate) struct Sample {
@@ -77,7 +78,7 @@ pub(crate) fn bits(points: &[[f64; 2]]) -> Vec<[u64; 2]> {
 }
 
 /// Returns the coordinate bits of each triangle's corners, independent of the numbering of vertices and triangles.
-fn corners(mesh: &super::support::Mesh) -> Vec<[[u64; 2]; 3]> {
+fn corners(mesh: &support::Mesh) -> Vec<[[u64; 2]; 3]> {
     let of = |triangle: &[u32; 3]| {
         let mut corners = triangle.map(|v| mesh.points[v as usize].map(f64::to_bits));
         let first = (0..3).min_by_key(|&k| corners[k]).unwrap();
@@ -114,7 +115,7 @@ fn every_sample_holds_the_same_mesh() {
         let file = MeshFile::read(&made(sample.name)).unwrap();
         let rounded: Vec<_> =
             plain.points().iter().map(|p| p.map(|x| file.precision().rounded(x))).collect();
-        let given = super::support::Mesh { points: rounded, ..mesh_of(&plain) };
+        let given = support::Mesh { points: rounded, ..mesh_of(&plain) };
         assert_eq!(corners(&mesh_of(&file)), corners(&given), "{}", sample.name);
         if !sample.name.starts_with("gmsh") {
             assert_eq!(bits(file.points()), bits(&given.points), "{}", sample.name);

@@ -33,8 +33,6 @@ mod special;
 mod spoiled;
 mod stl;
 mod strings;
-#[path = "../support/mod.rs"]
-mod support;
 mod to_hdf5;
 mod ugrid;
 mod vtu;

@@ -5,14 +5,14 @@ use super::Folder;
 use super::facts::{between_regions, fixed, freed};
 use super::made::{Made, PROBED, all, base};
 use super::nastran;
-use super::support::Mesh;
-use super::support::{SplitMix64, check};
 use mesh_io::{Format, Location, MeshFile};
 use std::collections::BTreeSet;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use support::Mesh;
+use support::{SplitMix64, check};
 
 /// Runs a check on every variant, and fails with the names of the failing variants.
 #[track_caller]
@@ -181,7 +181,7 @@ fn rewritten(made: &Made, to: &[[f64; 2]]) -> Vec<u8> {
     let mut bytes = made.bytes.clone();
     for (places, point) in made.coordinates.iter().zip(to) {
         for (&at, &x) in places.iter().zip(point) {
-            let mut number = super::support::Binary::empty(made.big);
+            let mut number = support::Binary::empty(made.big);
             number.reals(made.precision, &[x]);
             bytes[at..at + number.bytes.len()].copy_from_slice(&number.bytes);
         }

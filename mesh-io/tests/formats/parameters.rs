@@ -2,11 +2,11 @@
 
 use super::Folder;
 use super::facts::remarks;
-use super::support::Binary;
 use mesh_io::FieldError;
 use mesh_io::MeshFile;
 use std::fmt::Write;
 use std::fs;
+use support::Binary;
 
 /// Three nodes on the boundary and two inside, all on one surface of the model.
 const NODES: [[f64; 2]; 5] = [[0.0, 0.0], [8.0, 0.0], [0.0, 8.0], [1.0, 2.0], [3.0, 1.5]];

@@ -3,10 +3,10 @@
 use super::Folder;
 use super::facts::{between_regions, fixed, freed, mesh_of};
 use super::long::{points, triangles};
-use super::support::Mesh;
-use super::support::{lattice, write_regions};
 use mesh_io::MeshFile;
 use std::fs;
+use support::Mesh;
+use support::{lattice, write_regions};
 
 fn folder(files: &[(&str, Vec<u8>)]) -> Folder {
     let folder = Folder::new(&[]);
@@ -18,7 +18,7 @@ fn folder(files: &[(&str, Vec<u8>)]) -> Folder {
 
 /// Returns the vertices between regions by definition: inside the mesh, with triangles of more than one region.
 pub(crate) fn interfaces(mesh: &Mesh, regions: &[u32]) -> Vec<u32> {
-    let on_boundary = super::support::boundary(mesh);
+    let on_boundary = support::boundary(mesh);
     let mut of_vertex = vec![Vec::new(); mesh.points.len()];
     for (t, &region) in mesh.triangles.iter().zip(regions) {
         t.iter().for_each(|&v| of_vertex[v as usize].push(region));

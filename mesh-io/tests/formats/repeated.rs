@@ -1,9 +1,9 @@
 //! Elements of several physical groups, which gmsh lists once for each group in files of version 2.2.
 
-use super::support::Binary;
 use super::{Folder, long};
 use mesh_io::{Content, MeshFile};
 use std::fs;
+use support::Binary;
 
 /// Groups of a triangle in the left and the right half of the mesh. All triangles are in group 1.
 const GROUPS: [[i32; 2]; 2] = [[1, 2], [1, 3]];

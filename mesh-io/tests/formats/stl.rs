@@ -5,11 +5,11 @@ use super::damage::{damaged, random, rounds};
 use super::facts::{between_regions, freed, remarks};
 use super::made::base;
 use super::spoiled::mesh_or_error;
-use super::support::Mesh;
-use super::support::{Binary, check};
 use mesh_io::Precision;
 use mesh_io::{Conversion, Format, Location, MeshFile, ReadOptions};
 use std::fs;
+use support::Mesh;
+use support::{Binary, check};
 
 /// Returns the mesh with vertices numbered in the order of their first use by triangles.
 fn in_order() -> Mesh {

@@ -3,14 +3,14 @@
 use super::facts::{between_regions, fixed, mesh_of};
 use super::made::base;
 pub(crate) use super::made::vtu::{Place, styles, write, write_pieces};
-use super::support::Mesh;
-use super::support::{SplitMix64, check};
 use super::{Folder, damage};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use mesh_io::Precision;
 use mesh_io::{Conversion, Format, Location, MeshFile, PointField};
 use std::fs;
+use support::Mesh;
+use support::{SplitMix64, check};
 pub(crate) fn folder(bytes: &[u8]) -> Folder {
     let folder = Folder::new(&[]);
     folder.put("in.vtu", bytes);

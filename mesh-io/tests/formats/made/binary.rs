@@ -1,11 +1,11 @@
 //! Makes files of binary formats, except VTK and PLY.
 
-use super::super::support::Binary;
-use super::super::support::Mesh;
 use super::{LINE, Made, POINT, PROBED, QUADRILATERAL, fixing, region, regions, z};
 use mesh_io::Format;
 use mesh_io::Precision;
 use std::ops::Range;
+use support::Binary;
+use support::Mesh;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     let mut all = Vec::new();

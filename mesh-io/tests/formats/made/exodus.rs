@@ -1,11 +1,11 @@
 //! Makes Exodus II files in the three classic forms of netCDF.
 
-use super::super::support::Mesh;
 use super::binary::size_of;
 use super::netcdf::{Attribute, NetCdf, RECORDS};
 use super::{LINE, Made, PROBED, QUADRILATERAL, SECOND_REGION, fixing, regions, z};
 use mesh_io::Format;
 use mesh_io::Precision;
+use support::Mesh;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     let of = |version: u8, precision, axes| exodus(mesh, version, precision, axes);

@@ -1,10 +1,10 @@
 //! Makes files of version 4.0 of gmsh's format, as text and in binary.
 
-use super::super::support::Binary;
-use super::super::support::Mesh;
 use super::{LINE, Made, POINT, PROBED, Text, fixing, number, region, regions, z};
 use mesh_io::Format;
 use mesh_io::Precision;
+use support::Binary;
+use support::Mesh;
 
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;

@@ -1,11 +1,11 @@
 //! Makes grids of coastal models, MFEM, JIGSAW and FreeFem, which consist mostly of rows of numbers.
 
-use super::super::support::Mesh;
 use super::{
     LINE, Made, POINT, PROBED, QUADRILATERAL, Text, cells, fixing, joined, points, region, regions,
     z,
 };
 use mesh_io::Format;
+use support::Mesh;
 
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;

@@ -16,11 +16,11 @@ pub(crate) mod vtu;
 mod xdmf;
 
 use super::regions::interfaces;
-use super::support::Mesh;
-use super::support::{SplitMix64, lattice};
 use mesh_io::Format;
 use mesh_io::Precision;
 use std::ops::Range;
+use support::Mesh;
+use support::{SplitMix64, lattice};
 
 /// A line inside the mesh, whose ends the file fixes.
 pub(crate) const LINE: [u32; 2] = [7, 8];
@@ -82,7 +82,7 @@ impl Made {
 /// Returns a mesh with 12 inner vertices whose coordinates have many digits.
 pub(crate) fn base() -> Mesh {
     let mut mesh = lattice(5, 4);
-    let on_boundary = super::support::boundary(&mesh);
+    let on_boundary = support::boundary(&mesh);
     let mut rng = SplitMix64::new(11);
     for (point, _) in mesh.points.iter_mut().zip(on_boundary).filter(|(_, on)| !on) {
         *point = point.map(|x| x + rng.range(-0.2, 0.2));

@@ -1,9 +1,9 @@
 //! Makes bulk data of Nastran in small, large and free field.
 
-use super::super::support::Mesh;
 use super::{LINE, Made, POINT, PROBED, QUADRILATERAL, Text, fixing, number, region, regions, z};
 use mesh_io::Format;
 use mesh_io::Precision;
+use support::Mesh;
 
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;

@@ -1,8 +1,8 @@
 //! Makes files in the three classic forms of netCDF.
 
-use super::super::support::Binary;
 use mesh_io::Precision;
 use std::ops::Range;
+use support::Binary;
 
 /// A variable: name, type, dimensions and content. With records, the content is a single record.
 struct Variable {

@@ -1,11 +1,11 @@
 //! Makes PLY files, in text and in binary.
 
-use super::super::support::Binary;
-use super::super::support::Mesh;
 use super::binary::size_of;
 use super::{LINE, Made, PROBED, QUADRILATERAL, Text, cells, fixing, number, z};
 use mesh_io::Format;
 use mesh_io::Precision;
+use support::Binary;
+use support::Mesh;
 
 const VERTEX: usize = PROBED.0 as usize;
 /// Row of the probed triangle in the list of [`cells`].

@@ -1,11 +1,11 @@
 //! Makes files of text formats with keywords or headers, except VTK.
 
-use super::super::support::Mesh;
 use super::{
     LINE, Made, POINT, PROBED, QUADRILATERAL, Text, cells, fixing, joined, point, points, region,
     regions, triples, z,
 };
 use mesh_io::Format;
+use support::Mesh;
 
 const VERTEX: usize = PROBED.0 as usize;
 const TRIANGLE: usize = PROBED.1;

@@ -1,11 +1,11 @@
 //! Makes UGRID files in the three classic forms of netCDF.
 
-use super::super::support::Mesh;
 use super::binary::size_of;
 use super::netcdf::{Attribute, Built, NetCdf, RECORDS};
 use super::{Made, PROBED, QUADRILATERAL, cells, fixing, triples};
 use mesh_io::Format;
 use mesh_io::Precision;
+use support::Mesh;
 
 /// Properties in which the sample files differ.
 struct Style {

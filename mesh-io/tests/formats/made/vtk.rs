@@ -1,12 +1,12 @@
 //! Makes legacy VTK files, in text and in binary, with cell lists in the old and the new layout.
 
-use super::super::support::Binary;
-use super::super::support::Mesh;
 use super::binary::size_of;
 use super::{LINE, Made, POINT, PROBED, QUADRILATERAL, cells, fixing, number, region, regions, z};
 use mesh_io::Format;
 use mesh_io::Precision;
 use std::ops::Range;
+use support::Binary;
+use support::Mesh;
 
 /// A polyline of three vertices on the boundary.
 const POLYLINE: [u32; 3] = [2, 3, 4];

@@ -1,13 +1,13 @@
 //! Makes VTK XML files in all encodings of arrays.
 
-use super::super::support::Binary;
-use super::super::support::Mesh;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use mesh_io::Precision;
 use std::io::Write;
+use support::Binary;
+use support::Mesh;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Place {

@@ -1,12 +1,12 @@
 //! Makes XDMF files with all numbers in the XML.
 
-use super::super::support::Mesh;
 use super::{
     LINE, Made, POINT, PROBED, QUADRILATERAL, Text, cells, fixing, joined, points, region, regions,
     z,
 };
 use mesh_io::Format;
 use mesh_io::Precision;
+use support::Mesh;
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     vec![mixed(mesh), triangles(mesh)]

@@ -1,8 +1,7 @@
 //! Generators of meshes with fixed seeds, and checks of meshes that are independent of the library.
 //!
-//! Each test, example or benchmark that includes this module is a crate of its own, and uses a part of the
-//! module.
-#![allow(dead_code, unreachable_pub, unused_imports)]
+//! A crate of its own is compiled once for all tests, benchmarks and examples, and is optimized, as generators of large
+//! meshes take longer unoptimized than most tests.
 
 pub mod binary;
 pub mod boundaries;
@@ -19,8 +18,21 @@ pub mod trig;
 pub mod write;
 
 /// The mesh type of the library under test.
+#[cfg(feature = "smoother")]
 pub use gpu_smooth::Mesh;
 pub use mesh_io::Precision;
+
+/// A 2D triangle mesh, with the fields of the smoother's type.
+#[cfg(not(feature = "smoother"))]
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// x and y of each vertex.
+    pub points: Vec<[f64; 2]>,
+    /// Vertex indices of each triangle, zero-based.
+    pub triangles: Vec<[u32; 3]>,
+    /// Vertices of elements other than triangles.
+    pub fixed: Vec<u32>,
+}
 
 pub use binary::{Binary, write_msh22_binary, write_msh41_binary};
 pub use check::{
