@@ -3,10 +3,11 @@
 mod dependencies;
 
 use dependencies::{Uses, by_folder, circles};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -26,8 +27,13 @@ fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
 /// Source folders of the crates.
 const CRATES: [&str; 4] = ["src", "mesh-io/src", "cli/src", "python/src"];
 
-fn uses_of(source: &str) -> Uses {
-    let uses = dependencies::of_crate(&root().join(source));
+/// Returns the uses of all files of a crate. All tests share them, as parsing the sources takes most of their time.
+fn uses_of(source: &'static str) -> &'static Uses {
+    static USES: OnceLock<BTreeMap<&str, Uses>> = OnceLock::new();
+    let all = USES.get_or_init(|| {
+        CRATES.map(|source| (source, dependencies::of_crate(&root().join(source)))).into()
+    });
+    let uses = &all[source];
     let count: usize = uses.values().map(BTreeSet::len).sum();
     let least = if source == "python/src" { 40 } else { 200 };
     assert!(count > least, "only {count} uses in {source}: the test looks in the wrong place");
@@ -37,7 +43,7 @@ fn uses_of(source: &str) -> Uses {
 #[test]
 fn files_do_not_use_each_other_in_a_circle() {
     for source in CRATES {
-        assert_eq!(circles(&uses_of(source)), [[""; 0]; 0], "{source}");
+        assert_eq!(circles(uses_of(source)), [[""; 0]; 0], "{source}");
     }
 }
 
@@ -46,8 +52,8 @@ fn folders_do_not_use_each_other_in_a_circle() {
     for source in CRATES {
         let uses = uses_of(source);
         for depth in [1, 2] {
-            let is_of_folders = |circle: &Vec<String>| !circles(&uses).contains(circle);
-            let mut found = circles(&by_folder(&uses, depth));
+            let is_of_folders = |circle: &Vec<String>| !circles(uses).contains(circle);
+            let mut found = circles(&by_folder(uses, depth));
             found.retain(is_of_folders);
             assert_eq!(found, [[""; 0]; 0], "{source}, {depth} deep");
         }
@@ -82,7 +88,7 @@ fn uses_against_the_order(folders: &Uses, floors: &[Vec<String>]) -> Vec<String>
 #[test]
 fn folders_use_folders_of_lower_floors_alone() {
     for source in CRATES {
-        let against = uses_against_the_order(&by_folder(&uses_of(source), 1), &floors(source));
+        let against = uses_against_the_order(&by_folder(uses_of(source), 1), &floors(source));
         assert_eq!(against, [""; 0], "{source}");
     }
 }
@@ -90,7 +96,7 @@ fn folders_use_folders_of_lower_floors_alone() {
 /// Behind the requests, options are typed and free of contradictions.
 #[test]
 fn only_requests_and_commands_name_the_arguments_of_the_command_line() {
-    let uses = by_folder(&uses_of("cli/src"), 1);
+    let uses = by_folder(uses_of("cli/src"), 1);
     let naming = uses.iter().filter(|(_, used)| used.contains("args"));
     let naming: Vec<&str> = naming.map(|(folder, _)| folder.as_str()).collect();
     assert_eq!(naming, ["commands", "lib", "request"]);
