@@ -52,13 +52,23 @@ impl Text {
 }
 
 pub(crate) fn points() -> Vec<[f64; 2]> {
-    let at = |i: usize| [(i % SIDE) as f64 + 0.3 / (i + 1) as f64, (i / SIDE) as f64 * 1.1];
-    (0..SIDE * SIDE).map(at).collect()
+    points_of(SIDE)
 }
 
 pub(crate) fn triangles() -> Vec<[u32; 3]> {
-    let cells = (0..SIDE * (SIDE - 1)).filter(|i| i % SIDE != SIDE - 1);
-    let halves = cells.flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]]);
+    triangles_of(SIDE)
+}
+
+/// Returns the points of a lattice with `side` vertices along each side.
+pub(crate) fn points_of(side: usize) -> Vec<[f64; 2]> {
+    let at = |i: usize| [(i % side) as f64 + 0.3 / (i + 1) as f64, (i / side) as f64 * 1.1];
+    (0..side * side).map(at).collect()
+}
+
+/// Returns the triangles of a lattice with `side` vertices along each side.
+pub(crate) fn triangles_of(side: usize) -> Vec<[u32; 3]> {
+    let cells = (0..side * (side - 1)).filter(|i| i % side != side - 1);
+    let halves = cells.flat_map(|i| [[i, i + 1, i + side], [i + 1, i + side + 1, i + side]]);
     halves.map(|triangle| triangle.map(|v| v as u32)).collect()
 }
 
