@@ -116,7 +116,7 @@ fn gmsh(mesh: &Mesh) -> String {
 }
 
 /// Makes a folder with all files that the documented commands name.
-fn folder() -> Folder {
+fn original() -> Folder {
     // Commands for coasts improve bad triangles; thresholds need a mesh without bad triangles.
     let (mild, strong) = (gmsh(&lattice(0.1)), gmsh(&lattice(0.45)));
     let folder = Folder::new(&[
@@ -151,6 +151,7 @@ fn folder() -> Folder {
 
 #[test]
 fn every_documented_command_of_the_program_succeeds() {
+    let original = original();
     let bin = Path::new(env!("CARGO_BIN_EXE_gpu-smooth")).parent().unwrap().to_owned();
     let path = std::env::join_paths(
         [bin].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
@@ -159,7 +160,7 @@ fn every_documented_command_of_the_program_succeeds() {
     let mut count = 0;
     for (document, blocks) in documents() {
         for block in blocks {
-            let folder = folder();
+            let folder = original.copy();
             for line in block.iter().filter(|line| line.starts_with("gpu-smooth ")) {
                 let out = if line.starts_with("gpu-smooth convert") { "out.e" } else { "out.msh" };
                 let line = line

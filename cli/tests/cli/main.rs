@@ -142,6 +142,15 @@ impl Folder {
         folder
     }
 
+    /// Returns a new folder with the files of this one.
+    fn copy(&self) -> Self {
+        let folder = Self(TempDir::new().unwrap());
+        for (path, bytes) in self.content() {
+            fs::write(folder.0.path().join(path.file_name().unwrap()), bytes).unwrap();
+        }
+        folder
+    }
+
     fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }

@@ -161,13 +161,13 @@ fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, CliError> {
     if args.engine != EngineChoice::Gpu && args.adapter.is_none() {
         let threads = rayon::current_num_threads();
         let name = format!("cpu, {threads} threads");
-        places.push(Place { gpu: None, name, copy_rate: rates::on_cpu() });
+        places.push(Place { gpu: None, name, copy_rate: rates::on_cpu(args.seconds) });
     }
     if args.engine != EngineChoice::Cpu {
         match engine::open_adapter(args.adapter.as_deref()) {
             Ok(gpu) => places.push(Place {
                 name: gpu.adapter().name.clone(),
-                copy_rate: rates::on_gpu(&gpu),
+                copy_rate: rates::on_gpu(&gpu, args.seconds),
                 gpu: Some(gpu),
             }),
             Err(error) if places.is_empty() => return Err(error),

@@ -7,24 +7,26 @@ use rayon::prelude::*;
 
 /// Bytes per copy, more than caches hold.
 const BYTES: u64 = 128 << 20;
-/// Number of timed calls. The fastest call counts.
-const CALLS: usize = 6;
+/// Largest number of timed calls. The fastest call counts.
+const MAX_CALLS: usize = 6;
 /// Copies encoded into one submission to a GPU.
 const SUBMITTED: u32 = 4;
 
-/// Returns the bytes per second that all cores together read and write in a copy.
-pub(crate) fn on_cpu() -> f64 {
+/// Returns the bytes per second that all cores together read and write in a copy. No call begins after `seconds` seconds
+/// but the first.
+pub(crate) fn on_cpu(seconds: f64) -> f64 {
     let from = vec![1u8; BYTES as usize];
     let mut to = vec![2u8; BYTES as usize];
-    fastest(1, || {
+    fastest(seconds, 1, || {
         to.par_chunks_mut(1 << 20)
             .zip(from.par_chunks(1 << 20))
             .for_each(|(to, from)| to.copy_from_slice(from));
     })
 }
 
-/// Returns the bytes per second that a kernel reads and writes in a copy.
-pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
+/// Returns the bytes per second that a kernel reads and writes in a copy. No call begins after `seconds` seconds but the
+/// first.
+pub(crate) fn on_gpu(gpu: &Gpu, seconds: f64) -> f64 {
     let device = gpu.device();
     let bound = device.limits().max_storage_buffer_binding_size;
     let bytes = BYTES.min(bound) & !15;
@@ -69,17 +71,21 @@ pub(crate) fn on_gpu(gpu: &Gpu) -> f64 {
         // On a lost device, nothing is copied; the following measurements report the loss.
         device.poll(wgpu::PollType::wait_indefinitely()).ok();
     };
-    fastest(SUBMITTED, copy) * bytes as f64 / BYTES as f64
+    fastest(seconds, SUBMITTED, copy) * bytes as f64 / BYTES as f64
 }
 
-/// Returns the bytes read and written per second in the fastest of several calls. Each call makes `copies` copies of
-/// [`BYTES`] bytes.
-fn fastest(copies: u32, mut copy: impl FnMut()) -> f64 {
-    let time = || {
+/// Returns the bytes read and written per second in the fastest of several calls: [`MAX_CALLS`], or fewer if `seconds`
+/// seconds have passed. Each call makes `copies` copies of [`BYTES`] bytes.
+fn fastest(seconds: f64, copies: u32, mut copy: impl FnMut()) -> f64 {
+    let began = Instant::now();
+    let mut best = Duration::MAX;
+    for _ in 0..MAX_CALLS {
         let start = Instant::now();
         copy();
-        start.elapsed()
-    };
-    let best = std::iter::repeat_with(time).take(CALLS).min();
-    2.0 * BYTES as f64 * f64::from(copies) / best.unwrap_or(Duration::MAX).as_secs_f64()
+        best = best.min(start.elapsed());
+        if began.elapsed().as_secs_f64() >= seconds {
+            break;
+        }
+    }
+    2.0 * BYTES as f64 * f64::from(copies) / best.as_secs_f64()
 }
