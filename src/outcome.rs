@@ -24,11 +24,15 @@ pub struct Outcome {
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
-    /// Number of sweeps done on the CPU although the backend is a GPU. The CPU does the first sweeps if triangles are too
+    /// Number of first sweeps done on the CPU although the backend is a GPU. The CPU does the first sweeps if triangles are too
     /// flat or too small for single precision, and every sweep if its first sweeps left such triangles. The CPU also
     /// does every sweep of a run with coarser levels if triangles are strongly stretched relative to their targets, as
     /// a GPU has no room for such a mesh's second map per vertex.
     pub opening_sweeps: u32,
+    /// Number of last sweeps done on the CPU although the backend is a GPU. The CPU replaces the GPU if corrections from
+    /// coarser levels were refused and are tried again in double precision, or if sliding or a bound of moves has made
+    /// triangles too flat for single precision.
+    pub closing_sweeps: u32,
     /// Whether [`Method::Auto`](crate::Method::Auto) ran without corrections because the coarser levels do not fit the
     /// device's limits.
     pub levels_left_out: bool,

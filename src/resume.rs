@@ -22,6 +22,7 @@ pub(crate) async fn about(
         options: options.lines(),
         goal: None,
         opened: None,
+        on_cpu_from: None,
     }
 }
 
@@ -39,13 +40,13 @@ pub(crate) fn check(
         !opened.log.is_empty() && fits(&opened.positions) && fits(&opened.best)
     });
     let is_of_stages = period.as_ref().is_none_or(|period| {
-        let PeriodState { began, before, f_before, held, on_cpu_from, .. } = period;
+        let PeriodState { began, before, f_before, held, .. } = period;
         fits(before)
             && held.len() == problem.free_count()
             && (*began as usize) < saved.log.len()
             && f_before.is_finite()
-            && on_cpu_from.is_none_or(|from| from <= *began)
     });
+    let is_whole = is_whole && about.on_cpu_from.is_none_or(|from| from <= saved.sweeps());
     if own.mesh != about.mesh || !is_whole || !is_of_stages {
         return Err(foreign());
     }
@@ -259,10 +260,10 @@ mod tests {
         assert!(refused > 50 && went_on > 50, "{refused} refused, {went_on} went on");
     }
 
-    /// If the device's last sweep came after the period began, sweeps of the CPU would count from a sweep that the
+    /// If the device's last sweep came after the checkpoint, sweeps of the CPU would count from a sweep that the
     /// checkpoint lacks.
     #[test]
-    fn a_checkpoint_whose_cpu_took_over_later_than_its_period_began_is_refused() {
+    fn a_checkpoint_whose_cpu_took_over_after_the_last_sweep_is_refused() {
         let mesh = lattice(6);
         let mut smoother = Smoother::new(&mesh).unwrap();
         smoother.set_slide(Some(&Slide::default())).unwrap();
@@ -270,8 +271,7 @@ mod tests {
         let options = Options::default();
         smoother.run(&options).checkpoints(&mut kept).block().unwrap();
         let mut checkpoint = kept.0.unwrap();
-        let period = checkpoint.period.as_mut().unwrap();
-        period.on_cpu_from = Some(period.began + 1);
+        checkpoint.about.on_cpu_from = Some(checkpoint.saved.sweeps() + 1);
         let error = smoother.run(&options).resume(&checkpoint).block().unwrap_err();
         assert!(matches!(error, SmoothError::Checkpoint(_)), "{error}");
     }

@@ -19,7 +19,7 @@ pub struct Checkpoint {
     pub(crate) period: Option<PeriodState>,
 }
 
-/// The run of a checkpoint, as matched on resumption: mesh, options, goal, and opening sweeps on the CPU.
+/// The run of a checkpoint, as matched on resumption: mesh, options, goal, and sweeps on the CPU for a device.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunFingerprint {
     /// Hash of the mesh, its targets, and the curves of sliding vertices.
@@ -30,6 +30,8 @@ pub(crate) struct RunFingerprint {
     pub(crate) goal: Option<(f64, String)>,
     /// Result of the sweeps on the CPU before the device began. `None` for a run without such sweeps.
     pub(crate) opened: Option<DoublePrelude>,
+    /// Number of sweeps, without opening sweeps, after which the CPU replaced the device. `None` without such a change.
+    pub(crate) on_cpu_from: Option<u32>,
 }
 
 impl Checkpoint {
@@ -79,6 +81,9 @@ impl Checkpoint {
                 out.points(best);
             });
         }
+        if let Some(sweep) = about.on_cpu_from {
+            out.record("on cpu from", |out| out.number(sweep.into()));
+        }
         out.record("history", |out| {
             out.log(&saved.log);
             out.optional(saved.remaining);
@@ -97,13 +102,12 @@ impl Checkpoint {
                 out.bytes(bytes);
             });
         });
-        if let Some(PeriodState { began, before, f_before, held, on_cpu_from, stages }) = period {
+        if let Some(PeriodState { began, before, f_before, held, stages }) = period {
             out.record("period", |out| {
                 out.number((*began).into());
                 out.points(before);
                 out.real(*f_before);
                 out.bytes(&held.iter().map(|&held| held.into()).collect::<Vec<u8>>());
-                out.list(on_cpu_from.as_slice(), |out, sweep| out.number((*sweep).into()));
             });
             out.record("stages", |out| {
                 stages.iter().for_each(|(name, state)| out.record(name, |out| out.0.extend(state)));
@@ -148,6 +152,7 @@ impl Checkpoint {
                 let (log, least) = (from.log()?, from.real()?);
                 Some(DoublePrelude { log, least, positions: from.points()?, best: from.points()? })
             })?,
+            on_cpu_from: records.read_if_any("on cpu from", Reader::count)?,
         };
         let (log, remaining) =
             records.read("history", |from| Some((from.log()?, from.option(Reader::real)?)))?;
@@ -173,7 +178,6 @@ impl Checkpoint {
                 before: from.points()?,
                 f_before: from.real()?,
                 held: from.bytes()?.iter().map(|&held| held == 1).collect(),
-                on_cpu_from: from.option(Reader::count)?,
                 stages: Vec::new(),
             })
         })?;
@@ -235,7 +239,6 @@ mod tests {
             before: engine.positions.clone(),
             f_before: 1.5,
             held: vec![true, false],
-            on_cpu_from: Some(1),
             stages,
         };
         Checkpoint {
@@ -245,6 +248,7 @@ mod tests {
                 options: "max_sweeps: 3".to_owned(),
                 goal: Some((1.5, "given".to_owned())),
                 opened: Some(opened),
+                on_cpu_from: Some(1),
             },
             saved: Saved { log, remaining: Some(1e-3), corrections: Some(vec![1, 2]), engine },
         }

@@ -42,8 +42,6 @@ pub(crate) struct PeriodState {
     pub(crate) f_before: f64,
     /// For each free vertex, whether sweeps leave the vertex at its position.
     pub(crate) held: Vec<bool>,
-    /// Last sweep on the device, after which the CPU continued. `None` if the engine has not changed.
-    pub(crate) on_cpu_from: Option<u32>,
     /// Name and encoded state of each stage, in the order of their work.
     pub(crate) stages: Vec<(String, Vec<u8>)>,
 }

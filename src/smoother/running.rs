@@ -258,6 +258,7 @@ impl Smoother<'_> {
             alternated: ended.counts.alternated,
             corrections: ended.counts.corrections,
             opening_sweeps: ended.opening_sweeps,
+            closing_sweeps: ended.closing_sweeps,
             levels_left_out: ended.counts.levels_left_out,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
             // A decay that has just begun may promise more than the distance between f and its lower limit.
@@ -345,6 +346,7 @@ impl Smoother<'_> {
             alternated: 0,
             corrections: 0,
             opening_sweeps: 0,
+            closing_sweeps: 0,
             levels_left_out: false,
             best_sweep: 0,
             remaining: None,

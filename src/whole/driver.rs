@@ -35,8 +35,7 @@ pub(crate) async fn drive(
     loop {
         let period = stages.iter().map(|stage| stage.period()).min().unwrap_or(u32::MAX);
         let until = began.saturating_add(period).min(max_sweeps);
-        let on_cpu_from = live.on_cpu_from();
-        let state = || saved(&host, stages, began, on_cpu_from);
+        let state = || saved(&host, stages, began);
         let (swept_to, swept) = live.sweep(until, Some(&state), checkpointer, observe).await?;
         if swept == Some(Stop::NotFinite) {
             return Ok(live.end(swept_to, Stop::NotFinite).await);
@@ -85,12 +84,7 @@ pub(crate) async fn drive(
 }
 
 /// Returns the state of the host and the stages for a checkpoint, in a period that began after `began` sweeps.
-fn saved(
-    host: &Host<'_>,
-    stages: &[&mut dyn Stage],
-    began: u32,
-    on_cpu_from: Option<u32>,
-) -> PeriodState {
+fn saved(host: &Host<'_>, stages: &[&mut dyn Stage], began: u32) -> PeriodState {
     let state = |stage: &&mut dyn Stage| {
         let mut out = Writer::default();
         stage.save(&mut out);
@@ -102,7 +96,6 @@ fn saved(
         before: before.clone(),
         f_before: *f_before,
         held: held.clone(),
-        on_cpu_from,
         stages: stages.iter().map(state).collect(),
     }
 }

@@ -1,6 +1,6 @@
 //! The sweeps of a whole run on several engines: in double precision while triangles are too flat for a device, on the
-//! device, and on the CPU after a failure of the device. A run with targets on a strongly stretched mesh is done on the
-//! CPU alone.
+//! device, and on the CPU after a failure of the device, or once corrections that the device refused are tried again. A
+//! run with targets on a strongly stretched mesh is done on the CPU alone.
 
 use std::cmp::Ordering;
 
@@ -62,8 +62,9 @@ pub(crate) struct Live<'s> {
     /// Tracked objectives of the given mesh, if the run begins at means of neighbors instead.
     given: Option<Objectives>,
     opened: Option<DoublePrelude>,
-    /// Number of sweeps before the CPU replaced a device for which triangles are too flat or too small; 0 also if the
-    /// vertices have more maps than a device stores. `None` without such a change.
+    /// Number of sweeps before the CPU replaced a device, because the run needs double precision, or triangles are too
+    /// flat or too small for the device; 0 also if the vertices have more maps than a device stores. `None` without such
+    /// a change.
     on_cpu_from: Option<u32>,
     fault: Option<DeviceFault>,
 }
@@ -74,6 +75,7 @@ pub(crate) struct RunEnd {
     pub(crate) positions: Vec<DVec2>,
     pub(crate) counts: Counts,
     pub(crate) opening_sweeps: u32,
+    pub(crate) closing_sweeps: u32,
     pub(crate) remaining: Option<f64>,
     pub(crate) held_back: usize,
     pub(crate) stop: Stop,
@@ -112,24 +114,27 @@ impl<'s> Live<'s> {
             None if is_for_cpu_alone => (None, None),
             None => opened(&spec, &plan, from).await?,
         };
-        if let Some(about) = &mut checkpointer.about {
-            about.opened.clone_from(&opened);
-        }
         checkpointer.last = resumed.map(|resumed| resumed.saved.clone());
         let opening_sweeps = opened.as_ref().map_or(0, DoublePrelude::sweeps);
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
         let start = opened.as_ref().map_or(from, |opened| &opened.positions);
         let positions = paced::copied(start).await;
-        let is_refused =
-            spec.device.is_some() && (is_for_cpu_alone || device.is_none() && resumed.is_none());
+        let on_cpu_from = match resumed {
+            Some(Checkpoint { about, .. }) => about.on_cpu_from,
+            None => (spec.device.is_some() && device.is_none()).then_some(0),
+        };
+        if let Some(about) = &mut checkpointer.about {
+            about.opened.clone_from(&opened);
+            about.on_cpu_from = on_cpu_from;
+        }
         let period = resumed.and_then(|resumed| Some((resumed, resumed.period.as_ref()?)));
-        let (last, held, on_cpu_from) = match period {
+        let (last, held) = match period {
             Some((Checkpoint { saved, .. }, period)) => {
                 let log = saved.log[..=period.began as usize].to_vec();
                 let last = Point { log, positions: period.before.clone() };
-                (last, period.held.clone(), period.on_cpu_from)
+                (last, period.held.clone())
             }
-            None => (Point { log: Vec::new(), positions }, Vec::new(), is_refused.then_some(0)),
+            None => (Point { log: Vec::new(), positions }, Vec::new()),
         };
         Ok(Self {
             problem,
@@ -161,11 +166,6 @@ impl<'s> Live<'s> {
     /// Returns the positions at the start of the run, or at the end of the latest stage that moved vertices.
     pub(crate) fn start(&self) -> &[DVec2] {
         &self.last.positions
-    }
-
-    /// Returns the number of sweeps before the CPU replaced the device. `None` without such a change.
-    pub(crate) fn on_cpu_from(&self) -> Option<u32> {
-        self.on_cpu_from
     }
 
     /// Returns the estimated remaining gain as a share of f, from the sweeps alone.
@@ -214,7 +214,18 @@ impl<'s> Live<'s> {
         let done = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         let requires_levels = self.spec.options.method == Method::Multilevel;
         let leg = Leg { until, requires_levels, phase: self.spec.phase, done, period };
-        let stop = session.advance(leg, checkpointer, observe).await?;
+        let mut stop = session.advance(leg, checkpointer, observe).await?;
+        if stop.is_none() && session.needs_double() {
+            let positions = session.engine.best_positions().await?;
+            let on_cpu = |problem: &Problem| {
+                let mut engine = CpuEngine::new(problem, positions, &self.plan);
+                engine.hold(&self.held)?;
+                Ok(AnyEngine::Cpu(Box::new(engine)))
+            };
+            session.continue_in_double(on_cpu).await?;
+            self.leave_device(session.history().sweeps(), checkpointer);
+            stop = session.advance(leg, checkpointer, observe).await?;
+        }
         let positions = session.engine.best_positions().await?;
         self.session = Some(session);
         Ok((positions, stop))
@@ -249,8 +260,18 @@ impl<'s> Live<'s> {
         Ok(session)
     }
 
-    /// Leaves the device, so that the run continues on the CPU. Returns the error if the run has no device, or if the
-    /// policy refuses.
+    /// Leaves the device after `sweep` sweeps, as the run continues on the CPU. Checkpoints and the report state the
+    /// change.
+    fn leave_device(&mut self, sweep: u32, checkpointer: &mut Checkpointer<'_>) {
+        self.device = None;
+        self.on_cpu_from = Some(sweep);
+        if let Some(about) = &mut checkpointer.about {
+            about.on_cpu_from = self.on_cpu_from;
+        }
+    }
+
+    /// Leaves a device that has failed, so that the run continues on the CPU. Returns the error if the run has no device,
+    /// or if the policy refuses.
     fn fall_back(
         &mut self,
         error: GpuError,
@@ -324,8 +345,8 @@ impl<'s> Live<'s> {
             && positions != swept_to
             && opening::obstacle(&self.problem, positions).await != Obstacle::None
         {
-            self.on_cpu_from = Some(self.sweeps());
-            (self.device, self.session) = (None, None);
+            self.leave_device(self.sweeps(), checkpointer);
+            self.session = None;
         }
         Ok(())
     }
@@ -354,7 +375,12 @@ impl<'s> Live<'s> {
             }
         }
         let opened = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
-        let on_cpu = self.on_cpu_from.map_or(0, |from| history.sweeps() - from);
+        let from = self.on_cpu_from.filter(|_| self.spec.device.is_some());
+        let on_cpu = from.map_or(0, |from| history.sweeps().saturating_sub(from));
+        let (opening_sweeps, closing_sweeps) = match from {
+            Some(1..) => (opened, on_cpu),
+            _ => (opened + on_cpu, 0),
+        };
         let (mut history, positions) = match self.opened {
             Some(opened) => opened.followed_by(history, positions),
             None => (history.into_log(), positions),
@@ -370,7 +396,8 @@ impl<'s> Live<'s> {
             history,
             positions,
             counts: Counts { alternated: opened + counts.alternated, ..counts },
-            opening_sweeps: opened + on_cpu,
+            opening_sweeps,
+            closing_sweeps,
             remaining,
             held_back: held,
             stop,

@@ -38,7 +38,8 @@ fn assert_same(a: &Outcome, b: &Outcome, what: &str) {
     let told = |o: &Outcome| (o.stop, o.sweeps, o.corrections, o.best_sweep, o.remaining, o.lost);
     assert_eq!(told(a), told(b), "{what}");
     let more = |o: &Outcome| {
-        (o.opening_sweeps, o.alternated, o.levels_left_out, o.held_back, o.goal.clone())
+        let on_cpu = (o.opening_sweeps, o.closing_sweeps);
+        (on_cpu, o.alternated, o.levels_left_out, o.held_back, o.goal.clone())
     };
     assert_eq!(more(a), more(b), "{what}");
 }
@@ -102,6 +103,30 @@ fn a_run_whose_levels_change_coordinates_goes_on_to_the_same_bits() {
         let every = if matches!(backend, Backend::Cpu) { 2 } else { 6 };
         assert_goes_on(&smoother, &Options::default(), backend, every);
     }
+}
+
+/// Corrections that were refused on a device are tried again on the CPU. Checkpoints before the change, between the last
+/// sweep on the device and the first on the CPU, and after the change lead to the same end.
+#[test]
+fn a_run_that_leaves_the_device_for_double_precision_goes_on_to_the_same_bits() {
+    let mesh = support::perturb_random(&support::hub(30, 1e-2), 1.0, 7);
+    let topology = Topology::new(&mesh).unwrap();
+    let targets = Targets::keep_shape(&topology, &mesh.points, 1).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_targets(&targets).unwrap();
+    let options = Options { scheme: Metric::Rms.into(), ..Options::default() };
+    let gpu = &backends()[1];
+    let mut all = All::default();
+    let outcome = smoother.run(&options).on(gpu).checkpoints(&mut all).block().unwrap();
+    let device = outcome.sweeps - outcome.closing_sweeps;
+    let on_cpu = |checkpoint: &&Checkpoint| checkpoint.adapter().is_none();
+    let [first, last] = [true, false].map(|is_on_device| {
+        let of = |checkpoint: &&Checkpoint| on_cpu(checkpoint) != is_on_device;
+        let sweeps = all.0.iter().filter(of).map(Checkpoint::sweeps);
+        if is_on_device { sweeps.max() } else { sweeps.min() }
+    });
+    assert_eq!((first, last), (Some(device), Some(device + 1)));
+    assert_goes_on(&smoother, &options, gpu, 1);
 }
 
 /// A checkpoint within a period contains the state of the stages at the beginning of the period.

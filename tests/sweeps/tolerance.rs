@@ -162,28 +162,30 @@ fn a_loose_tolerance_holds_in_a_slow_decay() {
 /// defect: runs on the GPU reported as little as a hundredth of the remaining gain.
 #[test]
 fn the_rest_above_the_limit_is_not_below_the_error_of_single_precision() {
-    let gpu = backends().iter().find(|backend| matches!(backend, Backend::Gpu(_))).unwrap();
+    let gpu = &backends()[1];
     let mut most: f64 = 0.0;
     for ratio in [1e-3, 1e-4] {
+        let mesh = support::perturb_random(&support::graded(32, ratio), 0.3, 5);
+        let smoother = Smoother::new(&mesh).unwrap();
         for metric in [Metric::ShapeSize, Metric::SoftSize, Metric::Tmop94] {
-            let mut mesh = support::perturb_random(&support::graded(32, ratio), 0.3, 5);
-            let options = Options { scheme: metric.into(), ..Options::default() };
-            let outcome = run(&Smoother::new(&mesh).unwrap(), &options, gpu);
-            if outcome.stop != Stop::Converged {
-                continue;
+            // These runs end on the device. Longer runs end on the CPU.
+            for max_sweeps in [40, 50, 60, 70] {
+                let options = Options { scheme: metric.into(), max_sweeps, ..Options::default() };
+                let outcome = run(&smoother, &options, gpu);
+                assert_eq!((outcome.stop, outcome.closing_sweeps), (Stop::MaxSweeps, 0));
+                let Some(told) = outcome.remaining else { continue };
+                let f = smoother.f(metric, &outcome.points).unwrap();
+                let error = (history(&outcome, metric).last().unwrap() / f - 1.0).abs();
+                let label = format!("{metric} at {ratio}, {max_sweeps} sweeps");
+                assert!(
+                    error <= told * (1.0 + 1e-6),
+                    "{label}: {told:e} with an error of {error:e}"
+                );
+                most = most.max(error);
             }
-            mesh.points = outcome.points;
-            let smoother = Smoother::new(&mesh).unwrap();
-            let stopping = Stopping::Tolerance(1e-10);
-            let further = run(&smoother, &Options { stopping, ..options }, &Backend::Cpu);
-            let [f, least] =
-                [&mesh.points, &further.points].map(|points| smoother.f(metric, points).unwrap());
-            let (left, told) = ((f - least) / least, outcome.remaining.unwrap());
-            assert!(left <= 2.0 * told, "{metric} at {ratio}: {told:e} of {left:e}");
-            most = most.max(left);
         }
     }
-    assert!(most > 1e-5, "{most:e}: the test has no hard mesh");
+    assert!(most > 1e-6, "{most:e}: the test has no hard mesh");
 }
 
 /// Returns the outcome of a run on a mesh with targets, and the gain of further sweeps on the CPU, as a share of f. The
@@ -236,7 +238,8 @@ fn a_converged_run_reports_at_least_half_of_the_remaining_gain() {
 
 /// Around a vertex of fifty, corrections were refused and sweeps alone ended the runs: by `keep_shape`, because levels in
 /// the coordinates of the maps take large changes of triangles for translations, and by `keep_size`, because the mesh
-/// was still rough when corrections were tried. The runs left 4e-5 and 2e-4 and reported 1e-6, a former defect.
+/// was still rough when corrections were tried. The runs left 4e-5 and 2e-4 and reported 1e-6, a former defect, which on a
+/// device lasted longer than on the CPU.
 #[test]
 fn corrections_are_taken_around_a_hub_with_targets() {
     let hub = |seed| support::perturb_random(&support::hub(50, 1e-2), 1.0, seed);
@@ -251,10 +254,7 @@ fn corrections_are_taken_around_a_hub_with_targets() {
     for (mesh, targets, metric, most) in
         [(&of_shapes, &shapes, Metric::Imr, 60), (&of_sizes, &sizes, Metric::Rms, 200)]
     {
-        // In single precision, corrections are not tried again at the end of a run.
-        let has_precision =
-            |backend: &&Backend| metric == Metric::Imr || matches!(backend, Backend::Cpu);
-        for backend in backends().iter().filter(has_precision) {
+        for backend in backends() {
             let (outcome, left) = with_gain_left(mesh, Some(targets), metric, backend);
             let (told, sweeps) = (outcome.remaining.unwrap(), outcome.sweeps);
             let label = format!("{metric} on the {}: {sweeps} sweeps", name(backend));
@@ -290,6 +290,28 @@ fn corrections_in_vain_at_the_end_do_not_prolong_a_run() {
     let (outcome, left) = with_gain_left(&mesh, None, Metric::Rms, &Backend::Cpu);
     assert_eq!(outcome.stop, Stop::HeldBack);
     assert!(outcome.sweeps <= 55 && left <= 1e-6, "{left:e} after {} sweeps", outcome.sweeps);
+}
+
+/// On graded meshes, rounding in single precision refuses corrections that gain less than 1e-6 of f. A run by `tmop-94` left
+/// 6.5e-6 and reported 2e-6, and a run by `shape-size` stalled: former defects.
+#[test]
+fn corrections_refused_by_rounding_are_tried_again_in_double_precision() {
+    for (around, strength, seed, metric) in
+        [(48, 0.3, 1, Metric::Tmop94), (24, 0.1, 6, Metric::ShapeSize)]
+    {
+        let mesh = support::perturb_random(&support::graded(around, 1e-3), strength, seed);
+        for backend in backends() {
+            let (outcome, left) = with_gain_left(&mesh, None, metric, backend);
+            let label = format!("{metric} on the {}: {} sweeps", name(backend), outcome.sweeps);
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            let told = outcome.remaining.unwrap();
+            assert!(left <= 2.0 * told, "{label}: {told:e} of {left:e}");
+            assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1, "{label}");
+            let closing = outcome.closing_sweeps;
+            assert!(closing < outcome.sweeps, "{label}: {closing} on the CPU");
+            assert_eq!(closing > 0, matches!(backend, Backend::Gpu(_)), "{label}");
+        }
+    }
 }
 
 /// A former defect: the first correction of a stage gained ten times as much as the second. A run to a tolerance of 0.1

@@ -31,6 +31,9 @@ pub(crate) struct Report {
     /// Number of first sweeps computed in double precision on the CPU, because triangles were too flat, too small, or too
     /// stretched relative to their targets, for the GPU.
     pub(crate) opening_sweeps: u32,
+    /// Number of last sweeps computed in double precision on the CPU, because single precision did not suffice to end the
+    /// run.
+    pub(crate) closing_sweeps: u32,
     pub(crate) levels_left_out: bool,
     /// The sweep whose result was written; 0 for the mesh as it was.
     pub(crate) best_sweep: u32,

@@ -295,6 +295,10 @@ impl Report {
                 "; the first {n} on the CPU, as triangles were too flat, small or stretched for the GPU"
             );
         }
+        if self.closing_sweeps > 0 {
+            let n = self.closing_sweeps;
+            let _ = write!(text, "; the last {n} on the CPU, in double precision");
+        }
         if self.lost > 0.01 {
             let share = percent(self.lost);
             let _ = write!(

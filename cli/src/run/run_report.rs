@@ -58,6 +58,7 @@ pub(super) fn report(
         sweeps: outcome.sweeps,
         corrections: outcome.corrections,
         opening_sweeps: outcome.opening_sweeps,
+        closing_sweeps: outcome.closing_sweeps,
         levels_left_out: outcome.levels_left_out,
         best_sweep: outcome.best_sweep,
         remaining: outcome.remaining,
@@ -94,6 +95,7 @@ fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
     let exceeds = |tolerance| outcome.remaining.is_some_and(|left| left > least(tolerance));
     is_gpu
         && is_smooth
+        && outcome.closing_sweeps == 0
         && outcome.stop == Stop::Converged
         && request.estimated_end().is_some_and(exceeds)
 }

@@ -40,6 +40,7 @@ fn report_holds_the_documented_keys() {
                 "sweeps",
                 "corrections",
                 "opening_sweeps",
+                "closing_sweeps",
                 "held_back",
                 "lost",
                 "remaining",

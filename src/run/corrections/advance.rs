@@ -56,8 +56,8 @@ impl Corrections {
         exponents(plan).flat_map(of_exponent).collect()
     }
 
-    /// Does up to `sweeps` further sweeps, fewer if the run ends. Sweeps that [reopen](super::reopening) triangles are
-    /// not counted.
+    /// Does up to `sweeps` further sweeps, fewer if the run ends or needs another engine. Sweeps that
+    /// [reopen](super::reopening) triangles are not counted.
     pub(crate) async fn advance(
         &mut self,
         engine: &mut impl Engine,
@@ -69,7 +69,7 @@ impl Corrections {
             self.record(start, history, engine.noise());
         }
         for _ in 0..sweeps {
-            if history.stop().is_some() {
+            if history.stop().is_some() || self.needs_double {
                 break;
             }
             let objectives = match self.stage {

@@ -61,10 +61,7 @@ impl Corrections {
             max_sweeps: u32::MAX,
         };
         let mut judged = self.judged_by_decay(&rule, history, noise);
-        // In single precision, corrections at the end of a run are refused because of rounding.
-        if noise <= NOISE {
-            self.doubt(&mut judged, &rule, history);
-        }
+        self.doubt(&mut judged, &rule, history, noise);
         let is_settled = self.settled && self.is_sharpest() && !judged.is_slow;
         if is_settled {
             // Another sweep may gain as much as the last.
@@ -121,25 +118,28 @@ impl Corrections {
     }
 
     /// Prevents the end of a stage of sweeps alone if corrections have not had a fair trial: corrections begin again if
-    /// they are due, and a refused correction that promises a large gain prevents the end. Ends the run if corrections
-    /// that began again at its end gained little and promise little.
-    fn doubt(&mut self, judged: &mut Judged, rule: &StopRule, history: &History) {
+    /// they are due, and a refused correction that promises a large gain prevents the end. If the stage would end a run in
+    /// single precision, corrections begin again in double precision, because rounding refuses small corrections. Ends the
+    /// run if corrections that began again at its end gained little and promise little.
+    fn doubt(&mut self, judged: &mut Judged, rule: &StopRule, history: &History, noise: f64) {
+        let is_single = noise > NOISE;
         let promised = self.promised(history);
-        if self.tries_again(history, judged.end) {
+        let much = promised.filter(|left| *left > DOUBT * rule.tolerance);
+        let may_be_early = much.is_some() || !is_single;
+        if self.tries_again(history, judged.end, may_be_early) {
             // Only tries at the end count: a stage that has doubled the number of sweeps may be far from the end.
             let end = judged.end.take();
             self.attempts += u32::from(end.is_some());
+            self.needs_double = end.is_some() && is_single;
             self.begin_correcting(history.f().len() - 1, 1.0);
             self.from_end = end == Some(Stop::Converged);
             self.lowered.push(history.last());
-        } else if judged.end == Some(Stop::Converged)
-            && let Some(promised) = promised.filter(|left| *left > DOUBT * rule.tolerance)
-        {
+        } else if let (Some(Stop::Converged), Some(promised)) = (judged.end, much) {
             // The decay of f in sweeps alone is then no evidence for convergence.
             judged.remaining = judged.remaining.map(|left| left.max(promised));
             judged.end = judged.end.filter(|_| self.attempts >= MOST_ATTEMPTS);
         } else if self.gained_little_from_end(history, rule.tolerance)
-            && let Some(promised) = promised.filter(|left| *left <= DOUBT * rule.tolerance)
+            && let (Some(promised), None) = (promised, much)
         {
             judged.remaining = Some(promised.max(rule.tolerance));
             judged.end = judged.end.or(Some(Stop::Converged));
@@ -156,13 +156,13 @@ impl Corrections {
     }
 
     /// Returns whether corrections begin again after a stage of sweeps alone, because the stage would end the run for
-    /// `end`, or because it has doubled the number of sweeps. Corrections that were refused on a rough mesh may succeed on
-    /// the smoothed mesh, and lower modes that sweeps alone hardly change. A stage that ends as early as the stop rule
-    /// permits follows a refused correction, and may end the run.
-    fn tries_again(&self, history: &History, end: Option<Stop>) -> bool {
+    /// `end`, or, if `may_be_early`, because the stage has doubled the number of sweeps. Corrections that were refused on
+    /// a rough mesh may succeed on the smoothed mesh, and lower modes that sweeps alone hardly change. A stage that ends
+    /// as early as the stop rule permits follows a refused correction, and may end the run.
+    fn tries_again(&self, history: &History, end: Option<Stop>, may_be_early: bool) -> bool {
         let Stage::Without { since } = self.stage else { return false };
         let (last, window) = (history.f().len() - 1, StopRule::window(&self.metric().into()));
-        let is_due = end.is_some() || last >= 2 * since;
+        let is_due = end.is_some() || may_be_early && last >= 2 * since;
         let is_long = last - since > 2 * window as usize;
         is_due && is_long && self.metric().is_smooth() && !self.is_left_out()
     }

@@ -71,6 +71,9 @@ pub(crate) struct Corrections {
     pub(super) was_reopened: bool,
     /// Whether the engine of the saved state, from which the run continues, had no room for the levels.
     pub(super) was_left_out: bool,
+    /// Whether the next sweep needs an engine in double precision: corrections begin again, and in single precision
+    /// they would be refused because of rounding.
+    pub(super) needs_double: bool,
 }
 
 /// The state of the stage that corrects sweeps.
@@ -125,7 +128,24 @@ impl Corrections {
             left_out: None,
             was_reopened: false,
             was_left_out: false,
+            needs_double: false,
         }
+    }
+
+    /// Returns the mesh with the maps of the present levels.
+    pub(crate) fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// Returns whether the run continues on an engine in double precision.
+    pub(crate) fn needs_double(&self) -> bool {
+        self.needs_double
+    }
+
+    /// Records that an engine in double precision continues the run.
+    pub(crate) fn continue_in_double(&mut self) {
+        // With acceleration, a run converges only after several estimates. The modes that remain are slow.
+        (self.needs_double, self.accelerated) = (false, true);
     }
 
     /// Returns the number of sweeps with alternating metrics. `None` before the first correction.

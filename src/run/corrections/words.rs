@@ -26,6 +26,7 @@ impl Corrections {
         words.extend(self.estimates.map(f64::to_bits));
         words.extend([self.alternated, self.sharpness].map(u64::from));
         words.extend(levels);
+        words.push(self.needs_double.into());
         words.extend(self.lowered.iter().map(|f| f.to_bits()));
         words
     }
@@ -53,9 +54,10 @@ impl Corrections {
                 sharpness,
                 built,
                 fitted,
+                needs_double,
             ],
             lowered,
-        )) = rest.split_first_chunk::<{ 12 + ESTIMATES }>()
+        )) = rest.split_first_chunk::<{ 13 + ESTIMATES }>()
         else {
             return false;
         };
@@ -108,6 +110,7 @@ impl Corrections {
         (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
         (self.was_left_out, self.has_levels) = (left_out != 0, has_levels);
         (self.was_reopened, self.from_end) = (was_reopened != 0, from_end != 0);
+        self.needs_double = needs_double != 0;
         if in_plane != 0 {
             self.problem.set_levels_in_plane();
         }
