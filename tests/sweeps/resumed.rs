@@ -6,7 +6,7 @@ use std::time::Duration;
 use gpu_smooth::{
     Backend, Checkpoint, CheckpointPolicy, Goal, Method, Metric, Options, Outcome, Progress,
     Quality, Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, Topology,
-    options::WorstBy,
+    options::WorstBy, targets::Surface,
 };
 
 use super::flat::{bent, pressed_to_a_line};
@@ -127,6 +127,21 @@ fn a_run_that_leaves_the_device_for_double_precision_goes_on_to_the_same_bits() 
     });
     assert_eq!((first, last), (Some(device), Some(device + 1)));
     assert_goes_on(&smoother, &options, gpu, 1);
+}
+
+/// The change to double precision comes within a period, whose checkpoints contain the state of the stages too.
+#[test]
+fn a_run_with_bounded_moves_that_leaves_the_device_goes_on_to_the_same_bits() {
+    let mesh = support::perturb_random(&support::hub(50, 1e-2), 1.0, 3);
+    let topology = Topology::new(&mesh).unwrap();
+    let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_targets(&targets).unwrap();
+    let options = Options { scheme: Metric::Rms.into(), max_move: Some(3.0), ..Options::default() };
+    let gpu = &backends()[1];
+    let outcome = smoother.run(&options).on(gpu).block().unwrap();
+    assert!(outcome.closing_sweeps > 0, "{:?} after {} sweeps", outcome.stop, outcome.sweeps);
+    assert_goes_on(&smoother, &options, gpu, 3);
 }
 
 /// A checkpoint within a period contains the state of the stages at the beginning of the period.
