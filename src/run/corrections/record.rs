@@ -100,7 +100,7 @@ impl Corrections {
         let (of_stage, mut window) = self.values_of_stage(history);
         let mut remaining = rule.remaining(&of_stage, window);
         let is_correcting = matches!(self.stage, Stage::Correcting(_));
-        if self.accelerated || is_correcting && self.has_stretched_hub() {
+        if self.accelerated || is_correcting && self.has_hub {
             (remaining, window) = self.confirmed(remaining, window, &of_stage, rule);
         }
         let slow = self.slow_decay(rule, history, noise);
@@ -191,7 +191,7 @@ impl Corrections {
         (values.to_vec(), if self.is_sharpest() { window } else { NO_ESTIMATE })
     }
 
-    /// Records an estimate of a run with accelerated corrections or around a stretched hub, whose gains are irregular. Returns the largest of the
+    /// Records an estimate of a run with accelerated corrections or around a hub, whose gains are irregular. Returns the largest of the
     /// latest estimates and the window for the stop rule, or no window if that estimate is above the tolerance.
     fn confirmed(
         &mut self,
@@ -204,12 +204,7 @@ impl Corrections {
         self.estimates[ESTIMATES - 1] = remaining.map_or(f64::INFINITY, |left| CAUTION * left);
         let asked = match self.metric().is_smooth() {
             // New levels on a strongly stretched mesh gain much at first, and slow modes remain.
-            _ if decays_steadily(of_stage)
-                && !self.has_local_maps()
-                && !self.has_stretched_hub() =>
-            {
-                1
-            }
+            _ if decays_steadily(of_stage) && !self.has_local_maps() && !self.has_hub => 1,
             true => ESTIMATES,
             false => ESTIMATES_FOR_EDGE,
         };

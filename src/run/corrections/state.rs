@@ -17,9 +17,9 @@ pub(super) const ESTIMATES: usize = 4;
 /// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 pub(super) const SWEPT: f64 = 0.1;
 
-/// Number of neighbors of a vertex above which gains with stretched targets are as irregular as those of accelerated
-/// corrections. In usual meshes, vertices have at most 14 neighbors.
-const MOST_USUAL: u32 = 24;
+/// Number of neighbors of a vertex above which gains are as irregular as those of accelerated corrections. In usual meshes,
+/// vertices have at most 14 neighbors.
+const MOST_USUAL: u32 = 16;
 
 /// Number of times that corrections begin after a few sweeps alone. Refused once more, corrections wait until sweeps alone
 /// would end the run.
@@ -226,11 +226,6 @@ impl Corrections {
     /// Returns whether the mesh has local maps, which follow its triangles.
     pub(super) fn has_local_maps(&self) -> bool {
         self.problem.has_local_maps()
-    }
-
-    /// Returns whether a free vertex has more than [`MOST_USUAL`] neighbors, in a mesh with stretched targets.
-    pub(super) fn has_stretched_hub(&self) -> bool {
-        self.has_hub && self.problem.targets().is_some() && self.problem.is_stretched()
     }
 
     /// Returns the lower limit of f.
