@@ -223,7 +223,10 @@ impl<'m> Work<'m> {
             return;
         }
         for descent in &DESCENTS {
-            if self.descend(descent, result, observe).is_break() {
+            let own = descent.has_equal_targets.then(|| self.state.equalize_targets());
+            let ended = self.descend(descent, result, observe);
+            own.into_iter().for_each(|targets| self.state.set_targets(targets));
+            if ended.is_break() {
                 return;
             }
         }
@@ -270,9 +273,6 @@ impl<'m> Work<'m> {
         result: &mut Untangled,
         observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        if descent.has_equal_targets {
-            self.state.equalize_targets();
-        }
         let region = Region::whole(self.problem);
         self.state.positions = self.problem.positions().to_vec();
         let mut now = self.state.assess(&region);

@@ -28,10 +28,12 @@ pub(super) const STAGES: [Stage; 19] = [
 ];
 
 /// Runs of [Newton](super::newton) steps, which follow the last stage. Each run begins at the positions of the given mesh.
-/// Equal target areas lead to other states than areas of triangles, many of which are inverted.
-pub(super) const DESCENTS: [Descent; 2] = [
+/// Equal target areas lead to other states than areas of triangles, many of which are inverted. Another residual leads to
+/// other states too.
+pub(super) const DESCENTS: [Descent; 3] = [
     Descent { has_equal_targets: false, residual: 0.5 },
-    Descent { has_equal_targets: true, residual: 0.3 },
+    Descent { has_equal_targets: true, residual: 0.1 },
+    Descent { has_equal_targets: false, residual: 0.3 },
 ];
 
 /// The settings of a run of Newton steps.

@@ -182,10 +182,16 @@ impl<'p> State<'p> {
         }
     }
 
-    /// Replaces all target areas by their mean.
-    pub(super) fn equalize_targets(&mut self) {
+    /// Replaces all target areas by their mean, and returns the former target areas.
+    pub(super) fn equalize_targets(&mut self) -> Vec<f64> {
         let mean = self.targets.iter().sum::<f64>() / self.targets.len() as f64;
-        self.targets.fill(mean);
+        let equal = vec![mean; self.targets.len()];
+        std::mem::replace(&mut self.targets, equal)
+    }
+
+    /// Sets the target areas of all vertices.
+    pub(super) fn set_targets(&mut self, targets: Vec<f64>) {
+        self.targets = targets;
     }
 
     /// Returns a triangle, seen from its first vertex.
