@@ -91,7 +91,8 @@ fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
     let is_gpu = matches!(&*ran.taken.backend, Backend::Gpu(_));
     // The estimate of EDGE includes a distance that is no error.
     let is_smooth = request.scheme().base() != Metric::Edge;
-    let least = |tolerance: f64| tolerance.max(outcome.projection_error);
+    // After many corrections, the estimate is at least twice the tolerance.
+    let least = |tolerance: f64| (2.0 * tolerance).max(outcome.projection_error);
     let exceeds = |tolerance| outcome.remaining.is_some_and(|left| left > least(tolerance));
     is_gpu
         && is_smooth

@@ -62,12 +62,20 @@ fn every_scheme_leaves_a_valid_better_mesh_on_the_cpu() {
 
 #[test]
 fn a_run_says_that_single_precision_ends_it() {
-    let mesh = support::perturb_random(&support::graded(32, 1e-4), 0.3, 5);
-    let [node, ele] = support::triangle_text(&mesh, "");
-    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
-    let out = folder.line("in.node out.node --scheme soft-size --engine gpu").clean().out;
+    let folder_of = |around, ratio| {
+        let mesh = support::perturb_random(&support::graded(around, ratio), 0.3, 5);
+        let [node, ele] = support::triangle_text(&mesh, "");
+        Folder::new(&[("in.node", &node), ("in.ele", &ele)])
+    };
+    let by_soft_size = "in.node out.node --scheme soft-size --engine gpu --force";
+    let alone = format!("{by_soft_size} --method relaxed --tolerance 1e-8");
+    let out = folder_of(16, 1e-2).line(&alone).clean().out;
     let told = ", as far as single precision tells; f is estimated to be ";
     assert!(out.contains(told) && out.contains("; --engine cpu has double precision"), "{out}");
-    let run = folder.line("in.node out.node --engine gpu");
+    // With corrections, the CPU ends the run.
+    let folder = folder_of(32, 1e-4);
+    let out = folder.line(by_soft_size).clean().out;
+    assert!(out.contains(" on the CPU, in double precision") && !out.contains(told), "{out}");
+    let run = folder.line("in.node out.node --engine gpu --force");
     assert!(run.code == Some(0) && !run.out.contains("single precision"), "{}", run.out);
 }
