@@ -24,12 +24,12 @@ pub struct Outcome {
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
-    /// Number of first sweeps done on the CPU although the backend is a GPU. The CPU does the first sweeps if triangles are too
+    /// Number of sweeps at the start of a run on a GPU that the CPU did. The CPU does the first sweeps if triangles are too
     /// flat or too small for single precision, and every sweep if its first sweeps left such triangles. The CPU also
     /// does every sweep of a run with coarser levels if triangles are strongly stretched relative to their targets, as
     /// a GPU has no room for such a mesh's second map per vertex.
     pub opening_sweeps: u32,
-    /// Number of last sweeps done on the CPU although the backend is a GPU. The CPU replaces the GPU if corrections from
+    /// Number of sweeps at the end of a run on a GPU that the CPU did. The CPU replaces the GPU if corrections from
     /// coarser levels were refused and are tried again in double precision, or if sliding or a bound of moves has made
     /// triangles too flat for single precision.
     pub closing_sweeps: u32,
@@ -46,8 +46,7 @@ pub struct Outcome {
     ///
     /// The estimate has lower bounds. After a run that has converged by the estimate, the bound is the tolerance, or twice
     /// the tolerance after more than 16 corrections, or a tenth of the tolerance, and 1e-8, if the last correction gained
-    /// nothing. After a run that has converged because f is level
-    /// up to rounding, the bound is the variation of f over the last sweeps. On a device, the bound is the error of the f
+    /// nothing. After a run that has converged because f is level up to rounding, the bound is the variation of f over the last sweeps. On a device, the bound is the error of the f
     /// that the run was judged by, in single precision. In a projection, the bound is
     /// [`projection_error`](Self::projection_error).
     ///

@@ -113,8 +113,8 @@ impl<'a> Smoother<'a> {
     /// these coordinates ([`Targets::seen_on`], [`TargetField::seen_on`]).
     ///
     /// Slivers may be inverted or flat in the projection, as straight edges have curved images. Runs on a mesh with such
-    /// slivers begin with the vertices near the slivers moved until the projection inverts no triangle. Returns false if no
-    /// such positions are found. Then all runs move the vertices in longitude and latitude, as do runs on a mesh with such
+    /// slivers begin with the vertices near the slivers moved until the projection inverts no triangle. Returns false, and
+    /// changes nothing, if no such positions are found. Then all runs move the vertices in longitude and latitude, as do runs on a mesh with such
     /// slivers that compare positions or triangles with the given mesh, by [`Options::max_move`],
     /// [`Options::keep_altitude`] or [`Guard::Worst`].
     ///

@@ -13,13 +13,14 @@ const MOST_SWEEPS: u32 = 100;
 
 /// Returns a mesh in longitude and latitude in which no triangle is inverted or flat, neither in coordinates nor in the
 /// projection. The free vertices near slivers that the projection would invert are moved, and all other vertices keep
-/// their coordinates. If the moves fail, all free vertices are near means of their neighbors. `None` if such positions are
-/// not feasible either, as if a sliver has no free vertex.
+/// their coordinates. If the moves fail, all free vertices are near means of their neighbors. `None` if these positions
+/// have an inverted or flat triangle too. A sliver without a free vertex leads to `None`.
 pub(super) fn opened(mesh: &Mesh, topology: &Topology<'_>) -> Option<Mesh> {
     let (_, projected) = Mercator::with_slivers(mesh, topology);
     let near_slivers = || {
         let untangled = untangle(&projected, Precision::Double, &mut most_sweeps).ok()?;
-        untangled.left.is_empty().then_some(untangled.points)
+        let is_feasible = untangled.left.is_empty() && untangled.overlapping.is_none();
+        is_feasible.then_some(untangled.points)
     };
     let near_means = || {
         let problem = laid_out(&projected, topology);

@@ -225,7 +225,9 @@ impl<'m> Work<'m> {
         for descent in &DESCENTS {
             let own = descent.has_equal_targets.then(|| self.state.equalize_targets());
             let ended = self.descend(descent, result, observe);
-            own.into_iter().for_each(|targets| self.state.set_targets(targets));
+            if let Some(targets) = own {
+                self.state.set_targets(targets);
+            }
             if ended.is_break() {
                 return;
             }

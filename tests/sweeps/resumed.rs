@@ -105,8 +105,8 @@ fn a_run_whose_levels_change_coordinates_goes_on_to_the_same_bits() {
     }
 }
 
-/// Corrections that were refused on a device are tried again on the CPU. Checkpoints before the change, between the last
-/// sweep on the device and the first on the CPU, and after the change lead to the same end.
+/// Corrections that were refused on a device are tried again on the CPU. The run may continue from a checkpoint of the device,
+/// from the checkpoint at which the CPU takes over, and from a checkpoint of the CPU, and leads to the same end.
 #[test]
 fn a_run_that_leaves_the_device_for_double_precision_goes_on_to_the_same_bits() {
     let mesh = support::perturb_random(&support::hub(30, 1e-2), 1.0, 7);

@@ -270,15 +270,24 @@ fn corrections_are_taken_around_a_hub_with_targets() {
 #[test]
 fn gains_around_a_hub_are_confirmed_by_further_corrections() {
     let hub = |ratio, noise, seed| support::perturb_random(&support::hub(50, ratio), noise, seed);
-    for (mesh, rings) in
-        [(hub(1e-3, 0.2, 1), Some(1)), (hub(0.1, 0.1, 3), Some(0)), (hub(1e-3, 0.3, 1), None)]
-    {
+    let of_80 = support::perturb_random(&support::hub(80, 1e-2), 0.2, 1);
+    for (mesh, rings) in [
+        (hub(1e-3, 0.2, 1), Some(1)),
+        (hub(0.1, 0.1, 3), Some(0)),
+        (hub(1e-3, 0.3, 1), None),
+        (of_80, None),
+    ] {
         let topology = Topology::new(&mesh).unwrap();
         let targets = rings.map(|n| Targets::keep_shape(&topology, &mesh.points, n).unwrap());
-        let (outcome, left) = with_gain_left(&mesh, targets.as_ref(), Metric::Imr, &Backend::Cpu);
-        let (told, sweeps) = (outcome.remaining.unwrap(), outcome.sweeps);
-        assert_eq!(outcome.stop, Stop::Converged);
-        assert!(sweeps <= 60 && left <= 2.0 * told, "{rings:?}: {told:e} of {left:e}, {sweeps}");
+        for backend in backends() {
+            let (outcome, left) = with_gain_left(&mesh, targets.as_ref(), Metric::Imr, backend);
+            let (told, sweeps) = (outcome.remaining.unwrap(), outcome.sweeps);
+            let label = format!("{rings:?} on the {}: {sweeps} sweeps", name(backend));
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            // On lavapipe, one of the runs without targets takes 127 sweeps.
+            let most = if matches!(backend, Backend::Cpu) { 60 } else { 200 };
+            assert!(sweeps <= most && left <= 2.0 * told, "{label}: {told:e} of {left:e}");
+        }
     }
 }
 

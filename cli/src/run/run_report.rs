@@ -85,14 +85,17 @@ pub(super) fn report(
     }
 }
 
+/// Number of corrections after which [`Outcome::remaining`](gpu_smooth::Outcome::remaining) is at least twice the tolerance.
+const MANY_CORRECTIONS: u32 = 16;
+
 /// Returns whether a GPU ended the run as converged, although the error of its f exceeds the tolerance.
 fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
     let (request, outcome) = (input.request(), &ran.outcome);
     let is_gpu = matches!(&*ran.taken.backend, Backend::Gpu(_));
     // The estimate of EDGE includes a distance that is no error.
     let is_smooth = request.scheme().base() != Metric::Edge;
-    // After many corrections, the estimate is at least twice the tolerance.
-    let least = |tolerance: f64| (2.0 * tolerance).max(outcome.projection_error);
+    let multiple = if outcome.corrections > MANY_CORRECTIONS { 2.0 } else { 1.0 };
+    let least = |tolerance: f64| (multiple * tolerance).max(outcome.projection_error);
     let exceeds = |tolerance| outcome.remaining.is_some_and(|left| left > least(tolerance));
     is_gpu
         && is_smooth

@@ -17,8 +17,8 @@ pub(super) const ESTIMATES: usize = 4;
 /// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 pub(super) const SWEPT: f64 = 0.1;
 
-/// Number of neighbors of a vertex above which gains are as irregular as those of accelerated corrections. In usual meshes,
-/// vertices have at most 14 neighbors.
+/// Number of neighbors of a vertex in usual meshes, which is at most 14, with a margin. Around vertices with more neighbors,
+/// gains are as irregular as with accelerated corrections.
 const MOST_USUAL: u32 = 16;
 
 /// Number of times that corrections begin after a few sweeps alone. Refused once more, corrections wait until sweeps alone

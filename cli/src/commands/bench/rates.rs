@@ -12,8 +12,8 @@ const MAX_CALLS: usize = 6;
 /// Copies encoded into one submission to a GPU.
 const SUBMITTED: u32 = 4;
 
-/// Returns the bytes per second that all cores together read and write in a copy. No call begins after `seconds` seconds
-/// but the first.
+/// Returns the bytes per second that all cores together read and write in a copy. The first call is always made, and further
+/// calls begin within `seconds` seconds.
 pub(crate) fn on_cpu(seconds: f64) -> f64 {
     let from = vec![1u8; BYTES as usize];
     let mut to = vec![2u8; BYTES as usize];
@@ -24,8 +24,8 @@ pub(crate) fn on_cpu(seconds: f64) -> f64 {
     })
 }
 
-/// Returns the bytes per second that a kernel reads and writes in a copy. No call begins after `seconds` seconds but the
-/// first.
+/// Returns the bytes per second that a kernel reads and writes in a copy. The first call is always made, and further calls
+/// begin within `seconds` seconds.
 pub(crate) fn on_gpu(gpu: &Gpu, seconds: f64) -> f64 {
     let device = gpu.device();
     let bound = device.limits().max_storage_buffer_binding_size;
