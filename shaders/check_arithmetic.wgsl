@@ -13,7 +13,7 @@ fn check_arithmetic(@builtin(global_invocation_id) id: vec3<u32>) {
         pair_add(a.xz, b.xz),
         edge(a, b),
         pair_difference(a.xz, b.xz),
-        select(0.0, 1.0, is_positive(doubled_area(Corner(a.xy, b.xy, vec2(1.0, 0.0))))),
+        select(0.0, 1.0, is_positive(doubled_area(Corner(a.xy, b.xy, Ideal())))),
         advanced(a, b.xy),
     );
 }

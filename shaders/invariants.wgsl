@@ -11,6 +11,7 @@ struct Invariants {
     area: f32,
     mean: f32,
     area_less_mean: f32,
+    size_weight: f32,
 }
 
 // The value of a function of the invariants, and its partial derivatives, each named by its variables. The derivatives
@@ -35,8 +36,14 @@ fn distortion(t: Corner) -> vec2<f32> {
 fn invariants(t: Corner) -> Invariants {
     let uv = distortion(t);
     let area = doubled_area(t);
-    let mean = 2.0 * t.mean_area;
-    return Invariants(dot(uv, uv) * (0.25 / TARGET_W), area, mean.x, (area - mean.x) - mean.y);
+    let mean = 2.0 * t.ideal.area;
+    return Invariants(
+        dot(uv, uv) * (0.25 / TARGET_W),
+        area,
+        mean.x,
+        (area - mean.x) - mean.y,
+        t.ideal.size_weight,
+    );
 }
 
 fn expansion(t: Corner, slopes: Slopes) -> Derivatives {
@@ -55,11 +62,12 @@ fn expansion(t: Corner, slopes: Slopes) -> Derivatives {
     );
 }
 
-// Metrics that balance shape and size: ε / τ + weight (τ - 1)² / τ with ε = excess / mean and τ = area / mean.
+// Metrics that balance shape and size: ε / τ + v w (τ - 1)² / τ with ε = excess / mean, τ = area / mean, the size
+// weight v, and w the argument `weight`.
 
 fn shape_and_size_value(t: Invariants, weight: f32) -> f32 {
     let off = t.area_less_mean / t.mean;
-    return (t.excess / t.mean + weight * off * off) * t.mean / t.area;
+    return (t.excess / t.mean + weight * off * off * t.size_weight) * t.mean / t.area;
 }
 
 fn shape_and_size_slopes(t: Invariants, weight: f32) -> Slopes {
@@ -70,11 +78,11 @@ fn shape_and_size_slopes(t: Invariants, weight: f32) -> Slopes {
     let square = inverse * inverse;
     return Slopes(
         scale,
-        (e + weight * off * off) * inverse,
+        (e + weight * off * off * t.size_weight) * inverse,
         inverse,
-        (weight * off * (t.area * scale + 1.0) - e) * square,
+        (weight * off * (t.area * scale + 1.0) * t.size_weight - e) * square,
         0.0,
         -square,
-        2.0 * (e + weight) * square * inverse,
+        2.0 * (e + weight * t.size_weight) * square * inverse,
     );
 }

@@ -18,7 +18,7 @@ fn shape_of(v: u32) -> vec3<f32> {
 // Returns a triangle transformed by a target map, the argument of metrics.
 fn transformed(t: Corner, map: vec3<f32>) -> Corner {
     if HAS_TARGETS {
-        return Corner(mapped(map, t.a), mapped(map, t.b), t.mean_area);
+        return Corner(mapped(map, t.a), mapped(map, t.b), t.ideal);
     }
     return t;
 }

@@ -8,7 +8,7 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     var a = ring_edge(p, p.end - 1u) - d;
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i) - d;
-        let t = transformed(Corner(a, b, p.mean_area), map_around(p, i));
+        let t = transformed(Corner(a, b, p.ideal), map_around(p, i));
         if !is_positive(doubled_area(t)) {
             return vec2(0.0, 0.0);
         }
@@ -42,7 +42,7 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
         let map = map_around(p, i);
-        let t = transformed(Corner(a, b, p.mean_area), map);
+        let t = transformed(Corner(a, b, p.ideal), map);
         if part.shape_guard < NO_GUARD {
             limit = max(limit, inverse_mean_ratio(t));
         }

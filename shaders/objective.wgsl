@@ -40,7 +40,8 @@ fn objective(
         let p = position(corners.x);
         let a = edge(p, position(corners.y));
         let b = edge(p, position(corners.z));
-        let corner = transformed(Corner(a, b, params.mean_area), map_of(corners));
+        let ideal = Ideal(params.mean_area, params.size_weight);
+        let corner = transformed(Corner(a, b, ideal), map_of(corners));
         let values = tracked_values(corner);
         let seen = edge_is_finite(a) && edge_is_finite(b);
         for (var i = 0u; i < TRACKED; i++) {

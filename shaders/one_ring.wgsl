@@ -7,7 +7,7 @@ struct Patch {
     end: u32,
     at: vec4<f32>,
     unit: f32,
-    mean_area: vec2<f32>,
+    ideal: Ideal,
     // The target map or local map of the vertex, and the factor that brings its entries near one.
     own: vec3<f32>,
     map_unit: f32,
@@ -39,7 +39,7 @@ fn patch_of(vertex: u32) -> Patch {
         p.map_unit = unit_of(p.own.xz);
     }
     let scale = p.unit * select(1.0, p.map_unit, HAS_TARGETS);
-    p.mean_area = params.mean_area * scale * scale;
+    p.ideal = Ideal(params.mean_area * scale * scale, params.size_weight);
     return p;
 }
 

@@ -1,11 +1,17 @@
 // The corner of a triangle as metrics see it, and edges between positions held as pairs.
 
-// The edge vectors from one vertex of a triangle to the other two, counter-clockwise, and the mean area of the mesh's
-// triangles as a pair of floats, in the squared unit of the edges.
+// The ideal triangle of the Rust struct Ideal (src/metric/corner.rs), with the mean area as a pair of floats.
+struct Ideal {
+    area: vec2<f32>,
+    size_weight: f32,
+}
+
+// The edge vectors from one vertex of a triangle to the other two, counter-clockwise, and the ideal triangle in the unit
+// of the edges.
 struct Corner {
     a: vec2<f32>,
     b: vec2<f32>,
-    mean_area: vec2<f32>,
+    ideal: Ideal,
 }
 
 // A value and its derivatives with respect to the vertex that the edges start from. The Hessian holds xx, xy and yy.
@@ -41,5 +47,5 @@ fn squared_length_sum(t: Corner) -> f32 {
 
 // Returns the corner after its vertex has moved by d.
 fn displaced(t: Corner, d: vec2<f32>) -> Corner {
-    return Corner(t.a - d, t.b - d, t.mean_area);
+    return Corner(t.a - d, t.b - d, t.ideal);
 }

@@ -1,7 +1,7 @@
 //! Quality statistics of a mesh.
 
 use crate::error::MeshError;
-use crate::metric::{Corner, Metric};
+use crate::metric::{Corner, Ideal, Metric};
 use crate::parallel::pace::now;
 use crate::parallel::paced;
 use crate::targets::Surface;
@@ -150,7 +150,7 @@ fn one(
     let orientation = predicates::orientation(points, corners);
     let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
     let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
-    let corner = Corner { a, b, mean_area: mean_area / unit / unit };
+    let corner = Corner { a, b, ideal: Ideal::of_area(mean_area / unit / unit) };
     // The exact predicate decides, not the rounded area, so a ratio is infinite only if the triangle is inverted or
     // flat.
     let mut sums = Metric::every_excess(&corner);

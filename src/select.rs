@@ -16,7 +16,7 @@
 //! # Ok::<(), gpu_smooth::MeshError>(())
 //! ```
 
-use crate::metric::Corner;
+use crate::metric::{Corner, Ideal};
 use crate::topology::Topology;
 
 /// Returns the triangles with an inverse mean ratio above `limit`, ascending. The inverse mean ratio is 1 for an
@@ -40,7 +40,7 @@ fn inverse_mean_ratio(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
         return f64::INFINITY;
     };
     let to = |end: &[f64; 2]| [end[0] - p[0], end[1] - p[1]];
-    let ratio = Corner { a: to(q), b: to(r), mean_area: 1.0 }.inverse_mean_ratio();
+    let ratio = Corner { a: to(q), b: to(r), ideal: Ideal::of_area(1.0) }.inverse_mean_ratio();
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use gpu_smooth::{
     Gpu, Mesh, Metric, Scheme, Topology,
     internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
-    metric::Corner,
+    metric::{Corner, Ideal},
     options::{Derivatives, PNormExponent},
 };
 
@@ -256,7 +256,7 @@ fn distribution(
         for &t in &mesh.triangles {
             let [p, q, r] = t.map(|v| points[v as usize]);
             let to = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
-            let corner = Corner { a: to(p, q), b: to(p, r), mean_area: 1.0 };
+            let corner = Corner { a: to(p, q), b: to(p, r), ideal: Ideal::of_area(1.0) };
             let quality = 1.0 / metric.quality(&corner);
             sum += quality;
             counts[((quality * BINS as f64) as usize).min(BINS - 1)] += 1;

@@ -151,7 +151,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         With `only_bad`: number of rings of triangles that count as near.
     target : str, array_like or tuple, default "equilateral"
         Wanted elements: `"equilateral"` of any size, `"keep-size"` or `"keep-shape"` as in the given mesh (with
-        `"keep-shape"`, the first layer of vertices at the boundary is fixed, which keeps the spacing at walls); an array of
+        `"keep-shape"`, the first layer of vertices at the boundary is fixed, which keeps the spacing at walls; with
+        `"keep-size"`, sizes weigh more on stretched meshes); an array of
         shape (n,) with edge lengths, or of shape (n, 3) with tensors (xx, xy, yy) under which elements are equilateral
         with edges of length 1 (x and y are `Result.axes` in other planes); or a tuple (points, triangles, array) with such an array on another mesh. Only ratios of
         sizes matter.

@@ -33,7 +33,7 @@ fn corners_of(t: u32) -> Corners {
 // Returns the inverse mean ratio of the triangle spanned by edges a and b; 0 for an inverted, flat or infinite
 // triangle.
 fn imr(a: vec2<f32>, b: vec2<f32>) -> f32 {
-    let t = Corner(a, b, vec2(0.0));
+    let t = Corner(a, b, Ideal());
     let area = doubled_area(t);
     if !is_positive(area) {
         return 0.0;

@@ -17,7 +17,7 @@ fn derivatives_around(p: Patch) -> Derivatives {
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
         let map = map_around(p, i);
-        let one = pulled_back(metric_derivatives(transformed(Corner(a, b, p.mean_area), map), 0.0), map);
+        let one = pulled_back(metric_derivatives(transformed(Corner(a, b, p.ideal), map), 0.0), map);
         sum.gradient += one.gradient;
         sum.hessian += one.hessian;
         a = b;

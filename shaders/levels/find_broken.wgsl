@@ -23,8 +23,9 @@ fn find_broken(
         let b = edge(p.at, position(neighbor));
         let moved_b = moved_edge(b, d, displacement(neighbor));
         let map = map_around(p, i);
-        let here = transformed(Corner(a, b, params.mean_area), map);
-        let there = transformed(Corner(moved_a, moved_b, params.mean_area), map);
+        let ideal = Ideal(params.mean_area, params.size_weight);
+        let here = transformed(Corner(a, b, ideal), map);
+        let there = transformed(Corner(moved_a, moved_b, ideal), map);
         kept = kept && !is_broken(here, there);
         a = b;
         moved_a = moved_b;

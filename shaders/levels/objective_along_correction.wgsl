@@ -32,11 +32,12 @@ fn objective_along_correction(
         let b = edge(p, position(corners.z));
         let d = displacement(corners.x);
         let map = map_of(corners);
-        let here = transformed(Corner(a, b, params.mean_area), map);
+        let ideal = Ideal(params.mean_area, params.size_weight);
+        let here = transformed(Corner(a, b, ideal), map);
         let moved = Corner(
             moved_edge(a, d, displacement(corners.y)),
             moved_edge(b, d, displacement(corners.z)),
-            params.mean_area,
+            ideal,
         );
         let there = transformed(moved, map);
         sums[0] = pair_accumulate(sums[0], metric_model(here));

@@ -24,7 +24,7 @@ fn look_at(t: u32) {
     let b = edge(p, position(corners.z));
     let map = map_of(corners);
     // The area is computed as in objective.wgsl, so that both kernels count equal triangles.
-    let area = doubled_area(transformed(Corner(a, b, vec2(0.0)), map));
+    let area = doubled_area(transformed(Corner(a, b, Ideal()), map));
     if is_positive(area) {
         return;
     }

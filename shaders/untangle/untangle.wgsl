@@ -46,7 +46,7 @@ fn reach(p: Patch, vertex: u32) -> f32 {
 
 // Returns a triangle of the patch with the vertex moved by d, transformed by the triangle's target map.
 fn triangle_at(p: Patch, before: u32, i: u32, d: vec2<f32>, map: vec3<f32>) -> Corner {
-    return transformed(Corner(ring_edge(p, before) - d, ring_edge(p, i) - d, vec2(0.0)), map);
+    return transformed(Corner(ring_edge(p, before) - d, ring_edge(p, i) - d, Ideal()), map);
 }
 
 // Returns ε in the unit of the triangle's doubled area, at least 1e-30 so that nothing is divided by zero.

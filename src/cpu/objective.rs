@@ -151,7 +151,7 @@ fn corner<S: Simd>(
     map: &Option<TargetMap<Lanes<S>>>,
 ) -> Corner<Lanes<S>> {
     let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-    let corner = Corner { a, b, mean_area: problem.mean_area() };
+    let corner = Corner { a, b, ideal: problem.ideal() };
     match map {
         None => corner,
         Some(map) => map.transform(&corner),

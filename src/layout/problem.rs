@@ -13,10 +13,10 @@ use crate::layout::mercator::Mercator;
 use crate::layout::normalization::normalization;
 use crate::layout::numbering::{order, rings, triangles};
 use crate::mesh::Mesh;
-use crate::metric::{Corner, TargetMap};
+use crate::metric::{Corner, Ideal, TargetMap};
 use crate::parallel::counting_sort::{atomics, plain};
 use crate::parallel::{collect, for_each_part, map_parts, paced};
-use crate::targets::Tensor;
+use crate::targets::Targets;
 use crate::topology::Topology;
 
 /// Number of vertices or triangles that one task handles.
@@ -46,7 +46,7 @@ pub struct Problem {
     has_stretched_targets: bool,
     /// Whether coarse levels work in the coordinates of the plane even if a map is anisotropic.
     levels_in_plane: bool,
-    mean_area: f64,
+    ideal: Ideal,
 }
 
 /// The linear maps that a device stores at the vertices of a problem. A problem with targets and local maps is for the
@@ -138,7 +138,7 @@ impl Problem {
             local_maps: None,
             has_stretched_targets: false,
             levels_in_plane: false,
-            mean_area,
+            ideal: Ideal::of_area(mean_area),
         }
     }
 
@@ -147,17 +147,17 @@ impl Problem {
         Self { projection: Some(projection), ..self }
     }
 
-    /// Sets the target maps of all vertices of the mesh, in any unit. A common factor scales the maps so that the mean
-    /// area of the triangles, after their maps are applied, is 1.
-    pub(crate) fn set_targets(&mut self, maps: &[Tensor]) {
+    /// Sets the target maps of all vertices of the mesh, in any unit, and the weight of sizes. A common factor scales the
+    /// maps so that the mean area of the triangles, after their maps are applied, is 1.
+    pub(crate) fn set_targets(&mut self, targets: &Targets) {
         let layout = Arc::clone(&self.layout);
-        self.set_targets_at(maps, &layout.positions);
+        self.set_targets_at(targets, &layout.positions);
     }
 
-    /// Sets target maps as [`set_targets`](Self::set_targets) does, but scales them for vertices at the given
+    /// Sets targets as [`set_targets`](Self::set_targets) does, but scales maps for vertices at the given
     /// normalized positions. Local maps do not change.
-    pub(crate) fn set_targets_at(&mut self, maps: &[Tensor], positions: &[DVec2]) {
-        let map = |v: u32| maps[v as usize].0;
+    pub(crate) fn set_targets_at(&mut self, targets: &Targets, positions: &[DVec2]) {
+        let map = |v: u32| targets.maps()[v as usize].0;
         let area = |t: &[u32; 3]| {
             let [p, q, r] = t.map(|v| positions[v as usize]);
             let map = TargetMap::mean(t.map(|v| map(self.layout.vertices[v as usize])));
@@ -173,8 +173,11 @@ impl Problem {
         self.targets = Some(maps.into());
         let transformed_area =
             |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
-        self.mean_area =
-            sum(&self.layout.triangles, transformed_area) / self.layout.triangles.len() as f64;
+        self.ideal = Ideal {
+            area: sum(&self.layout.triangles, transformed_area)
+                / self.layout.triangles.len() as f64,
+            size_weight: targets.size_weight(),
+        };
     }
 
     /// Sets the local maps, one for each vertex in the order of the positions. Newton directions and coarser levels then
@@ -198,7 +201,7 @@ impl Problem {
             self.targets = Some(self.layout.vertices.iter().map(of).collect());
         }
         self.has_stretched_targets = other.has_stretched_targets;
-        self.mean_area = other.mean_area;
+        self.ideal = other.ideal;
     }
 
     /// Returns the normalized position of each vertex.
@@ -306,7 +309,7 @@ impl Problem {
     #[inline(always)]
     pub(crate) fn corner(&self, t: &[u32; 3], position: impl Fn(u32) -> DVec2) -> Corner<f64> {
         let [p, q, r] = t.map(position);
-        let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: self.mean_area };
+        let corner = Corner { a: (q - p).into(), b: (r - p).into(), ideal: self.ideal };
         match self.target_map(t) {
             None => corner,
             Some(map) => map.transform(&corner),
@@ -322,7 +325,13 @@ impl Problem {
 
     /// Returns the mean area of all triangles in normalized units, after target maps are applied if the mesh has any.
     pub fn mean_area(&self) -> f64 {
-        self.mean_area
+        self.ideal.area
+    }
+
+    /// Returns the ideal triangle of the metrics in normalized units.
+    #[inline(always)]
+    pub(crate) fn ideal(&self) -> Ideal {
+        self.ideal
     }
 
     /// Returns the index in the mesh of each vertex of the problem.

@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use crate::metric::{Corner, Metric};
+use crate::metric::{Corner, Ideal, Metric};
 use crate::topology::predicates::orientation;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
@@ -203,7 +203,7 @@ impl Triangle {
         }
         let [a, b, _] = self.edges;
         let mean_area = self.mean_area * self.per_unit * self.per_unit;
-        let mut corner = Corner { a, b, mean_area };
+        let mut corner = Corner { a, b, ideal: Ideal::of_area(mean_area) };
         if is_positive != (corner.doubled_area() > 0.0) {
             // Rounding has changed the sign of the area. With axes along and across the first edge, a single coordinate
             // determines the sign, and is set from the exact area.

@@ -4,15 +4,33 @@ use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::EdgeSlopes;
 
 /// A triangle seen from one vertex: the edge vectors to the other two vertices, in counter-clockwise order, and the
-/// mean area of the mesh. The argument of a [`Metric`](crate::Metric).
+/// ideal of the mesh. The argument of a [`Metric`](crate::Metric).
 #[derive(Clone, Copy, Debug)]
 pub struct Corner<T> {
     /// Edge vector to the next vertex, counter-clockwise.
     pub a: [T; 2],
     /// Edge vector to the third vertex.
     pub b: [T; 2],
-    /// Mean area of the mesh's triangles, in the square of the unit of `a` and `b`.
-    pub mean_area: f64,
+    /// The ideal triangle, in the unit of `a` and `b`.
+    pub ideal: Ideal,
+}
+
+/// The ideal triangle of a mesh, an equilateral triangle of the mean area, and the cost of other areas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ideal {
+    /// Mean area of the mesh's triangles, after their target maps are applied.
+    pub area: f64,
+    /// Factor of the term of size in metrics that have one; see
+    /// [`Metric::has_size_weight`](crate::Metric::has_size_weight) and
+    /// [`Targets::size_weight`](crate::Targets::size_weight).
+    pub size_weight: f64,
+}
+
+impl Ideal {
+    /// Returns the ideal of a mesh with triangles of the given mean area, with a size weight of 1.
+    pub const fn of_area(area: f64) -> Self {
+        Self { area, size_weight: 1.0 }
+    }
 }
 
 /// 1/√3. The target triangle W is equilateral, with W⁻¹ = [[1, -1/√3], [0, 2/√3]].
@@ -55,7 +73,8 @@ impl<T: Real> Corner<T> {
         Invariants {
             excess: (u * u + v * v) * (0.25 / W),
             area: self.doubled_area(),
-            mean: 2.0 * self.mean_area,
+            mean: 2.0 * self.ideal.area,
+            size_weight: self.ideal.size_weight,
         }
     }
 
@@ -204,6 +223,8 @@ pub struct Invariants<T> {
     pub area: T,
     /// Twice the mean area of the mesh's triangles.
     pub mean: f64,
+    /// Factor of the terms of size; see [`Ideal::size_weight`].
+    pub size_weight: f64,
 }
 
 /// Value and derivatives of a function of the [`Invariants`]. A metric chooses the form. The more special the form, the

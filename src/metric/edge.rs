@@ -14,6 +14,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     ideal: 1.0,
     least: 1.0,
     scale_invariant: true,
+    has_size_weight: false,
     is_inverse_mean_ratio: false,
     quadratic: false,
     eigenvalue_floor: 0.1,

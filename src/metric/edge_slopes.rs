@@ -56,7 +56,7 @@ impl EdgeSlopes for Given {
 mod tests {
     use super::*;
     use crate::metric::table::Formulas;
-    use crate::metric::{Corner, Dual, Metric, Smoothing};
+    use crate::metric::{Corner, Dual, Ideal, Metric, Smoothing};
 
     const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
 
@@ -69,7 +69,7 @@ mod tests {
     /// Returns the corner of a quadrilateral at p, with edges to q and r.
     fn corner_of_quadrilateral([p, q, r]: [[f64; 2]; 3]) -> Corner<f64> {
         let [x, y] = [0, 1].map(|axis| from_right_angle([q[axis] - p[axis], r[axis] - p[axis]]));
-        Corner { a: [x[0], y[0]], b: [x[1], y[1]], mean_area: 0.6 }
+        Corner { a: [x[0], y[0]], b: [x[1], y[1]], ideal: Ideal::of_area(0.6) }
     }
 
     fn numbers(dual: Dual) -> [f64; 6] {
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn derivatives_by_any_slopes_are_those_of_dual_numbers() {
-        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], mean_area: 0.6 };
+        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], ideal: Ideal::of_area(0.6) };
         // Dual numbers have no derivatives of the minimum in the penalty.
         let smoothings = [0, 1, 3].map(Smoothing::of);
         for slopes in [(-1.0, -1.0), (1.0, 0.0), (0.0, 1.0), (0.3, -1.7), (0.0, 0.0)] {
@@ -96,7 +96,7 @@ mod tests {
                 [Dual::variable(x, 0, slope), Dual::variable(y, 1, slope)]
             };
             let (a, b) = (edge(corner.a, slopes.0), edge(corner.b, slopes.1));
-            let dual = Corner { a, b, mean_area: corner.mean_area };
+            let dual = Corner { a, b, ideal: corner.ideal };
             for &metric in Metric::ALL {
                 for smoothing in smoothings {
                     let found = metric.formulas().expansion(&corner, slopes, smoothing);
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn the_slopes_of_own_give_the_bits_of_the_same_numbers_at_run_time() {
-        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], mean_area: 0.6 };
+        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], ideal: Ideal::of_area(0.6) };
         for &metric in Metric::ALL {
             let smoothing = Smoothing { sharpness: 2, penalty_guard: 2.0 };
             let folded = metric.formulas().expansion(&corner, Own, smoothing);

@@ -20,7 +20,7 @@ mod target;
 mod tmop_80;
 mod tmop_94;
 
-pub use corner::Corner;
+pub use corner::{Corner, Ideal};
 #[doc(hidden)]
 pub use corner::{InvariantSlopes, Invariants, Slopes};
 pub use dual::{Dual, Real};

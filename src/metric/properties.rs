@@ -20,6 +20,8 @@ pub struct Properties {
     pub least: f64,
     /// Whether q is independent of the size of a triangle.
     pub scale_invariant: bool,
+    /// Whether q² has a term of size that [`Ideal::size_weight`](crate::metric::Ideal::size_weight) multiplies.
+    pub has_size_weight: bool,
     /// Whether q equals the inverse mean ratio.
     pub is_inverse_mean_ratio: bool,
     /// Whether the objective is quadratic in the position of one vertex. A single Newton step is then exact, and its

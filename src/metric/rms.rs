@@ -13,6 +13,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     ideal: 1.0,
     least: 0.0,
     scale_invariant: false,
+    has_size_weight: false,
     is_inverse_mean_ratio: false,
     quadratic: true,
     eigenvalue_floor: 1e-3,

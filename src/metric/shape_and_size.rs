@@ -1,13 +1,13 @@
-//! Metrics that balance shape and size: μ₂ + 2 w μ₅₆ of TMOP.
+//! Metrics that balance shape and size: μ₂ + 2 v w μ₅₆ of TMOP, with v the size weight of the mesh's ideal.
 
 use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
 use crate::metric::dual::Real;
 
-/// Returns ε / τ + w (τ - 1)² / τ, where τ = area / mean and ε = excess / mean. The terms are μ₂ = |T|² / 2τ - 1 = ε /
-/// τ, and 2 w μ₅₆ with μ₅₆ = (τ - 1)² / 2τ.
+/// Returns ε / τ + v w (τ - 1)² / τ, where τ = area / mean, ε = excess / mean, w is `weight` and v the size weight. The
+/// terms are μ₂ = |T|² / 2τ - 1 = ε / τ, and 2 v w μ₅₆ with μ₅₆ = (τ - 1)² / 2τ.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Invariants<T>, weight: f64) -> T {
-    let scale = 1.0 / t.mean;
+    let (scale, weight) = (1.0 / t.mean, weight * t.size_weight);
     let (e, off) = (t.excess * scale, (t.area - t.mean) * scale);
     (e + off * off * weight) / (t.area * scale)
 }
@@ -15,7 +15,7 @@ pub(super) fn value<T: Real>(t: &Invariants<T>, weight: f64) -> T {
 /// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
 pub(super) fn slopes<T: Real>(t: &Invariants<T>, weight: f64) -> Slopes<T> {
-    let scale = 1.0 / t.mean;
+    let (scale, weight) = (1.0 / t.mean, weight * t.size_weight);
     let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
     let inverse = tau.constant(1.0) / tau;
     let square = inverse * inverse;

@@ -80,10 +80,11 @@ impl Smoothing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metric::Ideal;
     use crate::metric::edge_slopes::Own;
 
     fn corner(height: f64) -> Corner<f64> {
-        Corner { a: [1.0, 0.1], b: [0.4, height], mean_area: 0.3 }
+        Corner { a: [1.0, 0.1], b: [0.4, height], ideal: Ideal::of_area(0.3) }
     }
 
     #[test]
@@ -96,7 +97,7 @@ mod tests {
                     let ([ax, ay], [bx, by]) = (t.a, t.b);
                     let [ax, bx] = [ax, bx].map(|x| Dual::variable(x, 0, -1.0));
                     let [ay, by] = [ay, by].map(|y| Dual::variable(y, 1, -1.0));
-                    let dual = Corner { a: [ax, ay], b: [bx, by], mean_area: t.mean_area };
+                    let dual = Corner { a: [ax, ay], b: [bx, by], ideal: t.ideal };
                     // Dual numbers have no derivatives of a minimum.
                     let [_, ratio] = smoothing.ratio(&dual);
                     let expected = match ratio.value < 1.0 {

@@ -362,6 +362,11 @@ impl Metric {
         self.properties().scale_invariant
     }
 
+    /// Returns whether q² has a term of size, which [`Targets::size_weight`](crate::Targets::size_weight) multiplies.
+    pub const fn has_size_weight(self) -> bool {
+        self.properties().has_size_weight
+    }
+
     /// Returns whether sweeps by this metric alone can be corrected from coarser levels; see
     /// [`Method::Multilevel`](crate::Method::Multilevel).
     pub const fn supports_multilevel(self) -> bool {
@@ -410,7 +415,7 @@ impl Metric {
         let ([ax, ay], [bx, by]) = (corner.a, corner.b);
         let a = [Dual::variable(ax, 0, -1.0), Dual::variable(ay, 1, -1.0)];
         let b = [Dual::variable(bx, 0, -1.0), Dual::variable(by, 1, -1.0)];
-        let dual = Corner { a, b, mean_area: corner.mean_area };
+        let dual = Corner { a, b, ideal: corner.ideal };
         self.model(&dual, sharpness)
     }
 
@@ -451,10 +456,11 @@ fn names() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metric::Ideal;
 
     #[test]
     fn all_metrics_evaluated_at_once_equal_each_evaluated_alone() {
-        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], mean_area: 0.8 };
+        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], ideal: Ideal::of_area(0.8) };
         let together = Metric::every_excess(&corner);
         for (&metric, excess) in Metric::ALL.iter().zip(together) {
             assert_eq!(excess, metric.excess(&corner), "{metric}");

@@ -49,7 +49,7 @@ impl<T: Real> TargetMap<T> {
     #[inline(always)]
     pub(crate) fn transform(&self, corner: &Corner<T>) -> Corner<T> {
         let (a, b) = (self.apply(corner.a), self.apply(corner.b));
-        Corner { a, b, mean_area: corner.mean_area }
+        Corner { a, b, ideal: corner.ideal }
     }
 
     /// Returns the derivatives by a vertex of the plane, S g and S H S, from the gradient g and the Hessian H by the

@@ -14,6 +14,7 @@ pub(super) const PROPERTIES: Properties = Properties {
     ideal: 0.0,
     least: 0.0,
     scale_invariant: false,
+    has_size_weight: true,
     is_inverse_mean_ratio: false,
     quadratic: false,
     eigenvalue_floor: 1e-3,

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::layout::{MeshCoordinates, Problem};
 use crate::measure::altitude;
-use crate::metric::{Corner, Dual, Own, TargetMap};
+use crate::metric::{Corner, Dual, Ideal, Own, TargetMap};
 use crate::patch::corners::Corners;
 use crate::topology::Topology;
 use crate::topology::predicates::is_positive;
@@ -47,8 +47,8 @@ impl Fan {
             map: problem.target_map(t),
         };
         let corners = self.0.iter().map(corner).collect();
-        let (mean_area, coordinates) = (problem.mean_area(), problem.coordinates());
-        FanPatch { corners, mean_area, coordinates, min_altitude }
+        let (ideal, coordinates) = (problem.ideal(), problem.coordinates());
+        FanPatch { corners, ideal, coordinates, min_altitude }
     }
 }
 
@@ -63,9 +63,9 @@ pub(crate) struct FanCorner {
 
 impl FanCorner {
     /// Returns the triangle in the plane, with the visited vertex at `at`.
-    pub(crate) fn in_plane(&self, at: DVec2, mean_area: f64) -> Corner<f64> {
+    pub(crate) fn in_plane(&self, at: DVec2, ideal: Ideal) -> Corner<f64> {
         let [a, b] = self.ends.map(|end| (end - at).to_array());
-        Corner { a, b, mean_area }
+        Corner { a, b, ideal }
     }
 }
 
@@ -73,8 +73,7 @@ impl FanCorner {
 #[derive(Clone, Debug)]
 pub(crate) struct FanPatch {
     pub(crate) corners: Vec<FanCorner>,
-    /// Mean area of the mesh's triangles, after their target maps are applied.
-    pub(crate) mean_area: f64,
+    pub(crate) ideal: Ideal,
     /// Coordinates in which altitudes are measured.
     pub(crate) coordinates: MeshCoordinates,
     /// Lower limit of triangles' altitudes, normalized; 0 for no limit.
@@ -93,7 +92,7 @@ impl Corners<f64> for FanPatch {
     }
 
     fn corner(&self, i: usize, at: [f64; 2]) -> Corner<f64> {
-        let corner = self.corners[i].in_plane(at.into(), self.mean_area);
+        let corner = self.corners[i].in_plane(at.into(), self.ideal);
         self.corners[i].map.map_or(corner, |map| map.transform(&corner))
     }
 

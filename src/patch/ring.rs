@@ -4,7 +4,7 @@ use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::{Corner, Dual, Own, TargetMap};
+use crate::metric::{Corner, Dual, Ideal, Own, TargetMap};
 use crate::patch::corners::Corners;
 use crate::patch::direction::{Direction, newton_direction};
 use crate::patch::lanes::{LANES, Lanes, Points, points, vertex_maps};
@@ -18,8 +18,7 @@ pub(crate) struct Rings<'a, S: Simd, const MAPPED: bool> {
     maps: &'a [TargetMap<Lanes<S>>],
     /// Inverse of the target map or local map of each visited vertex; `None` if not `MAPPED`.
     inverse_map: Option<TargetMap<Lanes<S>>>,
-    /// Mean area of the mesh's triangles, after their target maps are applied.
-    mean_area: f64,
+    ideal: Ideal,
 }
 
 /// Memory for [`Rings`], reused by one visit after another.
@@ -72,7 +71,7 @@ impl<'a, S: Simd, const MAPPED: bool> Rings<'a, S, MAPPED> {
             let own = vertex_maps(simd, problem.maps(), vertices);
             inverse_map = Some(TargetMap(own).inverse());
         }
-        Self { ring, maps, inverse_map, mean_area: problem.mean_area() }
+        Self { ring, maps, inverse_map, ideal: problem.ideal() }
     }
 
     /// Returns the inverse of the target map or local map of each visited vertex, `None` if not `MAPPED`.
@@ -107,7 +106,7 @@ impl<S: Simd, const MAPPED: bool> Corners<Lanes<S>> for Rings<'_, S, MAPPED> {
     fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
         let (p, q) = (self.ring[i], self.ring[i + 1]);
         let (a, b) = ([p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]);
-        let corner = Corner { a, b, mean_area: self.mean_area };
+        let corner = Corner { a, b, ideal: self.ideal };
         if MAPPED { self.maps[i].transform(&corner) } else { corner }
     }
 

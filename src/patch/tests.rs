@@ -14,7 +14,7 @@ use super::{
 };
 use crate::layout::{Problem, prepare};
 use crate::mesh::Mesh;
-use crate::metric::{Corner, Dual, Given, Metric, Smoothing};
+use crate::metric::{Corner, Dual, Given, Ideal, Metric, Smoothing};
 
 /// Returns a hexagon of six triangles around one free vertex.
 fn hexagon() -> Problem {
@@ -34,8 +34,8 @@ fn fan(problem: &Problem) -> FanPatch {
         map: problem.target_map(&[0, p, q]),
     };
     let corners = ring.iter().zip(next).map(corner).collect();
-    let (mean_area, coordinates) = (problem.mean_area(), problem.coordinates());
-    FanPatch { corners, mean_area, coordinates, min_altitude: 0.0 }
+    let (ideal, coordinates) = (problem.ideal(), problem.coordinates());
+    FanPatch { corners, ideal, coordinates, min_altitude: 0.0 }
 }
 
 /// Returns positions of the vertex: well inside the hexagon, and so near an edge that first trials are lengthened.
@@ -110,7 +110,8 @@ fn a_step_inverts_no_triangle_and_leaves_none_above_the_guard_and_the_worst_befo
 
 #[test]
 fn a_triangle_is_kept_if_it_is_positive_and_within_the_guard_or_no_worse_than_before() {
-    let corner = |height: f64| Corner { a: [1.0, 0.0], b: [0.5, height], mean_area: 0.5 };
+    let corner =
+        |height: f64| Corner { a: [1.0, 0.0], b: [0.5, height], ideal: Ideal::of_area(0.5) };
     let kept = |before: f64, now: f64, guard: f64| is_kept(&corner(before), &corner(now), guard);
     assert!(kept(0.1, 0.8, 2.0) && kept(0.1, 0.2, 2.0) && kept(0.8, 0.1, f64::INFINITY));
     assert!(!kept(0.8, 0.1, 2.0) && !kept(0.8, -0.8, f64::INFINITY));
@@ -141,7 +142,7 @@ impl Corners<f64> for Quadrilaterals {
         let at = DVec2::from(at);
         let [p, q, r] = [[at, first, last], [first, across, at], [last, at, across]][i % 3];
         let [x, y] = [0, 1].map(|axis| from_right_angle([q[axis] - p[axis], r[axis] - p[axis]]));
-        Corner { a: [x[0], y[0]], b: [x[1], y[1]], mean_area: 0.5 * 0.75f64.sqrt() }
+        Corner { a: [x[0], y[0]], b: [x[1], y[1]], ideal: Ideal::of_area(0.5 * 0.75f64.sqrt()) }
     }
 
     fn slopes(&self, i: usize) -> Given {

@@ -11,7 +11,7 @@ use glam::DVec2;
 
 use crate::error::GpuError;
 use crate::layout::Problem;
-use crate::metric::Corner;
+use crate::metric::{Corner, Ideal};
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
 use crate::run::engine::Engine;
@@ -58,7 +58,7 @@ pub(crate) enum Obstacle {
 pub(crate) async fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle {
     let of = |t: &[u32; 3]| {
         let [p, q, r] = t.map(|v| positions[v as usize]);
-        let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
+        let corner = Corner { a: (q - p).into(), b: (r - p).into(), ideal: Ideal::of_area(1.0) };
         let rounding = PAIR_ROUNDING * p.abs().max_element();
         let (a, b) = ((q - p).length(), (r - p).length());
         // A height of a triangle is twice its area divided by an edge. The longer of two edges is never the shortest of

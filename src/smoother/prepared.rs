@@ -155,11 +155,11 @@ impl<'a> Smoother<'a> {
     pub fn set_targets(&mut self, targets: &Targets) -> Result<(), MeshError> {
         targets.check_count(self.mesh.points.len())?;
         let converted = self.problem.converted(targets, &self.mesh.points);
-        self.problem.set_targets(converted.maps());
+        self.problem.set_targets(&converted);
         self.field = None;
         if let Some(opened) = &mut self.opened {
             let converted = opened.problem.converted(targets, &self.mesh.points);
-            opened.problem.set_targets(converted.maps());
+            opened.problem.set_targets(&converted);
             opened.field = None;
         }
         Ok(())

@@ -7,7 +7,7 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
-use crate::metric::{Corner, Metric};
+use crate::metric::{Corner, Ideal, Metric};
 use crate::options::{Feature, Goal, Options};
 use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
 use crate::parallel::paced;
@@ -107,7 +107,9 @@ impl Smoother<'_> {
         let of_slide = self.slide.as_ref().map(Slide::words);
         let of_field = self.field.as_ref().map(TargetField::words);
         let of_projection = self.problem.is_projected().then(|| vec![1]);
-        let words = of_slide.into_iter().chain(of_field).chain(of_projection);
+        let size_weight = self.problem.ideal().size_weight;
+        let of_sizes = (size_weight != 1.0).then(|| vec![size_weight.to_bits()]);
+        let words = of_slide.into_iter().chain(of_field).chain(of_projection).chain(of_sizes);
         let more: Vec<u64> = words.flatten().collect();
         resume::about(&self.mesh, self.problem.targets(), &more, options).await
     }
@@ -305,7 +307,8 @@ impl Smoother<'_> {
         let images = self.problem.images(points);
         let square = |points: &[[f64; 2]], t: &[u32; 3], lengths: [f64; 2]| {
             let [p, q, r] = t.map(|v| DVec2::from(points[v as usize]) * DVec2::from(lengths));
-            let corner = Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 };
+            let corner =
+                Corner { a: (q - p).into(), b: (r - p).into(), ideal: Ideal::of_area(1.0) };
             corner.inverse_mean_ratio().powi(2)
         };
         let squares = |_, triangles: &[[u32; 3]]| {

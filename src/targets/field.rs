@@ -28,6 +28,7 @@ pub struct TargetField {
     background: Background,
     /// Logarithm of the target map at each vertex of the background.
     logarithms: Vec<Tensor>,
+    size_weight: f64,
     /// Surface on which targets are lengths; [`Surface::Plane`] if targets are in coordinates.
     surface: Surface,
 }
@@ -54,7 +55,8 @@ impl TargetField {
         targets.check_count(mesh.points.len())?;
         let maps = targets.maps();
         let logarithms = collect(maps.len(), |v| maps[v].ln());
-        Ok(Self { background: Background::new(mesh)?, logarithms, surface: Surface::Plane })
+        let (background, size_weight) = (Background::new(mesh)?, targets.size_weight());
+        Ok(Self { background, logarithms, size_weight, surface: Surface::Plane })
     }
 
     /// Converts the field to coordinates on a surface: lengths on the surface become lengths in its coordinates at each
@@ -106,7 +108,7 @@ impl TargetField {
 
     /// Returns all data as words, from whose hash a checkpoint recognizes the field of its run.
     pub(crate) fn words(&self) -> Vec<u64> {
-        let Self { background, logarithms, surface } = self;
+        let Self { background, logarithms, surface, .. } = self;
         let mut words = background.words();
         words.extend(logarithms.iter().flat_map(|tensor| &tensor.0).map(|x| x.to_bits()));
         words.push((*surface == Surface::Plane).into());
@@ -141,6 +143,6 @@ impl TargetField {
             count: all.count + 1,
             most: all.most.max(outside),
         });
-        Ok((Targets::of_maps(maps), outside))
+        Ok((Targets { maps, size_weight: self.size_weight }, outside))
     }
 }

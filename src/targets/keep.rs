@@ -31,6 +31,19 @@ pub(super) fn sizes(
     collect(points.len(), |v| at[v].plus(rest[v]).exp())
 }
 
+/// Stretching up to which sizes have the weight 1.
+const UNWEIGHTED: f64 = 2.5;
+
+/// Returns the weight of sizes for targets that keep the sizes of a mesh. `stretching` is that of
+/// [`Adaptation`](super::Adaptation).
+///
+/// The term of shapes, μ₂ = |T|² / 2τ - 1, of a triangle stretched s-fold is (s + 1/s) / 2 - 1, nearly linear in s. The
+/// term of sizes does not depend on s. So a weight that is linear in s keeps the balance of the terms, and the change of
+/// sizes, from a mesh stretched 3-fold to a mesh stretched 1,000-fold.
+pub(super) fn size_weight(stretching: f64) -> f64 {
+    1.0 + 0.5 * (stretching - UNWEIGHTED).max(0.0)
+}
+
 /// Returns the maps under which the triangles of the mesh are equilateral and of equal size.
 pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
     let of = |t: usize| shape_logarithm(&triangles[t], points, [1.0; 2]);

@@ -25,12 +25,13 @@ pub(crate) use tensor::Tensor;
 pub struct Targets {
     /// √M at each vertex.
     maps: Vec<Tensor>,
+    size_weight: f64,
 }
 
 impl Targets {
     /// Makes targets for equilateral elements of equal size, for a mesh with `vertices` vertices.
     pub fn equilateral(vertices: usize) -> Self {
-        Self { maps: vec![Tensor::isotropic(1.0); vertices] }
+        Self::of_maps(vec![Tensor::isotropic(1.0); vertices])
     }
 
     /// Makes targets for equilateral elements with the given edge lengths, one length per vertex, in any unit.
@@ -45,7 +46,7 @@ impl Targets {
                 false => Err(MeshError::Target { vertex: v, problem: "its size is not positive" }),
             }
         };
-        Ok(Self { maps: lengths.iter().enumerate().map(map).collect::<Result<_, _>>()? })
+        lengths.iter().enumerate().map(map).collect::<Result<_, _>>().map(Self::of_maps)
     }
 
     /// Makes targets for elements that are equilateral under the given tensors, one per vertex, as xx, xy, yy. Such a
@@ -64,13 +65,17 @@ impl Targets {
                 }
             }
         };
-        Ok(Self { maps: tensors.iter().enumerate().map(map).collect::<Result<_, _>>()? })
+        tensors.iter().enumerate().map(map).collect::<Result<_, _>>().map(Self::of_maps)
     }
 
     /// Makes targets for equilateral elements with the sizes of the mesh's triangles on a surface, averaged over
     /// `rings` rings of neighbors. With 0 rings, the size at a vertex depends on the triangles within two edges of the
-    /// vertex. The metric should weigh sizes: [`Metric::Tmop94`](crate::Metric::Tmop94) keeps the sizes of graded meshes
-    /// within a factor of 1.3.
+    /// vertex. The metric should weigh sizes: with [`Metric::Tmop94`](crate::Metric::Tmop94), 19 of 20 free
+    /// vertices keep their size within a factor of 1.3.
+    ///
+    /// On stretched meshes, equilateral triangles do not fit between the vertices of the boundary, and sizes give way to
+    /// shapes. Therefore [`Self::size_weight`] grows with the [stretching](Adaptation::stretching) s of the mesh: it is 1
+    /// up to s = 2.5, and 1 + (s - 2.5) / 2 beyond.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -80,8 +85,9 @@ impl Targets {
         surface: Surface,
         rings: u32,
     ) -> Result<Self, MeshError> {
-        topology.check_count(points)?;
-        Ok(Self { maps: keep::sizes(topology.triangles(), points, surface, rings) })
+        let stretching = Adaptation::of(topology, points, surface)?.stretching;
+        let maps = keep::sizes(topology.triangles(), points, surface, rings);
+        Ok(Self { maps, size_weight: keep::size_weight(stretching) })
     }
 
     /// Makes targets for elements with the size, stretching and orientation of the mesh's triangles, averaged over
@@ -96,7 +102,7 @@ impl Targets {
         rings: u32,
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
-        Ok(Self { maps: keep::shapes(topology.triangles(), points, rings) })
+        Ok(Self::of_maps(keep::shapes(topology.triangles(), points, rings)))
     }
 
     /// Returns the free vertices of the first layer at the boundary, ascending: the vertices opposite boundary edges. Runs
@@ -154,7 +160,14 @@ impl Targets {
             let [first, second] = surface.lengths(y);
             map.squared().stretched([1.0, first / second]).sqrt()
         };
-        Self { maps: self.maps.iter().zip(points).map(map).collect() }
+        Self { maps: self.maps.iter().zip(points).map(map).collect(), ..*self }
+    }
+
+    /// Returns the factor by which runs multiply the term of size of the metrics SOFT-SIZE, TMOP-80 and TMOP-94; see
+    /// [`Metric::has_size_weight`](crate::Metric::has_size_weight). 1 for all targets but those of [`Self::keep_size`] on
+    /// stretched meshes.
+    pub fn size_weight(&self) -> f64 {
+        self.size_weight
     }
 
     /// Fails with [`MeshError::ValueCount`] unless there is a target for each of the `vertices` vertices.
@@ -166,8 +179,8 @@ impl Targets {
     }
 
     /// Makes targets from √M at each vertex.
-    pub(crate) fn of_maps(maps: Vec<Tensor>) -> Self {
-        Self { maps }
+    fn of_maps(maps: Vec<Tensor>) -> Self {
+        Self { maps, size_weight: 1.0 }
     }
 
     /// Returns √M at each vertex, as xx, xy, yy.

@@ -1,7 +1,7 @@
 //! Moves vertices toward new positions, as far as no triangle inverts or exceeds a bound on its inverse mean ratio.
 
 use crate::error::MeshError;
-use crate::metric::Corner;
+use crate::metric::{Corner, Ideal};
 use crate::topology::Topology;
 use crate::topology::predicates;
 
@@ -184,5 +184,5 @@ fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
 /// Returns the inverse mean ratio of a triangle that is neither inverted nor flat.
 fn imr(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
     let [p, q, r] = corners.map(|v| points[v as usize]);
-    Corner { a: minus(q, p), b: minus(r, p), mean_area: 1.0 }.inverse_mean_ratio()
+    Corner { a: minus(q, p), b: minus(r, p), ideal: Ideal::of_area(1.0) }.inverse_mean_ratio()
 }

@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::error::MeshError;
 use crate::layout::{MeshCoordinates, Problem};
 use crate::measure::altitude;
-use crate::metric::Corner;
+use crate::metric::{Corner, Ideal};
 use crate::patch::is_kept;
 use crate::run::Stop;
 use crate::run::records::{Reader, Writer};
@@ -123,7 +123,7 @@ pub(crate) fn restore(
     let triangles = topology.triangles();
     let corner = |t: &[u32; 3], at: &[DVec2]| {
         let [p, q, r] = t.map(|v| at[v as usize]);
-        Corner { a: (q - p).into(), b: (r - p).into(), mean_area: 1.0 }
+        Corner { a: (q - p).into(), b: (r - p).into(), ideal: Ideal::of_area(1.0) }
     };
     let (floor, coordinates) =
         (least(triangles, |v| old[v as usize]), MeshCoordinates::OF_POSITIONS);

@@ -35,7 +35,7 @@ pub(crate) fn set_targets_of(
     let points = problem.denormalize(mesh, positions);
     let (targets, _) = field.at(&points)?;
     let converted = problem.converted(&targets, &points);
-    problem.set_targets_at(converted.maps(), positions);
+    problem.set_targets_at(&converted, positions);
     Ok(())
 }
 

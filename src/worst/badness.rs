@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::layout::{MeshCoordinates, Problem};
-use crate::metric::{Corner, Dual, Real};
+use crate::metric::{Corner, Dual, Ideal, Real};
 use crate::options::WorstBy;
 use crate::patch::{FanCorner, FanPatch};
 use crate::topology::predicates::is_positive;
@@ -46,14 +46,14 @@ impl Badness {
         self,
         triangle: &FanCorner,
         at: DVec2,
-        mean_area: f64,
+        ideal: Ideal,
         coordinates: MeshCoordinates,
     ) -> Corner<f64> {
         if !self.is_of_targets() {
             let ends = triangle.ends.map(|end| coordinates.at(end));
-            return FanCorner { ends, map: None }.in_plane(coordinates.at(at), mean_area);
+            return FanCorner { ends, map: None }.in_plane(coordinates.at(at), ideal);
         }
-        let corner = triangle.in_plane(at, mean_area);
+        let corner = triangle.in_plane(at, ideal);
         triangle.map.map_or(corner, |map| map.transform(&corner))
     }
 
@@ -69,7 +69,7 @@ impl Badness {
     /// Returns the badness of the worst triangle of a patch, with the visited vertex at `at`.
     pub(crate) fn worst_of(self, patch: &FanPatch, at: DVec2) -> f64 {
         let of = |triangle: &FanCorner| {
-            self.of(&self.seen(triangle, at, patch.mean_area, patch.coordinates))
+            self.of(&self.seen(triangle, at, patch.ideal, patch.coordinates))
         };
         patch.corners.iter().map(of).fold(0.0, f64::max)
     }
@@ -91,7 +91,7 @@ impl Badness {
     ) -> Dual<f64> {
         let vertex = |edge: [f64; 2]| [0, 1].map(|axis| Dual::variable(edge[axis], axis, -1.0));
         let (a, b) = (vertex(corner.a), vertex(corner.b));
-        let (terms, count) = self.terms(&Corner { a, b, mean_area: corner.mean_area });
+        let (terms, count) = self.terms(&Corner { a, b, ideal: corner.ideal });
         let k = 2f64.powi(doublings as i32);
         terms[..count].iter().fold(Dual::default(), |sum, term| {
             let value = power(term.value / unit, doublings);

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec2;
 
 use crate::layout::{MeshCoordinates, Problem};
-use crate::metric::{Dual, Smoothing, TargetMap};
+use crate::metric::{Dual, Ideal, Smoothing, TargetMap};
 use crate::parallel::pace::pause;
 use crate::patch::{
     Circle, FanCorner, FanPatch, MetricObjective, Objective, SearchRule, is_acceptable, step_alone,
@@ -51,7 +51,7 @@ pub(crate) struct Region<'a> {
     stars: Vec<Vec<PatchTriangle>>,
     /// For each moving vertex, the circle that limits its coordinates of the mesh.
     bounds: Vec<Circle>,
-    mean_area: f64,
+    ideal: Ideal,
     coordinates: MeshCoordinates,
 }
 
@@ -85,8 +85,8 @@ impl<'a> Region<'a> {
             Circle { center: coordinates.at(problem.positions()[v as usize]), radius }
         };
         let bounds = vertices.iter().map(bound).collect();
-        let mean_area = problem.mean_area();
-        Self { rules, vertices, positions: places, stars, bounds, mean_area, coordinates }
+        let ideal = problem.ideal();
+        Self { rules, vertices, positions: places, stars, bounds, ideal, coordinates }
     }
 
     /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
@@ -135,8 +135,8 @@ impl<'a> Region<'a> {
             map: side.map,
         };
         let corners = self.stars[v].iter().map(corner).collect();
-        let Self { mean_area, coordinates, rules, .. } = *self;
-        FanPatch { corners, mean_area, coordinates, min_altitude: rules.floor }
+        let Self { ideal, coordinates, rules, .. } = *self;
+        FanPatch { corners, ideal, coordinates, min_altitude: rules.floor }
     }
 
     /// Returns the badness of the worst triangle of the region.
@@ -200,7 +200,7 @@ impl Objective<f64> for PowerObjective<'_> {
         let Self { patch, badness, unit, doublings } = *self;
         patch.corners.iter().fold(Dual::default(), |sum, triangle| {
             let coordinates = patch.coordinates;
-            let seen = badness.seen(triangle, at.into(), patch.mean_area, coordinates);
+            let seen = badness.seen(triangle, at.into(), patch.ideal, coordinates);
             let transformed = badness.power_derivatives(&seen, unit, doublings);
             sum + match triangle.map {
                 Some(map) if badness.is_of_targets() => map.pull_back(transformed),
@@ -213,7 +213,7 @@ impl Objective<f64> for PowerObjective<'_> {
     fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
         let Self { patch, badness, unit, doublings } = *self;
         let power = |triangle: &FanCorner| {
-            let seen = badness.seen(triangle, to.into(), patch.mean_area, patch.coordinates);
+            let seen = badness.seen(triangle, to.into(), patch.ideal, patch.coordinates);
             badness.power(&seen, unit, doublings)
         };
         (patch.corners.iter().map(power).sum(), true)

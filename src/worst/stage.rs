@@ -72,7 +72,7 @@ async fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f6
         let t = problem.triangles()[t];
         let [p, q, r] = t.map(|v| positions[v as usize]);
         let triangle = FanCorner { ends: [q, r], map: problem.target_map(&t) };
-        badness.of(&badness.seen(&triangle, p, problem.mean_area(), problem.coordinates()))
+        badness.of(&badness.seen(&triangle, p, problem.ideal(), problem.coordinates()))
     })
     .await
 }

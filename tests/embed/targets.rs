@@ -2,9 +2,10 @@
 
 use gpu_smooth::{
     Backend, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother,
-    Stopping, Targets,
+    Stopping, Targets, Topology,
     gpu::{DeviceMesh, Sweeps},
     options::{Derivatives, Feature, Paper},
+    targets::Surface,
 };
 
 use crate::app::{App, bad_plate};
@@ -19,8 +20,20 @@ fn growing(mesh: &Mesh) -> Targets {
 
 #[test]
 fn encoded_sweeps_to_targets_are_those_of_a_run() {
-    let (app, mesh) = (App::new(), bad_plate(800));
-    let targets = growing(&mesh);
+    let plate = bad_plate(800);
+    let growing = growing(&plate);
+    let points = plate.points.iter().map(|[x, y]| [8.0 * x, *y]).collect();
+    let stretched = Mesh { points, ..plate.clone() };
+    let topology = Topology::new(&stretched).unwrap();
+    let kept = Targets::keep_size(&topology, &stretched.points, Surface::Plane, 0).unwrap();
+    assert!(kept.size_weight() > 2.0, "{}", kept.size_weight());
+    for (mesh, targets) in [(&plate, growing), (&stretched, kept)] {
+        assert_encoded_as_run(mesh, &targets);
+    }
+}
+
+fn assert_encoded_as_run(mesh: &Mesh, targets: &Targets) {
+    let app = App::new();
     let options = Options {
         scheme: Metric::SoftSize.into(),
         method: Method::RELAXED,
@@ -28,13 +41,13 @@ fn encoded_sweeps_to_targets_are_those_of_a_run() {
         stopping: Stopping::Tolerance(0.0),
         ..Options::default()
     };
-    let mut smoother = Smoother::new(&mesh).unwrap();
-    smoother.set_targets(&targets).unwrap();
+    let mut smoother = Smoother::new(mesh).unwrap();
+    smoother.set_targets(targets).unwrap();
     let backend = Backend::Gpu(app.another_gpu());
     let run = smoother.run(&options).on(&backend).block().unwrap();
     assert_eq!(run.best_sweep, 9);
 
-    let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
+    let device_mesh = DeviceMesh::with_targets(&app.gpu, mesh, targets).unwrap();
     let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 9));
     let found = app.points(&device_mesh);
@@ -49,7 +62,7 @@ fn encoded_sweeps_to_targets_are_those_of_a_run() {
     assert!((f / expected - 1.0).abs() < 1e-5, "{f} {expected}");
 
     // Without targets, equal sweeps lead to other positions.
-    let plain = DeviceMesh::new(&app.gpu, &mesh).unwrap();
+    let plain = DeviceMesh::new(&app.gpu, mesh).unwrap();
     let mut sweeps = Sweeps::new(&plain, &options).unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 9));
     assert_ne!(app.points(&plain), found);

@@ -108,8 +108,9 @@ fn compare(metric: Metric, mut check: impl FnMut(Dual, Dual, f64)) {
         let t = scaled(&t, 10f64.powf(rng.range(-3.0, 3.0)));
         let sharpness = if !metric.is_smooth() { i % 11 } else { 0 };
         // For large triangles, some metrics are nearly linear in the area, so second derivatives cancel.
-        let tau = t.doubled_area() / (2.0 * t.mean_area);
-        let size = if is_linear_in_size(metric) { tau.max(1.0) } else { 1.0 };
+        let tau = t.doubled_area() / (2.0 * t.ideal.area);
+        let weight = t.ideal.size_weight.max(1.0);
+        let size = if is_linear_in_size(metric) { tau.max(1.0) * weight } else { 1.0 };
         let rounding = 64.0 * f64::EPSILON * imr(&t) * 2f64.powi(sharpness as i32) * size;
         check(metric.expansion(&t, sharpness), metric.derivatives(&t, sharpness), rounding);
     }

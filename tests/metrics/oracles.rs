@@ -2,19 +2,24 @@
 //! without an oracle does not compile.
 
 use crate::triangles::lengths;
-use gpu_smooth::{Metric, metric::Corner};
+use gpu_smooth::{
+    Metric,
+    metric::{Corner, Ideal},
+};
 
 /// Binary logarithm of the exponent of EDGE's p-norm.
 pub(crate) const SHARPNESS: u32 = 4;
 
-/// Returns q by the simplest formula in the lengths and the area of a triangle, and in the mean area of the mesh.
-pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, mean_area: f64) -> f64 {
+/// Returns q by the simplest formula in the lengths and the area of a triangle, and in the ideal of the mesh.
+pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, ideal: Ideal) -> f64 {
+    let Ideal { area: mean_area, size_weight } = ideal;
     let squares = a * a + b * b + c * c;
     // For T = A W⁻¹, with W the equilateral triangle of mean area: |T|² and τ = det T.
     let (norm, det) = (squares / (12f64.sqrt() * mean_area), area / mean_area);
     // μ₂ = |T|² / 2τ - 1, μ₅₆ = (τ + 1/τ) / 2 - 1 and μ₇₇ = (τ - 1/τ)² / 2.
     let shape = norm / (2.0 * det) - 1.0;
     let (linear, square) = (0.5 * (det + 1.0 / det) - 1.0, (det - 1.0 / det).powi(2) / 2.0);
+    let (linear, square) = (size_weight * linear, size_weight * square);
     let root = |square: f64| square.max(0.0).sqrt();
     match metric {
         Metric::Edge => a.max(b).max(c) / a.min(b).min(c),
@@ -74,16 +79,19 @@ pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
             ["3.0 * e * inverse + 1.0", "3.0 * e * inverse + 1.01"],
         ],
         Metric::Tmop80 => [
-            ["size * (square + 1.0) - e * square", "size * (square + 1.0) + e * square"],
+            [
+                "weight * size * (square + 1.0) - e * square",
+                "weight * size * (square + 1.0) + e * square",
+            ],
             ["3.0 * square * square", "3.01 * square * square"],
         ],
         Metric::Tmop94 => [
             ["(weight * off * (t.area", "(1.01 * weight * off * (t.area"],
-            ["2.0 * (e + weight)", "2.0 * (e + 1.01 * weight)"],
+            ["2.0 * (e + weight", "2.0 * (e + 1.01 * weight"],
         ],
         Metric::SoftSize => [
-            ["scale + 1.0) - e)", "scale + 1.0) + e)"],
-            ["2.0 * (e + weight)", "2.0 * (1.01 * e + weight)"],
+            ["t.size_weight - e)", "t.size_weight + e)"],
+            ["2.0 * (e + weight", "2.0 * (1.01 * e + weight"],
         ],
         _ => panic!("{metric}: add two mistakes that a test must notice in its WGSL"),
     }
@@ -113,13 +121,13 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
             }
         }
         Metric::Area => {
-            let (q, per_length) = (1.0 + a * b / t.mean_area, c / t.mean_area);
+            let (q, per_length) = (1.0 + a * b / t.ideal.area, c / t.ideal.area);
             let sizes = [q * q, q * per_length, per_length * per_length];
             Scales { sizes, conditions: [1.0; 3] }
         }
         Metric::Rms => {
             let squares = a * a + b * b + c * c;
-            let sizes = [1.0 + squares / t.mean_area, (a + b) / t.mean_area, 1.0 / t.mean_area];
+            let sizes = [1.0 + squares / t.ideal.area, (a + b) / t.ideal.area, 1.0 / t.ideal.area];
             Scales { sizes, conditions: [1.0; 3] }
         }
         Metric::Imr | Metric::Ar => {
@@ -132,7 +140,7 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
             }
         }
         Metric::ShapeSize => {
-            let mean = 2.0 * t.mean_area;
+            let mean = 2.0 * t.ideal.area;
             let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
             // Derivatives by the squared norm and by the determinant, followed by second derivatives.
             let (by_norm, by_det) =
@@ -147,16 +155,18 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
             }
         }
         Metric::Tmop80 | Metric::Tmop94 | Metric::SoftSize => {
-            let mean = 2.0 * t.mean_area;
+            let mean = 2.0 * t.ideal.area;
             let (tau, norm) = (doubled / mean, (a * a + b * b + c * c) / mean);
             // Derivatives by the squared norm and by the determinant, for both parts of the metric, followed by second
             // derivatives.
-            let (by_norm, by_det) = (1.0 / tau, norm / (tau * tau) + tau + 1.0 / tau.powi(3));
+            let weight = t.ideal.size_weight;
+            let (by_norm, by_det) =
+                (1.0 / tau, norm / (tau * tau) + weight * (tau + 1.0 / tau.powi(3)));
             let (of_norm, of_det) = ((a + b) / mean, (a + b + c) / mean);
-            let second = norm / tau.powi(3) + 1.0 + 3.0 / tau.powi(4);
+            let second = norm / tau.powi(3) + weight * (1.0 + 3.0 / tau.powi(4));
             let bend =
                 by_norm * 2.0 / mean + of_norm * of_det / (tau * tau) + second * of_det * of_det;
-            let value = norm / tau + tau * tau + 1.0 / (tau * tau);
+            let value = norm / tau + weight * (tau * tau + 1.0 / (tau * tau));
             Scales {
                 sizes: [value, by_norm * of_norm + by_det * of_det, bend],
                 conditions: [1.0 + a * b / doubled; 3],

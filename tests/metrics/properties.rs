@@ -2,7 +2,10 @@
 
 use crate::oracles;
 use crate::triangles::*;
-use gpu_smooth::{Metric, metric::Corner};
+use gpu_smooth::{
+    Metric,
+    metric::{Corner, Ideal},
+};
 use support::SplitMix64;
 
 const COUNT: usize = 500;
@@ -50,7 +53,7 @@ fn the_equilateral_triangle_of_mean_area_is_ideal() {
 #[test]
 fn no_triangle_of_mean_area_is_better_than_ideal() {
     all_random(|metric, t| {
-        let t = Corner { mean_area: 0.5 * t.doubled_area(), ..*t };
+        let t = Corner { ideal: Ideal { area: 0.5 * t.doubled_area(), ..t.ideal }, ..*t };
         let least = metric.properties().ideal;
         assert!(metric.quality(&t) >= least - rounding(&t), "{metric}: {t:?}");
         if metric != Metric::Area && imr(&t) > 1.01 {
@@ -62,7 +65,7 @@ fn no_triangle_of_mean_area_is_better_than_ideal() {
 #[test]
 fn quality_is_that_of_the_formula_in_lengths_and_area() {
     all_random(|metric, t| {
-        let wanted = oracles::quality(metric, lengths(t), heron(t), t.mean_area);
+        let wanted = oracles::quality(metric, lengths(t), heron(t), t.ideal);
         let got = metric.quality(t);
         // The error of Heron's area: rounding of the lengths, amplified by the shape.
         assert!(close(got, wanted, 4.0 * rounding(t)), "{metric}: {got} for {wanted}, {t:?}");
@@ -101,6 +104,15 @@ fn quality_does_not_depend_on_the_corner_or_a_rotation() {
 }
 
 #[test]
+fn the_size_weight_changes_the_metrics_of_which_the_table_says_so() {
+    all_random(|metric, t| {
+        let ideal = Ideal { size_weight: 2.0 * t.ideal.size_weight, ..t.ideal };
+        let is_equal = metric.excess(&Corner { ideal, ..*t }) == metric.excess(t);
+        assert_eq!(is_equal, !metric.has_size_weight(), "{metric}: {t:?}");
+    });
+}
+
+#[test]
 fn metrics_depend_on_size_as_the_table_says() {
     all_random(|metric, t| {
         let q = metric.quality(t);
@@ -109,7 +121,8 @@ fn metrics_depend_on_size_as_the_table_says() {
             let alike = close(metric.quality(&larger), q, rounding(t));
             assert_eq!(alike, metric.properties().scale_invariant, "{metric} times {factor}");
             // A change of the unit of length changes nothing, because the mean area has that unit.
-            let same = Corner { mean_area: t.mean_area * factor * factor, ..larger };
+            let ideal = Ideal { area: t.ideal.area * factor * factor, ..t.ideal };
+            let same = Corner { ideal, ..larger };
             assert!(close(metric.quality(&same), q, rounding(t)), "{metric} in units of {factor}");
         }
     });

@@ -4,14 +4,20 @@
 use crate::device::{Device, probe};
 use crate::oracles::{SHARPNESS, Scales, mistakes, scales};
 use crate::triangles::*;
-use gpu_smooth::{Metric, gpu::Kernel, internal::Dual, metric::Corner, options::Derivatives};
+use gpu_smooth::{
+    Metric,
+    gpu::Kernel,
+    internal::Dual,
+    metric::{Corner, Ideal},
+    options::Derivatives,
+};
 use support::SplitMix64;
 
 /// Half a unit in the last place of a float close to 1.
 const ULP: f64 = 1.0 / 16_777_216.0;
 
-/// Input of an invocation: the triangle, its mean area, and the width of differences.
-type Row = [f32; 6];
+/// Input of an invocation: the triangle, its ideal (the mean area and the size weight), and the width of differences.
+type Row = [f32; 7];
 
 /// Output of an invocation, in the order of the fields.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -33,13 +39,13 @@ fn wgsl(metric: Metric, derivatives: Derivatives) -> String {
     };
     let body = format!(
         "    sharpness = {SHARPNESS}u;
-    let t = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), vec2(x[4], 0.0));
-    let d = metric_derivatives(t, x[5]);
+    let t = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), Ideal(vec2(x[4], 0.0), x[5]));
+    let d = metric_derivatives(t, x[6]);
     let down = descent(d.gradient, d.hessian);
     y = array<f32, 12>(d.value, d.gradient.x, d.gradient.y, d.hessian.x, d.hessian.y, d.hessian.z,
         metric_model(t), {excess}, down.x, down.y, down.z, inverse_mean_ratio(t));"
     );
-    Kernel::Sweep(metric, derivatives).wgsl() + &probe(6, 12, &body)
+    Kernel::Sweep(metric, derivatives).wgsl() + &probe(7, 12, &body)
 }
 
 /// Returns ordinary, tiny, huge, nearly flat and needle-like triangles, and triangles with equal edges.
@@ -64,9 +70,9 @@ fn rows() -> Vec<Row> {
         let size = [1.0, 1e-6, 1e6][i / 3 % 3];
         let row = [t.a[0], t.a[1], t.b[0], t.b[1]].map(|x| (x * size) as f32);
         let [ax, ay, bx, by] = row;
-        let mean_area = (t.mean_area * size * size) as f32;
+        let mean_area = (t.ideal.area * size * size) as f32;
         let width = 1e-2 * height(&t) * size;
-        [ax, ay, bx, by, mean_area, width as f32]
+        [ax, ay, bx, by, mean_area, t.ideal.size_weight as f32, width as f32]
     };
     let mut rows: Vec<Row> = all.into_iter().enumerate().map(of).collect();
     // Rounding may have flattened the flattest triangles further.
@@ -80,8 +86,8 @@ fn rows() -> Vec<Row> {
 
 /// Returns the triangle as rounded for the device.
 fn triangle(row: &Row) -> Corner<f64> {
-    let [ax, ay, bx, by, mean_area, _] = row.map(f64::from);
-    Corner { a: [ax, ay], b: [bx, by], mean_area }
+    let [ax, ay, bx, by, area, size_weight, _] = row.map(f64::from);
+    Corner { a: [ax, ay], b: [bx, by], ideal: Ideal { area, size_weight } }
 }
 
 fn parts(d: &Dual) -> [&[f64]; 3] {
@@ -173,7 +179,7 @@ fn forward(metric: Metric, t: &Corner<f64>, h: f64) -> Dual {
 fn difference_errors(metric: Metric, rows: &[Row], found: &[Found]) -> [f64; 3] {
     let mut worst = [0f64; 3];
     for (row, found) in rows.iter().zip(found) {
-        let (t, h) = (triangle(row), f64::from(row[5]));
+        let (t, h) = (triangle(row), f64::from(row[6]));
         let Scales { sizes, conditions } = scales(metric, &t);
         // A moved edge is rounded too, by its length relative to the shortest relevant edge.
         let [a, b, c] = lengths(&t);

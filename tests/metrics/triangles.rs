@@ -1,6 +1,6 @@
 //! Triangles for tests of the metrics.
 
-use gpu_smooth::metric::Corner;
+use gpu_smooth::metric::{Corner, Ideal};
 use support::SplitMix64;
 
 pub(crate) type Vec2 = [f64; 2];
@@ -13,9 +13,9 @@ pub(crate) fn length(u: Vec2) -> f64 {
     u[0].hypot(u[1])
 }
 
-/// Makes a triangle seen from its first vertex, in a mesh with the given mean area.
+/// Makes a triangle seen from its first vertex, in a mesh with the given mean area and a size weight of 1.
 pub(crate) fn corner([p, q, r]: [Vec2; 3], mean_area: f64) -> Corner<f64> {
-    Corner { a: sub(q, p), b: sub(r, p), mean_area }
+    Corner { a: sub(q, p), b: sub(r, p), ideal: Ideal::of_area(mean_area) }
 }
 
 /// Returns the triangle with its vertex moved by `d`.
@@ -59,13 +59,21 @@ pub(crate) fn equilateral() -> Corner<f64> {
     corner([[0.0, 0.0], [edge, 0.0], [0.5 * edge, 3f64.sqrt() / 2.0 * edge]], 1.0)
 }
 
+/// Returns the triangle in a mesh with a random size weight, 1 in half of all cases.
+fn weighted(rng: &mut SplitMix64, mut t: Corner<f64>) -> Corner<f64> {
+    if rng.below(2) == 0 {
+        t.ideal.size_weight = 10f64.powf(rng.range(-0.5, 2.0));
+    }
+    t
+}
+
 /// Makes a random triangle with an inverse mean ratio of at most `worst`, at any angle, with edges near one.
 pub(crate) fn random(rng: &mut SplitMix64, worst: f64) -> Corner<f64> {
     loop {
         let vertex = [0; 3].map(|_| [0; 2].map(|_| rng.range(-1.0, 1.0)));
         let t = corner(vertex, rng.range(0.2, 1.0));
         if t.doubled_area() > 0.0 && imr(&t) <= worst {
-            return t;
+            return weighted(rng, t);
         }
     }
 }
@@ -79,5 +87,6 @@ pub(crate) fn thin(rng: &mut SplitMix64, ratio: f64, needle: bool) -> Corner<f64
     for _ in 0..rng.below(3) {
         t = next_corner(&t);
     }
-    rotated(&t, rng.range(0.0, 7.0))
+    let t = rotated(&t, rng.range(0.0, 7.0));
+    weighted(rng, t)
 }

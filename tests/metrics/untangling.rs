@@ -16,7 +16,7 @@ const ULP: f64 = 1.0 / 16_777_216.0;
 const BOUND: f64 = 16.0;
 
 fn wgsl() -> String {
-    let body = "    let t = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), vec2(0.0));
+    let body = "    let t = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), Ideal());
     let d = energy_derivatives(t, x[4]);
     y = array<f32, 7>(d.value, d.gradient.x, d.gradient.y, d.hessian.x, d.hessian.y, d.hessian.z, energy(t, x[4]));";
     Kernel::Untangle.wgsl() + &probe(5, 7, body)

@@ -2,8 +2,9 @@
 
 use crate::{backends, name, run};
 use gpu_smooth::{
-    Mesh, Metric, Options, Outcome, Smoother, Stop, Targets, Topology, measure::Change,
-    targets::Surface,
+    Mesh, Metric, Options, Outcome, Smoother, Stop, TargetField, Targets, Topology,
+    measure::Change,
+    targets::{Adaptation, Surface},
 };
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -117,8 +118,9 @@ fn keep_size_keeps_sizes_of_adapted_meshes_within_1_3() {
         let scale = (2.5 * x).exp();
         [scale * y.cos(), scale * y.sin()]
     });
-    let several = of_several_solutions(50, 0.35);
-    for mesh in [graded, isotropic, several] {
+    let several = [0.35, 0.1, 0.02].map(|least| of_several_solutions(50, least));
+    let layer = support::perturb_random(&support::layered(40, 1e3), 0.2, 3);
+    for mesh in [graded, isotropic, curved_layer(), layer].into_iter().chain(several) {
         let topology = Topology::new(&mesh).unwrap();
         let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
         let smoother = smoother(&mesh, &targets);
@@ -128,6 +130,9 @@ fn keep_size_keeps_sizes_of_adapted_meshes_within_1_3() {
             assert!(outcome.stop == Stop::Converged && outcome.sweeps <= 200, "{label}");
             let change = size_change(&mesh, &outcome);
             assert!(change < 1.3, "{label}: {change}");
+            let [before, after] = [&mesh.points, &outcome.points]
+                .map(|points| Smoother::new(&mesh).unwrap().f(Metric::Imr, points).unwrap());
+            assert!(after < before, "{label}: {after} for {before}");
         }
     }
     // Shapes weigh more by SOFT-SIZE, so that the sizes of stretched triangles change more.
@@ -137,6 +142,32 @@ fn keep_size_keeps_sizes_of_adapted_meshes_within_1_3() {
     let outcome = run(&smoother(&mesh, &targets), &by(Metric::SoftSize), &backends()[0]);
     let change = size_change(&mesh, &outcome);
     assert!(change > 1.3, "{change}");
+}
+
+#[test]
+fn sizes_weigh_more_on_stretched_meshes() {
+    for (mesh, is_weighted) in [
+        (support::perturb_random(&support::lattice(30, 30), 0.35, 3), false),
+        (support::perturb_random(&support::graded(40, 0.01), 0.35, 3), false),
+        (of_several_solutions(50, 0.1), true),
+    ] {
+        let topology = Topology::new(&mesh).unwrap();
+        let stretching =
+            Adaptation::of(&topology, &mesh.points, Surface::Plane).unwrap().stretching;
+        let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
+        let weight = targets.size_weight();
+        assert_eq!(weight, 1.0 + 0.5 * (stretching - 2.5).max(0.0));
+        assert_eq!(weight > 1.0, is_weighted, "{weight}");
+        // f has the weight, also if the targets belong to places.
+        let of_vertices = smoother(&mesh, &targets);
+        let mut of_places = Smoother::new(&mesh).unwrap();
+        of_places.set_target_field(TargetField::new(&mesh, &targets).unwrap()).unwrap();
+        let [f, f_of_places] =
+            [&of_vertices, &of_places].map(|of| of.f(Metric::Tmop94, &mesh.points).unwrap());
+        assert!((f_of_places / f - 1.0).abs() < 1e-9, "{f_of_places} for {f}");
+        let unweighted = Targets::keep_shape(&topology, &mesh.points, 0).unwrap().size_weight();
+        assert_eq!(unweighted, 1.0);
+    }
 }
 
 #[test]

@@ -19,3 +19,4 @@ pub(crate) use mesh::LoadedMesh;
 pub(crate) use movable::MovableSelection;
 pub(crate) use plane::axes_legend;
 pub(crate) use surface::{as_in_file, lay_out};
+pub(crate) use targets::TargetFacts;

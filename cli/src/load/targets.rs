@@ -5,7 +5,7 @@ use crate::load::LoadedMesh;
 use std::path::Path;
 
 use gpu_smooth::{
-    Mesh, MeshError, Smoother, TargetField, Targets,
+    Mesh, MeshError, Metric, Smoother, TargetField, Targets,
     interpolate::Chart,
     precision::Precision,
     targets::{OutsideReport, Surface},
@@ -18,16 +18,26 @@ use crate::request::{
 };
 use crate::terminal::numbers::sig6;
 
+/// Facts about the targets of a smoother that users are told.
+#[derive(Default)]
+pub(crate) struct TargetFacts {
+    /// A remark on vertices outside of the background, or on the weight of sizes.
+    pub(crate) remark: Option<String>,
+    /// Factor of the term of size in the base metric; `None` for targets other than `keep-size`, and for metrics without
+    /// this factor.
+    pub(crate) size_weight: Option<f64>,
+}
+
 impl TargetRequest {
-    /// Sets the targets of a smoother, for vertices at `points` on a surface. Returns a remark on vertices outside of
-    /// the background; `None` if there are none.
+    /// Sets the targets of a smoother, for vertices at `points` on a surface and a run with the base metric `metric`.
     pub(crate) fn set(
         &self,
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
         points: &[[f64; 2]],
         surface: Surface,
-    ) -> Result<Option<String>, CliError> {
+        metric: Metric,
+    ) -> Result<TargetFacts, CliError> {
         let explained = |error: MeshError| explain::mesh_error(file, &error);
         if let Some((path, field)) = self.field(file, surface)? {
             let outside = match self.is_of_places() {
@@ -38,21 +48,38 @@ impl TargetRequest {
                     outside
                 }
             };
-            return Ok(remark(path, outside));
+            return Ok(TargetFacts { remark: remark(path, outside), size_weight: None });
         }
         let Some(given) = self.targets(file, smoother, points, surface)? else {
-            return Ok(None);
+            return Ok(TargetFacts::default());
         };
         let MeshTargets { targets, surface } = given;
+        let facts = self.facts(&targets, metric);
         if !self.is_of_places() {
             let seen = targets.seen_on(surface, points, &file.mesh().triangles);
             let set = seen.and_then(|targets| smoother.set_targets(&targets));
-            return set.map(|()| None).map_err(explained);
+            return set.map(|()| facts).map_err(explained);
         }
         let triangles = smoother.topology().triangles().to_vec();
         let mesh = Mesh { points: points.to_vec(), triangles, fixed: Vec::new() };
         let field = TargetField::new(&mesh, &targets).map_err(explained)?.seen_on(surface);
-        smoother.set_target_field(field).map(|_| None).map_err(explained)
+        smoother.set_target_field(field).map(|_| facts).map_err(explained)
+    }
+
+    /// Returns the facts about targets made from the mesh itself or from numbers for its vertices.
+    fn facts(&self, targets: &Targets, metric: Metric) -> TargetFacts {
+        let keeps_sizes = matches!(self, Self::Keep { what: ElementProperty::Size, .. });
+        if !keeps_sizes || !metric.has_size_weight() {
+            return TargetFacts::default();
+        }
+        let size_weight = targets.size_weight();
+        let remark = (size_weight > 1.0).then(|| {
+            format!(
+                "--target keep-size: the triangles are stretched, so the metric's term of size has a weight of {size_weight:.2}, \
+                 which keeps the sizes; --target keep-shape keeps the stretching too"
+            )
+        });
+        TargetFacts { remark, size_weight: Some(size_weight) }
     }
 
     /// Reads the target field on a background mesh or view. Returns the field and the path of its file; `None` for

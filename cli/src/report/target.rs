@@ -19,6 +19,10 @@ pub(crate) struct TargetReport {
     /// targets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) rings: Option<u32>,
+    /// Factor of the term of size in the base metric; `None` for targets other than `keep-size`, and for metrics without
+    /// this factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) size_weight: Option<f64>,
     /// The base metric's objective of triangles under the target maps, before and after.
     pub(crate) f: [f64; 2],
 }
@@ -29,6 +33,7 @@ impl TargetRequest {
     pub(crate) fn report(
         &self,
         surface: Surface,
+        size_weight: Option<f64>,
         before: f64,
         after: impl FnOnce() -> Result<f64, CliError>,
     ) -> Result<Option<TargetReport>, CliError> {
@@ -46,6 +51,6 @@ impl TargetRequest {
             Self::Keep { rings, .. } => Some(*rings),
             Self::Equilateral | Self::Given { .. } => None,
         };
-        Ok(Some(TargetReport { kind, of, surface, rings, f }))
+        Ok(Some(TargetReport { kind, of, surface, rings, size_weight, f }))
     }
 }

@@ -6,7 +6,7 @@ use gpu_smooth::targets::{Adaptation, Surface};
 use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
 
 use crate::error::CliError;
-use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection};
+use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, TargetFacts};
 use crate::load::{explain, remarks};
 use crate::report::Failure;
 use crate::request::{SmoothRequest, TargetRequest};
@@ -41,6 +41,8 @@ pub(super) struct Ready<'a> {
     pub(super) taken: OpenEngine,
     /// Quality of the mesh before the run, and before untangling.
     pub(super) before: Quality,
+    /// The weight of sizes; see [`TargetFacts`].
+    pub(super) size_weight: Option<f64>,
     /// Number of sliding vertices; `None` without `--slide`.
     pub(super) sliding: Option<usize>,
     /// Time at the end of the preparation.
@@ -124,7 +126,9 @@ pub(super) fn set_up<'a>(
     if let Some(remark) = explain::hanging(file, &hanging) {
         follow.remark(&remark);
     }
-    if let Some(remark) = request.target.set(file, &mut smoother, points, surface)? {
+    let TargetFacts { remark, size_weight } =
+        request.target.set(file, &mut smoother, points, surface, request.scheme().base())?;
+    if let Some(remark) = remark {
         follow.remark(&remark);
     }
     // A metric of sizes is chosen to make sizes even.
@@ -143,7 +147,7 @@ pub(super) fn set_up<'a>(
         sliding = Some(vertices.count);
     }
     let before = Quality::on(surface, &mesh.points, smoother.topology())?;
-    Ok(Ready { smoother, mended, taken, before, sliding, at: Instant::now() })
+    Ok(Ready { smoother, mended, taken, before, size_weight, sliding, at: Instant::now() })
 }
 
 /// Prepares a mesh for smoothing. Returns [`MeshError::NothingFree`] if no vertex is free and none can slide.

@@ -49,7 +49,7 @@ pub(super) fn measure(
     let base = request.scheme().base();
     let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
     let f_after = || Ok(ready.smoother.f(base, &outcome.points)?);
-    let target = request.target.report(request.surface, f_before, f_after)?;
+    let target = request.target.report(request.surface, ready.size_weight, f_before, f_after)?;
     let interpolated = fields.interpolate(file, topology, &outcome.points)?;
     let left_over = fields.add_dependents(file, &outcome.points)?;
     let has_moved = outcome.points != *old;

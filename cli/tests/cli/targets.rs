@@ -72,18 +72,35 @@ fn the_target_that_keeps_an_adapted_mesh_is_named_before_the_run() {
 }
 
 #[test]
-fn the_metric_that_keeps_the_sizes_of_stretched_triangles_closer_is_named_after_the_run() {
+fn sizes_weigh_more_on_a_stretched_mesh_and_the_weight_is_reported() {
     let [node, ele] = node_ele(&support::layered(24, 60.0));
     let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
-    let hint = "--scheme tmop-80 keeps sizes closer";
-    let changes = [("", true), ("--scheme tmop-80", false)].map(|(scheme, has_hint)| {
+    let run = |scheme: &str| {
         let args = "in out --engine cpu --target keep-size --force --report r.json";
         let run = folder.line(&format!("{args} {scheme}"));
         assert_eq!(run.code, Some(0), "{}", run.err);
-        assert_eq!(run.out.contains(hint), has_hint, "{}", run.out);
-        number(&folder.json("r.json")["change"]["size"]["p95"])
-    });
-    assert!(changes[0] > 1.25 && changes[1] < changes[0], "{changes:?}");
+        (run, folder.json("r.json"))
+    };
+    let mut changes = Vec::new();
+    for scheme in ["--scheme tmop-80", "", "--scheme soft-size"] {
+        let (run, report) = run(scheme);
+        let weight = number(&report["target"]["size_weight"]);
+        assert!((2.0..100.0).contains(&weight), "{weight}");
+        assert_holds(&run.err, &[&format!("term of size has a weight of {weight:.2}")]);
+        let change = number(&report["change"]["size"]["p95"]);
+        let hint = "--scheme tmop-80 keeps sizes closer";
+        assert_eq!(run.out.contains(hint), change > 1.25, "{}", run.out);
+        changes.push(change);
+    }
+    // The first scheme lets shapes give way to sizes, and the last scheme sizes to shapes.
+    assert!(changes.is_sorted() && changes[1] < 1.3 && changes[2] > 1.3, "{changes:?}");
+    // SHAPE-SIZE has no weight.
+    let (run, report) = run("--scheme shape-size");
+    assert!(report["target"].get("size_weight").is_none() && !run.err.contains("weight"));
+    // On an ordinary mesh, the weight is 1, and no remark names it.
+    let folder = self::folder(&[]);
+    folder.line("in out --engine cpu --target keep-size --report r.json").clean();
+    assert_eq!(folder.json("r.json")["target"]["size_weight"], 1.0);
 }
 
 #[test]

@@ -109,7 +109,7 @@ impl DeviceMesh {
         let (_, mut problem) = prepare(&unconstrained)?;
         if let Some(targets) = targets {
             targets.check_count(mesh.points.len())?;
-            problem.set_targets(targets.maps());
+            problem.set_targets(targets);
         }
         Self::uploaded(gpu, mesh, problem)
     }

@@ -126,6 +126,9 @@ shared_structs! {
         maps: u32,
         /// 1 if the coarse levels work in the coordinates of the plane, 0 if in the coordinates of the maps.
         levels_in_plane: u32,
+        /// Factor of the terms of size in metrics.
+        size_weight: f32,
+        padding: u32,
     }
 
     /// The range of one dispatch: free vertices of one color, with the parameters of the sweep; or triangles; or free
@@ -425,6 +428,8 @@ impl Params {
             mean_area: [0.0; 2],
             maps,
             levels_in_plane: 0,
+            size_weight: 1.0,
+            padding: 0,
         }
     }
 }

@@ -285,5 +285,7 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         mean_area: pair(problem.mean_area()),
         maps: problem.positions().len() as u32,
         levels_in_plane: problem.are_levels_in_plane().into(),
+        size_weight: problem.ideal().size_weight as f32,
+        padding: 0,
     }
 }
