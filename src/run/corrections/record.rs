@@ -101,6 +101,9 @@ impl Corrections {
         let mut remaining = rule.remaining(&of_stage, window);
         let is_correcting = matches!(self.stage, Stage::Correcting(_));
         if self.accelerated || is_correcting && self.has_hub {
+            // A single sweep that gains more than the previous one is no evidence against a decay.
+            let over_window = || rule.remaining(history.f(), WINDOW).filter(|_| self.decays_long());
+            remaining = remaining.or_else(over_window);
             (remaining, window) = self.confirmed(remaining, window, &of_stage, rule);
         }
         let slow = self.slow_decay(rule, history, noise);
@@ -213,11 +216,15 @@ impl Corrections {
         (Some(most).filter(|most| most.is_finite()), window)
     }
 
-    /// Returns the remaining gain by the windows of a slow decay. `None` before many corrections, and where f is no
-    /// decay: by EDGE, and with stages between sweeps.
+    /// Returns whether f has decayed over many corrections, so that its gains over windows of several sweeps predict the
+    /// remaining gain. False by EDGE, and with stages between sweeps.
+    fn decays_long(&self) -> bool {
+        self.metric().is_smooth() && !self.is_staged && self.taken as usize > 2 * WINDOW
+    }
+
+    /// Returns the remaining gain by the windows of a slow decay. `None` unless f decays long.
     fn slow_decay(&self, rule: &StopRule, history: &History, noise: f64) -> Option<f64> {
-        let is_decay = self.metric().is_smooth() && !self.is_staged;
-        if !is_decay || self.taken as usize <= 2 * WINDOW {
+        if !self.decays_long() {
             return None;
         }
         // Without a tolerance, only the end of a run toward a goal depends on the windows.
