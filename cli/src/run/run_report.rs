@@ -85,8 +85,9 @@ pub(super) fn report(
     }
 }
 
-/// Number of corrections after which [`Outcome::remaining`](gpu_smooth::Outcome::remaining) is at least twice the tolerance.
-const MANY_CORRECTIONS: u32 = 16;
+/// Multiple of the tolerance that runs with slow modes report as the least
+/// [`Outcome::remaining`](gpu_smooth::Outcome::remaining), on any engine.
+const SLOW_MODES: f64 = 2.0;
 
 /// Returns whether a GPU ended the run as converged, although the error of its f exceeds the tolerance.
 fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
@@ -94,9 +95,12 @@ fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
     let is_gpu = matches!(&*ran.taken.backend, Backend::Gpu(_));
     // The estimate of EDGE includes a distance that is no error.
     let is_smooth = request.scheme().base() != Metric::Edge;
-    let multiple = if outcome.corrections > MANY_CORRECTIONS { 2.0 } else { 1.0 };
-    let least = |tolerance: f64| (multiple * tolerance).max(outcome.projection_error);
-    let exceeds = |tolerance| outcome.remaining.is_some_and(|left| left > least(tolerance));
+    let exceeds = |tolerance: f64| {
+        let is_of_precision = |left: &f64| {
+            *left > tolerance.max(outcome.projection_error) && *left != SLOW_MODES * tolerance
+        };
+        outcome.remaining.as_ref().is_some_and(is_of_precision)
+    };
     is_gpu
         && is_smooth
         && outcome.closing_sweeps == 0

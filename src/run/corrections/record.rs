@@ -27,9 +27,10 @@ const STEADY: f64 = 0.3;
 /// starts estimated too little, by up to a third.
 const CAUTION: f64 = 1.5;
 
-/// Smallest remaining gain that a run reports after many corrections, as a multiple of the tolerance. Levels that take
-/// more than 16 corrections leave modes that decay by a hundredth per correction once the other modes are gone. 2.6 times
-/// the tolerance was found to remain around a vertex of 50.
+/// Smallest remaining gain that a run reports after many corrections or around a hub, as a multiple of the tolerance. Levels
+/// that take more than 16 corrections leave modes that decay by a hundredth per correction once the other modes are gone.
+/// 2.6 times the tolerance was found to remain around a vertex of 50 after 44 corrections, and 2.7 times the tolerance
+/// around a vertex of 100 after six.
 const SLOW_MODES: f64 = 2.0;
 
 /// Decrease of the objective by a sweep, as a share of the objective, above which gains do not predict the remaining
@@ -77,7 +78,8 @@ impl Corrections {
         let end = judged.end.or(is_at_bound.then_some(Stop::Converged));
         // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
         let is_extrapolated = end == Some(Stop::Converged) && !is_settled;
-        let has_slow_modes = self.taken as usize > 2 * WINDOW && self.metric().is_smooth();
+        let is_long = self.taken as usize > 2 * WINDOW;
+        let has_slow_modes = (is_long || self.has_hub) && self.metric().is_smooth();
         let least_left = match is_extrapolated {
             true if has_slow_modes => SLOW_MODES * whole.tolerance,
             true => whole.tolerance,
