@@ -10,6 +10,7 @@ mod triangles;
 use gpu_smooth::{
     Mesh, Metric, Topology,
     measure::{Better, Definition, Measure, Measured, QUANTILES, Statistics},
+    metric::Ideal,
 };
 use support::SplitMix64;
 
@@ -73,7 +74,7 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
         Measure::Skewness => ((most - third) / (2.0 * third)).max((third - least) / third),
         Measure::SizeRatio => 1.0,
         // The mesh consists of one triangle, so the triangle's area is the mean area.
-        Measure::Metric(metric) => oracles::quality(metric, [a, b, c], area, area),
+        Measure::Metric(metric) => oracles::quality(metric, [a, b, c], area, Ideal::of_area(area)),
     }
 }
 
