@@ -113,7 +113,7 @@ fn wrong_counts_are_errors() {
 /// A file with random bytes cut, replaced or doubled gives an error or a mesh with all locations, never a panic.
 #[test]
 fn damaged_files_of_other_programs_never_panic() {
-    let rounds = damage::rounds(2000);
+    let rounds = damage::rounds(1000);
     let all = all(&base());
     let mut random = random(17);
     for format in Format::ALL {
