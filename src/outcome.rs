@@ -51,7 +51,8 @@ pub struct Outcome {
     /// run was judged by, in single precision. In a projection, the bound is [`projection_error`](Self::projection_error).
     ///
     /// `None` if the run has not converged and its sweeps allow no estimate: the run did too few sweeps, or the gains per
-    /// sweep do not decay.
+    /// sweep do not decay. Also `None` if targets belong to places and the run ended because no part of its last move
+    /// lowered f; see [`Smoother::set_target_field`](crate::Smoother::set_target_field).
     pub remaining: Option<f64>,
     /// Estimate, as a share of f, of the distance between the optimum in the projection of a sphere
     /// ([`Smoother::project_from_sphere`](crate::Smoother::project_from_sphere)) and the optimum on the sphere, where

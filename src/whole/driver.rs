@@ -75,6 +75,9 @@ pub(crate) async fn drive(
             judged.unwrap_or(Judgment { stop: None, remaining: None });
         let stop = if swept == Some(Stop::Canceled) { swept } else { stop };
         if let Some(stop) = stop {
+            // An extrapolation cannot show less than the tolerance: slow modes may remain.
+            let least = if stop == Stop::Converged { plan.stop.tolerance } else { 0.0 };
+            let remaining = remaining.map(|left| left.max(least));
             let ended = live.end(host.positions, stop).await;
             return Ok(RunEnd { remaining, ..ended });
         }

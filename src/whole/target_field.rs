@@ -133,7 +133,9 @@ impl Stage for TargetFieldStage<'_> {
             true => Some(Stop::Converged),
             false => period.is_last.then_some(Stop::MaxSweeps),
         };
-        Judgment { stop, remaining: Some(to_come).filter(|left| left.is_finite()) }
+        // If no part of the move lowers f, the gains of sweeps with constant targets predict nothing.
+        let is_estimate = self.has_moved && to_come.is_finite();
+        Judgment { stop, remaining: is_estimate.then_some(to_come) }
     }
 
     fn save(&self, out: &mut Writer) {

@@ -132,7 +132,7 @@ mod tests {
 
     fn seen_from(at: [f64; 2]) -> Corner<f64> {
         let ends = [POINTS[1], POINTS[2]].map(DVec2::from);
-        FanCorner { ends, map: None }.in_plane(at.into(), 1.0)
+        FanCorner { ends, map: None }.in_plane(at.into(), Ideal::of_area(1.0))
     }
 
     #[test]
