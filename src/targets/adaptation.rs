@@ -9,6 +9,11 @@ use crate::topology::Topology;
 
 /// Largest number of vertices around which shapes are averaged.
 const SAMPLES: usize = 128;
+/// Largest number of vertices around which shapes are averaged for the weight of sizes. Around 128 vertices of a boundary
+/// layer, the 95th percentile was found to vary by a fifth with the numbering of the vertices.
+const SAMPLES_FOR_WEIGHT: usize = 1024;
+/// Stretching around [`SAMPLES`] vertices up to which a mesh is certainly not stretched 2.5-fold.
+const UNSTRETCHED: f64 = 2.0;
 /// Number of triangles that one task searches.
 const CHUNK: usize = 1 << 14;
 
@@ -38,12 +43,35 @@ impl Adaptation {
         points: &[[f64; 2]],
         surface: Surface,
     ) -> Result<Self, MeshError> {
+        Self::around(topology, points, surface, SAMPLES)
+    }
+
+    /// Measures the stretching as [`Self::of`] does, around up to 1,024 free vertices if the mesh may be stretched.
+    pub(super) fn stretching_for_weight(
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+        surface: Surface,
+    ) -> Result<f64, MeshError> {
+        let Self { stretching, .. } = Self::of(topology, points, surface)?;
+        match stretching > UNSTRETCHED {
+            true => Ok(Self::around(topology, points, surface, SAMPLES_FOR_WEIGHT)?.stretching),
+            false => Ok(stretching),
+        }
+    }
+
+    /// Measures the adaptation around at most `most` free vertices.
+    fn around(
+        topology: &Topology<'_>,
+        points: &[[f64; 2]],
+        surface: Surface,
+        most: usize,
+    ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         let triangles = topology.triangles();
         let free = topology.free();
         let count = free.iter().filter(|&&is_free| is_free).count();
         let free = (0..).zip(free).filter(|&(_, &is_free)| is_free).map(|(v, _)| v);
-        let samples: Vec<u32> = free.step_by(count.div_ceil(SAMPLES).max(1)).collect();
+        let samples: Vec<u32> = free.step_by(count.div_ceil(most).max(1)).collect();
         // Two searches for the triangles at some vertices take less time than the stars of all vertices.
         let stars = Stars::of(&samples, triangles, points.len());
         let ring = |v: u32| stars.at(v).flat_map(|t| triangles[t as usize]);

@@ -74,8 +74,8 @@ impl Targets {
     /// vertices keep their size within a factor of 1.3.
     ///
     /// On stretched meshes, equilateral triangles do not fit between the vertices of the boundary, and sizes give way to
-    /// shapes. Therefore [`Self::size_weight`] grows with the [stretching](Adaptation::stretching) s of the mesh: it is 1
-    /// up to s = 2.5, and 1 + (s - 2.5) / 2 beyond.
+    /// shapes. Therefore [`Self::size_weight`] grows with the [stretching](Adaptation::stretching) s of the mesh,
+    /// measured around up to 1,024 free vertices: it is 1 up to s = 2.5, and 1 + (s - 2.5) / 2 beyond.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -85,7 +85,7 @@ impl Targets {
         surface: Surface,
         rings: u32,
     ) -> Result<Self, MeshError> {
-        let stretching = Adaptation::of(topology, points, surface)?.stretching;
+        let stretching = Adaptation::stretching_for_weight(topology, points, surface)?;
         let maps = keep::sizes(topology.triangles(), points, surface, rings);
         Ok(Self { maps, size_weight: keep::size_weight(stretching) })
     }

@@ -156,7 +156,9 @@ fn sizes_weigh_more_on_stretched_meshes() {
             Adaptation::of(&topology, &mesh.points, Surface::Plane).unwrap().stretching;
         let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
         let weight = targets.size_weight();
-        assert_eq!(weight, 1.0 + 0.5 * (stretching - 2.5).max(0.0));
+        // The weight depends on the stretching around more vertices.
+        let expected = 1.0 + 0.5 * (stretching - 2.5).max(0.0);
+        assert!((weight / expected - 1.0).abs() < 0.2, "{weight} for {expected}");
         assert_eq!(weight > 1.0, is_weighted, "{weight}");
         // f has the weight, also if the targets belong to places.
         let of_vertices = smoother(&mesh, &targets);
