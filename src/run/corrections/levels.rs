@@ -22,9 +22,11 @@ const REBUILD_IF: f64 = 0.5;
 /// times the sweeps. With a fit after each doubling, they took slightly fewer sweeps.
 const REFIT_EVERY: u32 = 3;
 
-/// The levels of a strongly stretched mesh are built again after this number of corrections, and after each doubling of
-/// the number. f stays far above its lower limit on such a mesh, and its excess does not tell how far vertices
-/// have moved and local maps have changed.
+/// Levels are built again after this number of corrections, and after each doubling of the number. Where f stays far above
+/// its lower limit, its excess does not tell how far vertices have moved. A mesh adapted to layers of 60 took 263 sweeps
+/// with the levels of its first correction, and takes 173.
+const REBUILD_FROM: u32 = 32;
+/// Replaces [`REBUILD_FROM`] on a strongly stretched mesh, whose local maps change too.
 const REBUILD_LOCAL_FROM: u32 = 4;
 
 /// How the levels adapt to the present stiffness of the mesh.
@@ -48,11 +50,15 @@ impl Corrections {
             let before = self.excess(history, since);
             before - excess > share * before
         };
+        let rebuild_from = match self.has_local_maps() {
+            true => REBUILD_LOCAL_FROM,
+            // The exponents of EDGE decide when its levels change. Bounded moves and sliding gain nothing by new levels.
+            false if self.is_staged || !self.metric().is_smooth() => u32::MAX,
+            false => REBUILD_FROM,
+        };
         match proposed {
             _ if !self.has_levels => Some(Change::Build),
-            REBUILD_LOCAL_FROM.. if self.has_local_maps() && proposed.is_power_of_two() => {
-                Some(Change::Build)
-            }
+            _ if proposed >= rebuild_from && proposed.is_power_of_two() => Some(Change::Build),
             0 if self.has_levels && !self.metric().is_smooth() => {
                 self.sharpness.is_multiple_of(REFIT_EVERY).then_some(Change::Fit)
             }
