@@ -303,6 +303,9 @@ fn levels_are_built_again_in_long_runs() {
         let label = format!("{metric}: {sweeps} sweeps");
         assert_eq!(outcome.stop, Stop::Converged, "{label}");
         assert!(sweeps <= most && left <= 2.0 * told, "{label}: {told:e} of {left:e}");
+        // The last correction around the vertex gains nothing, and slow modes may remain: 1.5e-7 on an airfoil of the
+        // reported 1e-8, a former defect.
+        assert!(told >= 1e-6, "{label}: {told:e}");
     }
 }
 

@@ -76,14 +76,13 @@ impl Corrections {
         let bound = self.bound(history);
         let is_at_bound = bound.is_some() && rule.target.is_none();
         let end = judged.end.or(is_at_bound.then_some(Stop::Converged));
-        // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
-        let is_extrapolated = end == Some(Stop::Converged) && !is_settled;
         let is_long = self.taken as usize > 2 * WINDOW;
         let has_slow_modes = (is_long || self.has_hub) && self.metric().is_smooth();
-        let least_left = match is_extrapolated {
-            true if has_slow_modes => SLOW_MODES * whole.tolerance,
-            true => whole.tolerance,
-            false => 0.0,
+        let least_left = match end {
+            // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
+            Some(Stop::Converged) if !is_settled && has_slow_modes => SLOW_MODES * whole.tolerance,
+            Some(Stop::Converged) if !is_settled || has_slow_modes => whole.tolerance,
+            _ => 0.0,
         };
         let remaining = judged.remaining.map(|left| (left + self.above()).max(least_left));
         let remaining = remaining.into_iter().chain(bound).reduce(f64::min);
