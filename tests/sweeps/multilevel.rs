@@ -78,7 +78,8 @@ fn hard_meshes_take_a_few_dozen_sweeps_and_the_promise_holds() {
             let left = last(&outcome, Metric::Imr) / limit - 1.0;
             assert!(left < 1e-6, "{label}: {left:e} left");
             let said = outcome.remaining.unwrap();
-            let most_said = if outcome.corrections > 16 { 2e-6 } else { 1e-6 };
+            // Four times the tolerance around the vertex of 50.
+            let most_said = if outcome.corrections > 16 { 4e-6 } else { 1e-6 };
             assert!(
                 left < said + 1e-8 && said <= most_said,
                 "{label}: {left:e} left, {said:e} said"
