@@ -45,12 +45,12 @@ pub struct Outcome {
     /// of f in the last sweeps, but never beyond the ideal of f. After a run by EDGE with corrections, the estimate
     /// includes the distance between the minima of f and of EDGE's p-norm.
     ///
-    /// The estimate has lower bounds. After a run that has converged by the estimate, the bound is the tolerance. After more
+    /// The estimate has lower bounds. If the estimate ended the run as converged, the bound is the tolerance. After more
     /// than 16 corrections the bound doubles, and on a mesh with a vertex of more than 16 neighbors the bound doubles too.
     /// If the last correction gained nothing, the bound is a tenth of the tolerance, but at least 1e-8, or the tolerance
-    /// in these two cases. After a run that has converged because f is level up to rounding, the bound is the variation of
-    /// f over the last sweeps. On a device, the bound is the error of the f that the run was judged by, in single
-    /// precision. In a projection, the bound is [`projection_error`](Self::projection_error).
+    /// in these two cases. If a run converged because f is level up to rounding, the bound is the variation of f over its
+    /// last sweeps. On a device, the bound is the error of the f that the run was judged by, in single precision. In a
+    /// projection, the bound is [`projection_error`](Self::projection_error).
     ///
     /// `None` if the run has not converged and its sweeps allow no estimate: the run did too few sweeps, or the gains per
     /// sweep do not decay. Also `None` if targets belong to places and the run ended because no part of its last move

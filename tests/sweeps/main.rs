@@ -10,6 +10,7 @@ mod global;
 mod goals;
 mod guard;
 mod hard;
+mod hubs;
 mod invariance;
 mod limit;
 mod multilevel;

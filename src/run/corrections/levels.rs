@@ -22,9 +22,9 @@ const REBUILD_IF: f64 = 0.5;
 /// times the sweeps. With a fit after each doubling, they took slightly fewer sweeps.
 const REFIT_EVERY: u32 = 3;
 
-/// Levels are built again after this number of corrections, and after each doubling of the number. Where f stays far above
-/// its lower limit, its excess does not tell how far vertices have moved. A mesh adapted to layers of 60 took 263 sweeps
-/// with the levels of its first correction, and takes 173.
+/// Number of corrections of a stage at which its levels are first replaced by new levels. Each doubling of the number replaces
+/// the levels too. Where f stays far above its lower limit, its excess does not tell how far vertices have moved. A mesh
+/// adapted to layers of 60 took 263 sweeps with the levels of its first correction, and takes 173.
 const REBUILD_FROM: u32 = 32;
 /// Replaces [`REBUILD_FROM`] on a strongly stretched mesh, whose local maps change too.
 const REBUILD_LOCAL_FROM: u32 = 4;

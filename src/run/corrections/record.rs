@@ -77,11 +77,9 @@ impl Corrections {
         let bound = self.bound(history);
         let is_at_bound = bound.is_some() && rule.target.is_none();
         let end = judged.end.or(is_at_bound.then_some(Stop::Converged));
-        let is_long = self.taken as usize > 2 * WINDOW;
-        let slow_modes = match self.metric().is_smooth() {
-            true => SLOW_MODES.powi(i32::from(is_long) + i32::from(self.has_hub)),
-            false => 1.0,
-        };
+        let (is_long, has_hub) =
+            (self.has_corrected_long(), self.has_hub && self.metric().is_smooth());
+        let slow_modes = SLOW_MODES.powi(i32::from(is_long) + i32::from(has_hub));
         let least_left = match end {
             // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
             Some(Stop::Converged) if !is_settled => slow_modes * whole.tolerance,
@@ -90,16 +88,17 @@ impl Corrections {
         };
         let remaining = judged.remaining.map(|left| (left + self.above()).max(least_left));
         let remaining = remaining.into_iter().chain(bound).reduce(f64::min);
-        let mut stop = match of_f {
-            Some(Stop::Reached) => of_f,
+        // Around a hub, rounding hides slow modes: up to 4e-5 of f was found to remain after long runs on a device.
+        let hides_slow_modes = noise > NOISE && is_long && has_hub && bound.is_none();
+        let stop = match (of_f, end) {
+            (Some(Stop::Reached), _) => of_f,
+            (_, Some(Stop::Converged)) if hides_slow_modes => {
+                self.needs_double = true;
+                self.correct_again(history);
+                of_f
+            }
             _ => end.or(of_f),
         };
-        // Around a hub, rounding hides slow modes: up to 4e-5 of f was found to remain after long runs on a device.
-        let hides_slow_modes = noise > NOISE && is_long && self.has_hub && bound.is_none();
-        if stop == Some(Stop::Converged) && hides_slow_modes && self.metric().is_smooth() {
-            (stop, self.needs_double) = (None, true);
-            self.correct_again(history);
-        }
         if stop.is_none() && !self.is_sharpest() && self.gains_little(history) {
             self.raise_exponent(history.f().len() - 1);
         }
@@ -232,10 +231,15 @@ impl Corrections {
         (Some(most).filter(|most| most.is_finite()), window)
     }
 
+    /// Returns whether a run by a smooth metric has taken so many corrections that slow modes may remain.
+    fn has_corrected_long(&self) -> bool {
+        self.metric().is_smooth() && self.taken as usize > 2 * WINDOW
+    }
+
     /// Returns whether f has decayed over many corrections, so that its gains over windows of several sweeps predict the
     /// remaining gain. False by EDGE, and with stages between sweeps.
     fn decays_long(&self) -> bool {
-        self.metric().is_smooth() && !self.is_staged && self.taken as usize > 2 * WINDOW
+        self.has_corrected_long() && !self.is_staged
     }
 
     /// Returns the remaining gain by the windows of a slow decay. `None` unless f decays long.
