@@ -41,7 +41,11 @@ pub struct Outcome {
     pub best_sweep: u32,
     /// Objectives: entry 0 before the first sweep, entry k after sweep k.
     pub history: Vec<Objectives>,
-    /// Estimated gain of further sweeps, as a share of f (of 1e-6 if f is smaller). The estimate extrapolates the decay
+    /// Objective by the base metric over the triangles with a corner that is free or slides, before the run and in
+    /// [`points`](Self::points). The tolerance, [`remaining`](Self::remaining) and the test for a gain use this objective,
+    /// as other triangles never change. Equal to the mean over all triangles if targets belong to places.
+    pub movable_f: [f64; 2],
+    /// Estimated gain of further sweeps, as a share of f over the triangles that can move (of 1e-6 if f is smaller). The estimate extrapolates the decay
     /// of f in the last sweeps, but never beyond the ideal of f. After a run by EDGE with corrections, the estimate
     /// includes the distance between the minima of f and of EDGE's p-norm.
     ///

@@ -21,8 +21,8 @@ _METHODS = (
     "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
 )
 _PROPERTIES = (
-    "axes", "metric", "engine", "stop", "fault", "sweeps", "corrections", "best_sweep", "remaining", "held_back", "slid",
-    "prepare_seconds", "seconds",
+    "axes", "metric", "engine", "stop", "fault", "sweeps", "corrections", "best_sweep", "movable_f", "remaining",
+    "held_back", "slid", "prepare_seconds", "seconds",
 )
 
 
@@ -125,6 +125,11 @@ class Result:
     def best_sweep(self) -> int:
         """The sweep whose points were taken; 0 for the points before the run."""
         return self._outcome.best_sweep
+
+    @property
+    def movable_f(self) -> tuple[float, float]:
+        """f over the triangles that can move, which judges the run, before and after the run."""
+        return self._outcome.movable_f
 
     @property
     def remaining(self) -> float | None:

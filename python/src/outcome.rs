@@ -146,6 +146,12 @@ impl Outcome {
         self.outcome.best_sweep
     }
 
+    /// f over the triangles that can move, before and after the run.
+    #[getter]
+    fn movable_f(&self) -> (f64, f64) {
+        self.outcome.movable_f.into()
+    }
+
     /// Estimated gain of further sweeps, as a share of f; None if unknown.
     #[getter]
     fn remaining(&self) -> Option<f64> {

@@ -11,6 +11,6 @@ mod vcycle;
 
 pub(crate) use at_bound::steps_at_bound;
 pub(crate) use engine::CpuEngine;
-pub(crate) use objective::mean_excess;
+pub(crate) use objective::{mean_excess, mean_excess_left_out};
 pub(crate) use sweep::held_back;
 pub(crate) use vcycle::correction;

@@ -13,27 +13,39 @@ use crate::run::SweepParams;
 /// Number of triangles that one task evaluates.
 const CHUNK: usize = 1024;
 
-/// Returns the mean of q² - ideal² over all triangles, summed in an order that does not depend on the number of
-/// threads.
+/// Returns the mean of q² - ideal² over the triangles that a problem is judged by, summed in an order that does not
+/// depend on the number of threads.
 pub(crate) async fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
-    mean(metric, None, problem, positions).await
+    mean(metric, None, problem, problem.judged_triangles(), positions).await
 }
 
-/// Returns the mean over all triangles of the function that a step minimizes: q² - ideal², or its smooth model.
+/// Returns the mean of q² - ideal² over the triangles that are left out of the objective of a problem; NaN if no
+/// triangle is left out.
+pub(crate) async fn mean_excess_left_out(
+    metric: Metric,
+    problem: &Problem,
+    positions: &[DVec2],
+) -> f64 {
+    mean(metric, None, problem, problem.unjudged_triangles(), positions).await
+}
+
+/// Returns the mean over the triangles that a problem is judged by of the function that a step minimizes: q² - ideal², or its smooth model.
 pub(crate) async fn mean_model(
     metric: Metric,
     smoothing: Smoothing,
     problem: &Problem,
     positions: &[DVec2],
 ) -> f64 {
-    mean(metric, Some(smoothing).filter(|_| !metric.is_smooth()), problem, positions).await
+    let smoothing = Some(smoothing).filter(|_| !metric.is_smooth());
+    mean(metric, smoothing, problem, problem.judged_triangles(), positions).await
 }
 
-/// Returns the mean of q² - ideal² over all triangles, or of its smooth model if `smoothing` is given.
+/// Returns the mean of q² - ideal² over `triangles`, or of its smooth model if `smoothing` is given.
 async fn mean(
     metric: Metric,
     smoothing: Option<Smoothing>,
     problem: &Problem,
+    triangles: &[[u32; 3]],
     positions: &[DVec2],
 ) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
@@ -41,8 +53,8 @@ async fn mean(
             excess::<_, MAPPED>(simd, formulas, smoothing, problem, positions, chunk)
         })
     };
-    let sums = paced::map_parts(problem.triangles().chunks(CHUNK), sum).await;
-    sums.iter().sum::<f64>() / problem.triangles().len() as f64
+    let sums = paced::map_parts(triangles.chunks(CHUNK), sum).await;
+    sums.iter().sum::<f64>() / triangles.len() as f64
 }
 
 /// Positions with the free vertices moved by `length` times `direction`.
@@ -66,9 +78,10 @@ pub(crate) async fn mean_excess_along(
             excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
         })
     };
-    let sums = paced::map_parts(problem.triangles().chunks(CHUNK), sum).await;
+    let triangles = problem.judged_triangles();
+    let sums = paced::map_parts(triangles.chunks(CHUNK), sum).await;
     let sum: Option<f64> = sums.into_iter().sum();
-    sum.map(|sum| sum / problem.triangles().len() as f64)
+    sum.map(|sum| sum / triangles.len() as f64)
 }
 
 /// Returns for each free vertex whether the move breaks a triangle around it: inverts or flattens it, or makes its

@@ -47,6 +47,16 @@ pub struct Problem {
     /// Whether coarse levels work in the coordinates of the plane even if a map is anisotropic.
     levels_in_plane: bool,
     ideal: Ideal,
+    /// The triangles over which the objective is the mean, in place of all triangles.
+    judged: Judged,
+}
+
+/// The triangles over which the objective is the mean: the first `count` of a list.
+#[derive(Clone, Debug)]
+struct Judged {
+    /// All triangles, with the judged triangles first. `None` if the list of the layout begins with them.
+    reordered: Option<Arc<[[u32; 3]]>>,
+    count: usize,
 }
 
 /// The linear maps that a device stores at the vertices of a problem. A problem with targets and local maps is for the
@@ -129,6 +139,7 @@ impl Problem {
             mean if mean > 0.0 => mean,
             _ => exact_mean,
         };
+        let judged = Judged { reordered: None, count: triangles.len() };
         let layout =
             Layout { positions, colors, ring_start, ring, triangles, vertices, center, scale };
         Self {
@@ -139,6 +150,7 @@ impl Problem {
             has_stretched_targets: false,
             levels_in_plane: false,
             ideal: Ideal::of_area(mean_area),
+            judged,
         }
     }
 
@@ -251,6 +263,40 @@ impl Problem {
     /// Returns all triangles, counter-clockwise, sorted by their least vertices.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.layout.triangles
+    }
+
+    /// Returns the triangles over which the objective is the mean: all triangles, or those of [`Self::judged_by_movable`].
+    pub(crate) fn judged_triangles(&self) -> &[[u32; 3]] {
+        &self.judged_first()[..self.judged.count]
+    }
+
+    /// Returns the triangles that are left out of the objective.
+    pub(crate) fn unjudged_triangles(&self) -> &[[u32; 3]] {
+        &self.judged_first()[self.judged.count..]
+    }
+
+    fn judged_first(&self) -> &[[u32; 3]] {
+        self.judged.reordered.as_deref().unwrap_or_else(|| self.triangles())
+    }
+
+    /// Returns the problem with an objective that is the mean over the triangles with a corner that is free or listed in
+    /// `slides`, an ascending list. Other triangles never change, and may be flatter than all others by orders of
+    /// magnitude, for example in a boundary layer whose vertices are fixed. In a mean over all triangles, their values
+    /// would hide the gain of a run. If no triangle has such a corner, the mean stays over all triangles.
+    pub(crate) fn judged_by_movable(&self, slides: &[u32]) -> Self {
+        // Free vertices have the lowest numbers, so the triangles with a free corner come first in the list of the layout.
+        let free = self.triangles().partition_point(|t| self.can_move(t));
+        let slides_along = |t: &&[u32; 3]| t.iter().any(|v| slides.binary_search(v).is_ok());
+        let (first, others) = self.triangles().split_at(free);
+        let (sliding, still): (Vec<&[u32; 3]>, _) = others.iter().partition(slides_along);
+        let is_in_order = sliding.is_empty() || still.is_empty();
+        let reordered = (!is_in_order)
+            .then(|| first.iter().chain(sliding.iter().copied()).chain(still).copied().collect());
+        let count = match free + sliding.len() {
+            0 => self.triangles().len(),
+            count => count,
+        };
+        Self { judged: Judged { reordered, count }, ..self.clone() }
     }
 
     /// Returns the target map of each vertex, in the order of the positions, `None` if the mesh has no targets.

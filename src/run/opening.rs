@@ -75,7 +75,8 @@ pub(crate) async fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle
         }
     };
     let worst = |_, chunk: &[[u32; 3]]| chunk.iter().map(of).max().unwrap_or(Obstacle::None);
-    let worst = paced::map_parts(problem.triangles().chunks(4096), worst).await.into_iter().max();
+    let worst =
+        paced::map_parts(problem.judged_triangles().chunks(4096), worst).await.into_iter().max();
     worst.unwrap_or(Obstacle::None)
 }
 

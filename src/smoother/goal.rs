@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::error::SmoothError;
+use crate::layout::Problem;
 use crate::metric::{Metric, Scheme};
 use crate::options::{Goal, Options, Stopping};
 use crate::outcome::GoalOutcome;
@@ -11,22 +12,26 @@ use crate::run::{
 };
 use crate::whole::{Device, Live, RunEnd, Spec, drive};
 
-use super::prepared::Smoother;
+use super::over_all::OverAll;
+use super::prepared::{Smoother, objective};
 
 impl Smoother<'_> {
-    /// Returns the desired objective of a goal. If the goal has none, runs to convergence determine the objective.
-    /// `None` if the observer ended a search run.
+    /// Returns the desired objective of a goal over the triangles by which the run is judged. If the goal has no desired
+    /// objective, runs to convergence determine it. `None` if the observer ended a search run.
     pub(super) async fn resolve_goal(
         &self,
+        over_all: &OverAll<'_>,
         goal: Goal,
         options: &Options,
         device: Option<Device<'_>>,
         policy: &mut dyn CheckpointPolicy,
         observe: &mut dyn Observer,
     ) -> Result<Option<GoalOutcome>, SmoothError> {
+        let problem = over_all.problem;
         let Goal { fraction, desired } = goal;
         if let Some(desired) = desired {
             let origin = "given".to_owned();
+            let desired = over_all.judged(options.scheme.base(), desired);
             return Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }));
         }
         let base = options.scheme.base();
@@ -37,11 +42,12 @@ impl Smoother<'_> {
             guard: options.guard,
             ..Options::default()
         };
-        let start = self.problem.positions();
+        let start = problem.positions();
         let mut starts = vec![(format!("{base} alone"), start.to_vec())];
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { stopping: Stopping::Tolerance(1e-6), ..full(Metric::Imr) };
-            let after_imr = self.search_reference(&imr, start, device, policy, observe).await?;
+            let after_imr =
+                self.search_reference(problem, &imr, start, device, policy, observe).await?;
             if after_imr.stop == Stop::Canceled {
                 return Ok(None);
             }
@@ -50,17 +56,21 @@ impl Smoother<'_> {
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
         for (label, start) in starts {
-            let end = self.search_reference(&full(base), &start, device, policy, observe).await?;
+            let full = full(base);
+            let end =
+                self.search_reference(problem, &full, &start, device, policy, observe).await?;
             if end.stop == Stop::Canceled {
                 return Ok(None);
             }
-            let f = self.objective(base, &end.positions).await;
+            let f = objective(problem, base, &end.positions).await;
             let sweeps = end.history.len() - 1;
-            describe.push(format!("{label}: {f} after {sweeps} sweeps ({})", end.stop.name()));
+            let printed = over_all.f(base, f);
+            describe
+                .push(format!("{label}: {printed} after {sweeps} sweeps ({})", end.stop.name()));
             desired = desired.min(f);
         }
         // On an optimal mesh, search runs gain no more than rounding. The initial f is then the desired one.
-        let initial = self.objective(base, start).await;
+        let initial = objective(problem, base, start).await;
         if initial - desired <= NOISE * initial + ROUNDING {
             desired = initial;
         }
@@ -71,13 +81,13 @@ impl Smoother<'_> {
     /// Runs to convergence from the given positions, with progress reported as [`Phase::Reference`].
     async fn search_reference(
         &self,
+        problem: &Problem,
         options: &Options,
         start: &[DVec2],
         device: Option<Device<'_>>,
         policy: &mut dyn CheckpointPolicy,
         observe: &mut dyn Observer,
     ) -> Result<RunEnd, SmoothError> {
-        let problem = &self.problem;
         let mut plan = Plan::toward(options, None);
         set_guards(&mut plan, options.guard, problem, start).await;
         let spec = Spec { problem, device, options, phase: Phase::Reference, is_staged: false };

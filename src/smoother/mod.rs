@@ -4,6 +4,7 @@ mod backend;
 mod goal;
 #[cfg(feature = "gpu")]
 mod on_device;
+mod over_all;
 mod prepared;
 mod run;
 mod running;

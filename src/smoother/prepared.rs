@@ -230,7 +230,7 @@ impl<'a> Smoother<'a> {
         }
         let positions = now(self.problem.normalized(points, Vec::new()));
         let Some(field) = &self.field else {
-            return Ok(now(self.objective(metric, &positions)));
+            return Ok(now(objective(&self.problem, metric, &positions)));
         };
         let mut problem = self.problem.clone();
         set_targets_of(field, &self.mesh, &mut problem, &positions)?;
@@ -290,10 +290,20 @@ impl<'a> Smoother<'a> {
         }
     }
 
-    /// Returns the objective by a metric at normalized positions.
-    pub(super) async fn objective(&self, metric: Metric, positions: &[DVec2]) -> f64 {
-        metric.ideal_squared() + mean_excess(metric, &self.problem, positions).await
+    /// Returns the problem of a run, judged by the triangles with a corner that is free or slides. With a field of targets,
+    /// the objective is the mean over all triangles: new targets also change the values of triangles that cannot move.
+    pub(super) fn judged_problem(&self) -> Problem {
+        if self.field.is_some() {
+            return self.problem.clone();
+        }
+        let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
+        self.problem.judged_by_movable(&slides)
     }
+}
+
+/// Returns the objective of a problem by a metric at normalized positions.
+pub(super) async fn objective(problem: &Problem, metric: Metric, positions: &[DVec2]) -> f64 {
+    metric.ideal_squared() + mean_excess(metric, problem, positions).await
 }
 
 #[cfg(test)]

@@ -7,26 +7,56 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
+use crate::layout::Problem;
 use crate::metric::{Corner, Ideal, Metric};
 use crate::options::{Feature, Goal, Options};
-use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::outcome::{DeviceFault, GoalOutcome, Improved, Outcome};
 use crate::parallel::paced;
 use crate::precision::Precision;
 use crate::quality::Quality;
 use crate::resume;
 use crate::run::{
     Checkpoint, CheckpointPolicy, Checkpointer, JITTER, MIN_SCALE, NOISE, Objectives, Observer,
-    Phase, Plan, ROUNDING, RunFingerprint, Stop, set_guards,
+    Phase, Plan, Progress, ROUNDING, RunFingerprint, Stop, set_guards,
 };
 use crate::slide::{Slide, Sliding};
 use crate::targets::{Surface, TargetField};
 use crate::whole::{Device, Improvement, Live, RunEnd, Spec, altitude, drive};
 
-use super::prepared::Smoother;
+use super::over_all::OverAll;
+use super::prepared::{Smoother, objective};
 use super::stages::Stages;
 
 /// Number of coordinates that one task rounds, and of triangles that one task measures.
 const CHUNK: usize = 1 << 14;
+
+/// Returns whether a run by the metric can begin at the mesh, where f is `objective`.
+async fn is_usable(problem: &Problem, metric: Metric, objective: f64) -> bool {
+    objective.is_finite() && !is_beyond_precision(problem, metric, objective).await
+}
+
+/// Returns whether a triangle that can move is so flat, or so small beside others, that the metric cannot judge it in
+/// double precision. `objective` is f by the metric.
+async fn is_beyond_precision(problem: &Problem, metric: Metric, objective: f64) -> bool {
+    // Rounded areas have errors of some 1e-16 of the squared edges, so q² of such a triangle far exceeds this sum.
+    const LEAST: f64 = 1e13;
+    let beyond = problem.beyond_precision(problem.positions());
+    if metric.properties().barrier {
+        // Some metrics are negative where the rounded area is negative.
+        let sum = objective.abs() * problem.judged_triangles().len() as f64;
+        return sum > LEAST && !beyond.await.is_empty();
+    }
+    // The shape guard of EDGE would hold the vertices of such triangles.
+    let can_move = |&t: &u32| problem.can_move(&problem.triangles()[t as usize]);
+    !metric.is_smooth() && beyond.await.iter().any(can_move)
+}
+
+/// What judges a run: its objective, and the objective before the first sweep.
+struct JudgedBy<'r> {
+    over_all: &'r OverAll<'r>,
+    /// Objective of the problem by the base metric before the first sweep.
+    initial: f64,
+}
 
 impl Smoother<'_> {
     pub(super) async fn run_at(
@@ -43,33 +73,42 @@ impl Smoother<'_> {
         // Only the CPU slides vertices, so a mesh without free vertices needs no device.
         let device = device.filter(|_| self.problem.free_count() > 0);
         let (device, fault) = self.checked(device, policy).await?;
-        let mut about = self.about(options).await;
-        let resumed = from
-            .map(|from| resume::check(&about, from, &self.problem).map(|()| from))
-            .transpose()?;
+        let problem = &self.judged_problem();
+        let mut about = self.about(problem, options).await;
+        let resumed =
+            from.map(|from| resume::check(&about, from, problem).map(|()| from)).transpose()?;
         let base = options.scheme.base();
-        let initial = self.objective(base, self.problem.positions()).await;
-        if !self.is_usable(base, initial).await {
+        let initial = objective(problem, base, problem.positions()).await;
+        if !is_usable(problem, base, initial).await {
             let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
             let mut usable = Vec::new();
             for &metric in Metric::ALL.iter() {
-                let f = self.objective(metric, self.problem.positions()).await;
-                if self.is_usable(metric, f).await {
+                let f = objective(problem, metric, problem.positions()).await;
+                if is_usable(problem, metric, f).await {
                     usable.push(metric.name());
                 }
             }
             let metric = base.name();
             return Err(MeshError::BeyondPrecision { triangle, metric, usable }.into());
         }
+        let over_all = OverAll::new(problem, &Plan::new(options).tracked()).await;
+        let mut observe = |now: &Progress| match now.phase {
+            // A search run may have another base metric.
+            Phase::Reference => observe(now),
+            _ => observe(&Progress { f: over_all.f(base, now.f), ..*now }),
+        };
         let known = resumed.and_then(|resumed| resumed.about.goal.clone());
         let goal = match (options.stopping.goal(), known) {
             (Some(Goal { fraction, .. }), Some((desired, origin))) => {
                 Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
             }
             (Some(goal), None) => {
-                match self.resolve_goal(goal, options, device, policy, observe).await? {
+                let found = self
+                    .resolve_goal(&over_all, goal, options, device, policy, &mut observe)
+                    .await?;
+                match found {
                     Some(aimed) => Some(aimed),
-                    None => return Ok(self.unchanged(base, initial, began)),
+                    None => return Ok(self.unchanged(base, over_all.f(base, initial), began)),
                 }
             }
             (None, _) => None,
@@ -84,32 +123,37 @@ impl Smoother<'_> {
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
         let mut checkpointer = Checkpointer::new(policy);
         let mut plan = Plan::toward(options, target);
-        let start = self.problem.positions();
-        set_guards(&mut plan, options.guard, &self.problem, start).await;
+        let start = problem.positions();
+        set_guards(&mut plan, options.guard, problem, start).await;
         let mut stages = Stages::new(self, options, &plan);
         let mut in_order = stages.in_order();
         checkpointer.about = Some(about);
-        let (problem, phase, is_staged) = (&self.problem, Phase::Smoothing, !in_order.is_empty());
+        let (phase, is_staged) = (Phase::Smoothing, !in_order.is_empty());
         let spec = Spec { problem, device, options, phase, is_staged };
         let period = resumed.and_then(|resumed| resumed.period.as_ref());
         if period.is_some() && !is_staged {
             return Err(resume::foreign());
         }
         let live = Live::new(spec, plan, start, resumed, &mut checkpointer).await?;
-        let ended = drive(live, &mut in_order, &mut checkpointer, observe, period).await?;
-        let outcome = self.judged(options, initial, goal, ended, stages, observe).await?;
+        let ended = drive(live, &mut in_order, &mut checkpointer, &mut observe, period).await?;
+        let judged = JudgedBy { over_all: &over_all, initial };
+        let outcome = self.judged(options, judged, goal, ended, stages, &mut observe).await?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
     }
 
     /// Returns the description of a run with these options that its checkpoints carry.
-    async fn about(&self, options: &Options) -> RunFingerprint {
+    async fn about(&self, problem: &Problem, options: &Options) -> RunFingerprint {
         let of_slide = self.slide.as_ref().map(Slide::words);
         let of_field = self.field.as_ref().map(TargetField::words);
         let of_projection = self.problem.is_projected().then(|| vec![1]);
         let size_weight = self.problem.ideal().size_weight;
         let of_sizes = (size_weight != 1.0).then(|| vec![size_weight.to_bits()]);
+        // Objectives in the checkpoints of earlier versions are means over all triangles.
+        let judged = problem.judged_triangles().len();
+        let of_judged = (judged < problem.triangles().len()).then(|| vec![judged as u64]);
         let words = of_slide.into_iter().chain(of_field).chain(of_projection).chain(of_sizes);
+        let words = words.chain(of_judged);
         let more: Vec<u64> = words.flatten().collect();
         resume::about(&self.mesh, self.problem.targets(), &more, options).await
     }
@@ -121,27 +165,6 @@ impl Smoother<'_> {
             (Feature::Targets, self.problem.targets().is_some()),
             (Feature::TargetField, self.field.is_some()),
         ])
-    }
-
-    /// Returns whether a run by the metric can begin at the mesh, where f is `objective`.
-    async fn is_usable(&self, metric: Metric, objective: f64) -> bool {
-        objective.is_finite() && !self.is_beyond_precision(metric, objective).await
-    }
-
-    /// Returns whether a triangle is so flat, or so small beside others, that the metric cannot judge it in double
-    /// precision. `objective` is f by the metric.
-    async fn is_beyond_precision(&self, metric: Metric, objective: f64) -> bool {
-        // Rounded areas have errors of some 1e-16 of the squared edges, so q² of such a triangle far exceeds this sum.
-        const LEAST: f64 = 1e13;
-        let beyond = self.problem.beyond_precision(self.problem.positions());
-        if metric.properties().barrier {
-            // Some metrics are negative where the rounded area is negative.
-            let sum = objective.abs() * self.size().triangles as f64;
-            return sum > LEAST && !beyond.await.is_empty();
-        }
-        // The shape guard of EDGE would hold the vertices of such triangles.
-        let can_move = |&t: &u32| self.problem.can_move(&self.problem.triangles()[t as usize]);
-        !metric.is_smooth() && beyond.await.iter().any(can_move)
     }
 
     /// Returns the device on which a run begins, after checks that the mesh fits the device and that its arithmetic
@@ -168,7 +191,7 @@ impl Smoother<'_> {
     async fn judged(
         &self,
         options: &Options,
-        initial: f64,
+        JudgedBy { over_all, initial }: JudgedBy<'_>,
         goal: Option<GoalOutcome>,
         mut ended: RunEnd,
         stages: Stages<'_>,
@@ -182,7 +205,7 @@ impl Smoother<'_> {
             false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
         };
         let swept = f(best_sweep);
-        let mut problem = self.problem.clone();
+        let mut problem = over_all.problem.clone();
         stages.set_targets_at(&mut problem, &ended.positions)?;
         let improving =
             Improvement::after(&mut ended, options, &problem, stages.bounds(), observe).await;
@@ -244,15 +267,20 @@ impl Smoother<'_> {
         let improved = match improving {
             Some(improving) => {
                 let positions = if gains { &judged } else { self.problem.positions() };
-                Some(improving.outcome(problem, positions, best, &slides, gains).await)
+                let improved = improving.outcome(problem, positions, best, &slides, gains).await;
+                Some(Improved { f: improved.f.map(|f| over_all.f(base, f)), ..improved })
             }
             None => None,
         };
         let goal = goal.map(|goal| {
             let gone = (initial - best) / (initial - goal.desired);
             // 0 / 0 means that the initial objective equals the desired one.
-            GoalOutcome { best_fraction: if gone.is_nan() { 1.0 } else { gone }, ..goal }
+            let best_fraction = if gone.is_nan() { 1.0 } else { gone };
+            let given = options.stopping.goal().and_then(|goal| goal.desired);
+            let desired = given.unwrap_or_else(|| over_all.f(base, goal.desired));
+            GoalOutcome { best_fraction, desired, ..goal }
         });
+        let history = ended.history.into_iter().map(|now| over_all.objectives(now)).collect();
         Ok(Outcome {
             points,
             stop: ended.stop,
@@ -270,7 +298,8 @@ impl Smoother<'_> {
             projection_error,
             held_back: ended.held_back,
             lost,
-            history: ended.history,
+            history,
+            movable_f: [initial, best],
             goal,
             returned,
             slid,
@@ -284,7 +313,8 @@ impl Smoother<'_> {
     /// divides areas by the mean area at its start, and sliding vertices change the mean area. Areas that are errors of
     /// rounding depend on the unit of positions too. With targets, sizes are absolute, and the result is true.
     async fn is_lower(&self, metric: Metric, points: &[[f64; 2]]) -> Result<bool, MeshError> {
-        let is_exact = self.sliding.is_none() && metric.properties().barrier;
+        let is_exact =
+            metric.properties().barrier && (self.sliding.is_none() || metric.is_scale_invariant());
         if is_exact || self.problem.targets().is_some() || self.field.is_some() {
             return Ok(true);
         }
@@ -357,6 +387,7 @@ impl Smoother<'_> {
             held_back: 0,
             lost: 0.0,
             history: vec![objectives],
+            movable_f: [f; 2],
             goal: None,
             returned: 0,
             slid: None,

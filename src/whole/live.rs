@@ -447,7 +447,8 @@ async fn opened<'s>(
         if metric.properties().is_inverse_mean_ratio {
             continue;
         }
-        let sum = mean_excess(metric, problem, from).await * problem.triangles().len() as f64;
+        let sum =
+            mean_excess(metric, problem, from).await * problem.judged_triangles().len() as f64;
         // A sum of NaN counts as too large.
         if sum.partial_cmp(&MAX_SUM_ON_DEVICE) != Some(Ordering::Less) {
             return Ok((None, None));

@@ -170,8 +170,8 @@ fn a_star_that_winds_twice_is_refused() {
 fn a_triangle_far_smaller_than_the_others_is_no_flat_one() {
     // Products of the triangle's coordinates underflow.
     let s = 1e-165;
-    let points = vec![[0.0, 0.0], [3.0 * s, 0.0], [0.0, 3.0 * s], [s, s], [1.0, 0.0]];
-    let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 4, 2]];
+    let points = vec![[0.0, 0.0], [3.0 * s, 0.0], [0.0, 3.0 * s], [s, s], [1.0, 0.0], [0.3, s]];
+    let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 4, 5], [4, 2, 5], [2, 1, 5]];
     let mesh = Mesh { points, triangles, fixed: vec![] };
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {

@@ -23,6 +23,7 @@ mod resumed;
 mod safety;
 mod slide;
 mod sphere;
+mod still;
 mod stretched;
 mod stuck;
 mod targets;

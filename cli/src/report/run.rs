@@ -37,6 +37,8 @@ pub(crate) struct Report {
     pub(crate) levels_left_out: bool,
     /// The sweep whose result was written; 0 for the mesh as it was.
     pub(crate) best_sweep: u32,
+    /// f over the triangles that can move, by the metric that judges the run, before and after the run.
+    pub(crate) movable_f: [f64; 2],
     /// Estimated remaining gain as a fraction of f; null if the decay of f allows no estimate.
     pub(crate) remaining: Option<f64>,
     /// Whether a GPU ended the run as converged, although its single precision cannot tell a gain of the tolerance.

@@ -18,6 +18,8 @@ const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a def
 const LARGE_CHANGE: f64 = 1.25;
 /// If f by imr is below this value before the run, the sizes of elements are likely to be intended.
 const SOUND: f64 = 2.0;
+/// Relative difference between f over all triangles and f over those that can move from which the summary states both.
+const SEEN: f64 = 0.01;
 /// `Outcome::remaining` is relative to f, or to this value where f is smaller.
 const LEAST_SCALE: f64 = 1e-6;
 
@@ -98,9 +100,19 @@ impl Report {
         if !base.parse().is_ok_and(is_ratio) {
             metrics.push("imr");
         }
+        let mut judges = |name: &str, before: f64, after: f64| {
+            row(name, sig6(before), sig6(after));
+            let [movable, now] = self.movable_f;
+            if (movable - before).abs() > SEEN * before || (now - after).abs() > SEEN * after {
+                row("  of movable", sig6(movable), sig6(now));
+            }
+        };
         if let Some(TargetReport { f: [before, after], .. }) = self.target {
-            row("f of targets", sig6(before), sig6(after));
+            judges("f of targets", before, after);
             metrics = vec!["imr"];
+        } else {
+            judges(&format!("f {base}"), self.before.f[base], self.after.f[base]);
+            metrics.remove(0);
         }
         for metric in metrics {
             row(&format!("f {metric}"), sig6(self.before.f[metric]), sig6(self.after.f[metric]));
@@ -187,7 +199,7 @@ impl Report {
 
     /// Returns a clause on the estimated distance of f from its limit, for the end of a sentence.
     fn left(&self) -> String {
-        let f = self.target.as_ref().map_or(self.after.f[self.base()], |target| target.f[1]);
+        let f = self.movable_f[1];
         match self.remaining {
             // An estimate of 0.5 or more comes from a decay that has just begun.
             None | Some(0.5..) => "; more sweeps may gain more".into(),

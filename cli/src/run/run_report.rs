@@ -61,6 +61,7 @@ pub(super) fn report(
         closing_sweeps: outcome.closing_sweeps,
         levels_left_out: outcome.levels_left_out,
         best_sweep: outcome.best_sweep,
+        movable_f: outcome.movable_f,
         remaining: outcome.remaining,
         imprecise: is_imprecise(input, ran),
         projection_error: projection_error(input, ran),

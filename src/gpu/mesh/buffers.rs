@@ -43,7 +43,7 @@ impl MeshBuffers {
         let positions = filled_with_pauses(gpu, "positions", &[&positions], usage).await?;
         let (starts, usage) = (problem.ring_start(), Usage::STORAGE | Usage::COPY_DST);
         let ring_start = filled_with_pauses(gpu, "ring starts", &[starts], usage).await?;
-        let (ring, triangles) = (problem.ring(), problem.triangles());
+        let (ring, triangles) = (problem.ring(), problem.judged_triangles());
         let ring = filled_with_pauses(gpu, "one-rings", &[ring], Usage::STORAGE).await?;
         let triangles = filled_with_pauses(gpu, "triangles", &[triangles], Usage::STORAGE).await?;
         let changes = scoped(&gpu.device, || Changes::new(gpu))?;

@@ -50,7 +50,7 @@ impl Parts {
     /// [`GpuError::TooLarge`] if the kernels cannot number the vertices or triangles, [`GpuError::Limit`] if the mesh
     /// cannot be cut into parts that fit.
     pub(crate) fn new(problem: &Problem, limits: &wgpu::Limits) -> Result<Self, GpuError> {
-        let triangles = problem.triangles().len();
+        let triangles = problem.judged_triangles().len();
         let size = MeshSize { vertices: problem.positions().len(), triangles };
         size.check(limits)?;
         let maps = problem.map_kind();

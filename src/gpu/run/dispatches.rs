@@ -156,7 +156,7 @@ impl Dispatches {
         let keep_best = keep_best.then(|| pipeline(Kernel::KeepBest)).transpose()?;
         pause().await;
 
-        let partials = objective_invocations(problem.triangles().len());
+        let partials = objective_invocations(problem.judged_triangles().len());
         let partial_bytes =
             (plan.tracked().len() as u64 + 2) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
@@ -214,7 +214,7 @@ impl Dispatches {
 
     /// Rewrites the uniform of the run for a problem with other targets, and so another mean area.
     pub(crate) fn write_params(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
-        let partials = objective_invocations(problem.triangles().len());
+        let partials = objective_invocations(problem.judged_triangles().len());
         let params = params(problem, &self.plan, partials);
         scoped(&gpu.device, || {
             gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
@@ -266,13 +266,13 @@ impl Dispatches {
 }
 
 fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
-    let triangles = problem.triangles().len() as f64;
+    let triangles = problem.judged_triangles().len() as f64;
     let base = plan.scheme.base();
     let ideal_sum = base.ideal_squared() * triangles;
     let target = plan.stop.target.map(|f| f * triangles - ideal_sum);
     Params {
         zero: 0,
-        triangles: problem.triangles().len() as u32,
+        triangles: problem.judged_triangles().len() as u32,
         partials,
         newton_steps: plan.newton_steps,
         base: base as u32,

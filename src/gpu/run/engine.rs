@@ -171,7 +171,7 @@ impl<'a> GpuEngine<'a> {
             // A larger sum holds `NOT_FINITE` of objective.wgsl for at least one triangle. Sums of finite triangles on
             // a device are far smaller.
             let sum = if sum < MIN_NOT_FINITE { sum } else { f64::NAN };
-            let excess = sum / self.problem.triangles().len() as f64;
+            let excess = sum / self.problem.judged_triangles().len() as f64;
             values.set(metric, metric.ideal_squared() + excess);
         }
         values
@@ -198,7 +198,7 @@ impl<'a> GpuEngine<'a> {
     async fn proposal(&self, totals: Copied<'_, [f32; 2]>) -> Result<Proposal, GpuError> {
         let totals = totals.values(self.waiting).await?;
         let total = |i: usize| totals.get(i).map_or(f64::NAN, |&sum| unpair(sum));
-        let triangles = self.problem.triangles().len() as f64;
+        let triangles = self.problem.judged_triangles().len() as f64;
         Ok(Proposal {
             here: total(0) / triangles,
             there: (total(2) == 0.0).then(|| total(1) / triangles),

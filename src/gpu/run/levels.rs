@@ -75,7 +75,7 @@ impl Levels {
             pause().await;
         }
         let mut listing = Listing::new(gpu, mesh.parts.form());
-        let partials = objective_invocations(problem.triangles().len());
+        let partials = objective_invocations(problem.judged_triangles().len());
         let partial_sums = listing.vector(4 * partials as usize);
 
         let (values, [roots, diagonal]) =
