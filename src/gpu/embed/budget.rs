@@ -113,9 +113,11 @@ impl Budget {
         measured.get(measured.len().saturating_sub(2)).copied()
     }
 
-    /// Returns the expected time of a sweep; `None` before the first measurement.
+    /// Returns the expected time of a sweep; `None` before the first measurement. A time too long for a [`Duration`]
+    /// is returned as [`Duration::MAX`].
     pub fn estimate(&self) -> Option<Duration> {
-        self.seconds().map(Duration::from_secs_f64)
+        let time = |seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        self.seconds().map(time)
     }
 
     /// Records the latest measurement by the device, if there is a new one.
@@ -230,6 +232,18 @@ mod tests {
         let mut budget = Budget::micros(500);
         budget.record(1, Duration::ZERO);
         assert_eq!(budget.sweeps(), 2);
+    }
+
+    #[test]
+    fn the_longest_measurable_time_is_estimated() {
+        for sweeps in [1, u32::MAX] {
+            let mut budget = Budget::micros(1000);
+            budget.record(sweeps, Duration::MAX);
+            let expected = Duration::MAX.as_secs_f64() / f64::from(sweeps);
+            let estimate = budget.estimate().unwrap().as_secs_f64();
+            assert!((estimate / expected - 1.0).abs() < 1e-9, "{estimate} {expected}");
+            assert_eq!(budget.sweeps(), 1);
+        }
     }
 
     #[test]
