@@ -171,6 +171,19 @@ fn a_queue_of_another_device_is_refused() {
     other.another_gpu();
 }
 
+/// A former defect: polls reported the device as busy after the first handle, although nothing was submitted, and a
+/// busy device accepts every queue.
+#[test]
+fn a_foreign_queue_is_refused_directly_after_a_handle_was_made() {
+    let (app, other) = (App::new(), App::new());
+    for attempt in 0..12 {
+        app.another_gpu();
+        let foreign = other.gpu.queue().clone();
+        let error = Gpu::new(app.device().clone(), foreign).err();
+        assert!(matches!(error, Some(GpuError::Queue)), "attempt {attempt}: {error:?}");
+    }
+}
+
 #[test]
 fn errors_of_an_encoder_reach_the_application_when_it_finishes_it() {
     let (app, other) = (App::new(), App::new());

@@ -36,10 +36,11 @@ impl Gpu {
     /// notices a lost device at the next readback. If the application passes an unusable encoder, for example a
     /// finished one or one of another device, wgpu reports the fault when the application finishes the encoder.
     ///
-    /// Any thread may call this function. Nothing is submitted. A poll of the device, which may run callbacks of the
-    /// application, checks that the queue belongs to the device. A queue counts as foreign only after some 30 ms of
-    /// repeated polls. A busy device, or a browser, cannot check the queue: wgpu reports a foreign queue later, to the
-    /// error handler of the queue's own device.
+    /// Any thread may call this function. Nothing is submitted. Polls of the device, which may run callbacks of the
+    /// application, check that the queue belongs to the device. The polls wait until submitted work is done, some 30 ms
+    /// at most. A queue counts as foreign only after some 30 ms of repeated polls of an idle device. A device that stays
+    /// busy, or a browser, cannot check the queue: wgpu reports a foreign queue later, to the error handler of the
+    /// queue's own device.
     ///
     /// `new` does not check the adapter's arithmetic, as the check waits for the device. Runs of
     /// [`Smoother`](crate::Smoother) check the arithmetic first. An application that encodes sweeps itself calls
@@ -225,8 +226,8 @@ impl Gpu {
     }
 }
 
-/// Returns whether the queue belongs to the device. If the device is busy, the answer would need a wait, and the queue
-/// passes.
+/// Returns whether the queue belongs to the device. A device that stays busy for [`MAX_POLLS`] milliseconds does not
+/// tell, and the queue passes.
 ///
 /// Only polls of a queue's own device report that the queue's work is done. If polls of an idle device bring no report,
 /// the queue belongs to another device. Browsers have no polls, so there every queue passes.
@@ -237,16 +238,27 @@ fn is_own(queue: &wgpu::Queue, device: &wgpu::Device) -> bool {
     let reported = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&reported);
     queue.on_submitted_work_done(move || flag.store(true, Ordering::Relaxed));
-    // A poll on another thread may have taken the report, and be about to deliver it.
-    (0..MAX_POLLS).any(|_| {
-        let idle = poll(device, wgpu::PollType::Poll).is_ok_and(|status| status.is_queue_empty());
-        let is_own = reported.load(Ordering::Relaxed) || !idle;
-        if !is_own {
-            std::thread::sleep(Duration::from_millis(1));
+    // wgpu submits the clearing of new buffers by itself, so that a device without work of the application is busy too.
+    // A poll that does not wait may report such a device as busy until the next wait.
+    let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(POLL) };
+    let [mut idle_polls, mut busy_polls] = [0; 2];
+    while idle_polls < MAX_POLLS && busy_polls < MAX_POLLS {
+        let is_idle = poll(device, wait.clone()).is_ok_and(|status| status.is_queue_empty());
+        if reported.load(Ordering::Relaxed) {
+            return true;
         }
-        is_own
-    })
+        if is_idle {
+            idle_polls += 1;
+            // A poll on another thread may have taken the report, and be about to deliver it.
+            std::thread::sleep(POLL);
+        } else {
+            busy_polls += 1;
+        }
+    }
+    idle_polls < MAX_POLLS
 }
 
-/// Number of polls, one each millisecond, before a queue counts as foreign.
+/// Number of polls of an idle device before a queue counts as foreign, and of a busy device before the queue passes.
 const MAX_POLLS: u32 = 30;
+/// Longest wait of a poll for a busy device, and time between two polls of an idle device.
+const POLL: Duration = Duration::from_millis(1);
