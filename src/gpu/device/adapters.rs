@@ -50,6 +50,10 @@ pub(crate) async fn ranked_adapters_async() -> Vec<wgpu::Adapter> {
 }
 
 async fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    // wgpu panics if the build has no backend of the platform, as with the feature `metal` on Linux.
+    if wgpu::Instance::enabled_backend_features().is_empty() {
+        return Vec::new();
+    }
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
         // Validation layers print to the caller's terminal.
@@ -76,6 +80,19 @@ async fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
 mod tests {
     use super::*;
     use crate::gpu::device::Gpu;
+
+    /// Tests something only in a build such as `--no-default-features --features gpu`, whose other tests need a backend.
+    #[test]
+    fn a_build_without_a_backend_of_the_platform_has_no_adapter() {
+        if !wgpu::Instance::enabled_backend_features().is_empty() {
+            return;
+        }
+        assert!(adapters().is_empty() && crate::gpu::checked_adapters().is_empty());
+        assert!(matches!(Gpu::open(None), Err(GpuError::NoAdapter { .. })));
+        let size = crate::MeshSize { vertices: 3_000_000, triangles: 6_000_000 };
+        let (backend, reason) = crate::Backend::auto(size, &crate::Options::default());
+        assert!(matches!(backend, crate::Backend::Cpu), "{reason}");
+    }
 
     #[test]
     fn an_adapter_without_a_name_is_called_unnamed() {
