@@ -41,11 +41,13 @@ pub struct Readback<T> {
     offset: u64,
     bytes: u64,
     copies: Vec<Staged>,
-    /// Number of copies encoded so far.
-    encoded: u64,
+    /// Number of copies requested so far, including refused ones.
+    requested: u64,
     latest: Vec<T>,
     /// Number of the latest copy that has arrived, counted from 0.
     arrived: Option<u64>,
+    /// Number of the copy that the last call of [`latest`](Self::latest) returned.
+    returned: Option<u64>,
 }
 
 /// A staging buffer.
@@ -53,7 +55,7 @@ pub struct Readback<T> {
 struct Staged {
     staging: wgpu::Buffer,
     state: Arc<AtomicU8>,
-    /// Number of the copy in the staging buffer.
+    /// Number of the copy in the staging buffer, among all requested copies.
     number: u64,
 }
 
@@ -130,23 +132,28 @@ impl<T: Pod> Readback<T> {
         })?;
         check_alive(&gpu.device)?;
         let (device, source) = (gpu.device.clone(), buffer.clone());
-        let (encoded, latest, arrived) = (0, Vec::new(), None);
-        Ok(Self { device, source, offset, bytes, copies, encoded, latest, arrived })
+        let (requested, latest, arrived, returned) = (0, Vec::new(), None, None);
+        Ok(Self { device, source, offset, bytes, copies, requested, latest, arrived, returned })
     }
 
     /// Encodes a copy of the bound range at this point of the command buffer, and returns true. Encodes nothing and
-    /// returns false while three copies are in flight, because the device is behind or nobody polls the device. Copies
+    /// returns false while three copies are in flight, because the device is behind or nobody polls the device. Takes
+    /// the values of copies that have arrived, so that [`latest`](Self::latest) need not be called in each frame. Copies
     /// in encoders that are never submitted have no effect.
     pub fn encode_readback(&mut self, encoder: &mut wgpu::CommandEncoder) -> bool {
         self.encode(encoder).is_some()
     }
 
-    /// Encodes a copy and returns its number, counted from 0; `None` while three copies are in flight.
+    /// Encodes a copy and returns its number, counted from 0 and with refused copies; `None` while three copies are in
+    /// flight.
     pub(crate) fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Option<u64> {
-        let Self { source, offset, bytes, copies, encoded, .. } = self;
+        // A lost copy stays lost, and `latest` returns the error.
+        let _ = self.collect();
+        let Self { source, offset, bytes, copies, requested, .. } = self;
+        let number = *requested;
+        *requested += 1;
         let copy = copies.iter_mut().find(|copy| copy.state.load(Ordering::Acquire) == FREE)?;
-        copy.number = *encoded;
-        *encoded += 1;
+        copy.number = number;
         copy.state.store(UNDER_WAY, Ordering::Release);
         let arrival = Arrival(Arc::clone(&copy.state));
         encoder.copy_buffer_to_buffer(source, *offset, &copy.staging, 0, *bytes);
@@ -163,13 +170,15 @@ impl<T: Pod> Readback<T> {
     pub fn latest(&mut self) -> Result<Option<&[T]>, GpuError> {
         self.device.check()?;
         self.collect()?;
+        self.returned = self.arrived;
         Ok(self.arrived.is_some().then_some(&self.latest[..]))
     }
 
-    /// Returns how many copies were encoded after the copy that [`latest`](Self::latest) returned: 0 for the newest.
-    /// `None` before the first arrival.
+    /// Returns how many copies were requested after the copy that [`latest`](Self::latest) returned, including copies
+    /// that [`encode_readback`](Self::encode_readback) refused: 0 for the newest. `None` before `latest` has returned
+    /// values.
     pub fn age(&self) -> Option<u64> {
-        self.arrived.map(|number| self.encoded - 1 - number)
+        self.returned.map(|number| self.requested - 1 - number)
     }
 
     /// Returns the number of the latest copy that has arrived, counted from 0.
