@@ -17,9 +17,9 @@ pub use coloring::Coloring;
 pub(crate) use mercator::{Mercator, MeshCoordinates};
 pub(crate) use numbering::DEGREE_BLOCK;
 pub use prepare::prepare;
-#[cfg(feature = "gpu")]
-pub(crate) use prepare::prepare_to_untangle;
 pub(crate) use prepare::{laid_out, prepare_to_slide};
+#[cfg(feature = "gpu")]
+pub(crate) use prepare::{prepare_like, prepare_to_untangle};
 #[cfg(feature = "gpu")]
 pub(crate) use problem::MapKind;
 pub use problem::Problem;

@@ -34,6 +34,19 @@ pub(crate) fn prepare_to_slide(mesh: &Mesh) -> Result<(Topology<'_>, Problem), M
     }
 }
 
+/// Prepares a mesh as [`prepare`] does. If the vertices of `like`, a problem of the same triangles and points, move in a
+/// projection, the vertices of the returned problem move in this projection too.
+///
+/// # Errors
+/// [`MeshError`] if the mesh cannot be smoothed.
+#[cfg(feature = "gpu")]
+pub(crate) fn prepare_like(mesh: &Mesh, like: &Problem) -> Result<Problem, MeshError> {
+    let (topology, problem) = prepare(mesh)?;
+    let Some(projection) = like.projection else { return Ok(problem) };
+    let images = Mesh { points: like.images(&mesh.points).into_owned(), ..mesh.clone() };
+    Ok(laid_out(&images, &topology).with_projection(projection))
+}
+
 /// Prepares a mesh as [`prepare`] does, but accepts inverted and flat triangles, and triangles that overlap around a
 /// vertex.
 ///

@@ -11,10 +11,21 @@ impl Smoother<'_> {
     /// is laid out again. A field of targets is evaluated once, at the vertices before a run; no vertex slides on a
     /// device.
     ///
+    /// After [`project_from_sphere`](Self::project_from_sphere), vertices on the device move in the Mercator projection.
+    /// Vertex buffers have coordinates of the projection, and are declared by
+    /// [`VertexBuffer::in_mercator_projection`](crate::gpu::VertexBuffer::in_mercator_projection);
+    /// [`DeviceMesh::read_points`] returns longitudes and latitudes. If the projection would invert slivers, the vertices
+    /// near the slivers begin at their moved positions, as in a run, so export before the first import. Sweeps keep the
+    /// signs of triangles in the projection; [`certify`](Self::certify) checks the points that are read.
+    ///
     /// # Errors
     /// [`SmoothError::Gpu`] with [`GpuError::Limit`](crate::GpuError::Limit) if the mesh is too large for the device,
-    /// and [`SmoothError::Mesh`] if no vertex is free.
+    /// and [`SmoothError::Mesh`] if every vertex is on the boundary or in no triangle. Vertices of
+    /// [`Mesh::fixed`](crate::Mesh::fixed) are held by pins, so a mesh whose other vertices are fixed is accepted.
     pub fn to_device(&self, gpu: &Gpu) -> Result<DeviceMesh, SmoothError> {
+        if let Some(opened) = &self.opened {
+            return opened.to_device(gpu);
+        }
         DeviceMesh::of(gpu, &self.mesh, &self.problem)
     }
 }

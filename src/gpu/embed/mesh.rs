@@ -22,7 +22,7 @@ use crate::gpu::kernels::uniforms::join;
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::layout::{prepare, prepare_to_untangle};
+use crate::layout::{prepare, prepare_like, prepare_to_untangle};
 use crate::mesh::{Mesh, MeshSize};
 use crate::options::{Feature, Options};
 use crate::parallel::pace::now;
@@ -90,14 +90,13 @@ impl DeviceMesh {
         Self::made(gpu, mesh, Some(targets))
     }
 
-    /// Uploads a mesh with the layout and the targets of `prepared`, a problem of the same mesh. Only meshes with fixed
-    /// vertices or without free vertices are laid out again.
+    /// Uploads a mesh with the layout, the projection and the targets of `prepared`, a problem of the same mesh. Only
+    /// meshes with fixed vertices or without free vertices are laid out again.
     pub(crate) fn of(gpu: &Gpu, mesh: &Mesh, prepared: &Problem) -> Result<Self, SmoothError> {
         if mesh.fixed.is_empty() && prepared.free_count() > 0 {
             return Self::uploaded(gpu, mesh, prepared.clone());
         }
-        let unconstrained = unconstrained(mesh);
-        let (_, mut problem) = prepare(&unconstrained)?;
+        let mut problem = prepare_like(&unconstrained(mesh), prepared)?;
         if prepared.targets().is_some() {
             problem.take_targets(prepared, &places(mesh, prepared));
         }
@@ -215,8 +214,9 @@ impl DeviceMesh {
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the buffer is too small, was created without `STORAGE`, or belongs to another device; if
-    /// stride, offset, origin or scale are out of range; or if rounding to single precision would invert triangles of
-    /// the uploaded mesh (the message names a remedy). [`GpuError::Limit`] if the vertices exceed the device's
+    /// stride, offset, origin or scale are out of range; if the mesh is on the sphere and the buffer is not declared
+    /// [`in_mercator_projection`](VertexBuffer::in_mercator_projection), or the reverse; or if rounding to single
+    /// precision would invert triangles of the uploaded mesh (the message names a remedy). [`GpuError::Limit`] if the vertices exceed the device's
     /// `max_storage_buffer_binding_size`.
     pub fn bind_vertices(&self, vertices: &VertexBuffer<'_>) -> Result<BoundVertices, GpuError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
@@ -282,7 +282,9 @@ impl DeviceMesh {
     /// # Errors
     /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex. [`MeshError::BoundNotANumber`] if `worst_imr`
     /// is NaN. [`GpuError::Buffer`] if a buffer is too small, misaligned, was created without `STORAGE`, or belongs to
-    /// another device; if targets and share use one buffer; or if the origin or the scale is invalid.
+    /// another device; if targets and share use one buffer; if the origin or the scale is invalid; or if the mesh is on
+    /// the sphere and the targets are not declared [`in_mercator_projection`](VertexBuffer::in_mercator_projection), or
+    /// the reverse.
     /// [`GpuError::Limit`] if the triangles around the vertices, at 24 bytes each, exceed the device's
     /// `max_storage_buffer_binding_size`.
     pub fn bind_move(

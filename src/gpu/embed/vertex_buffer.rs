@@ -21,6 +21,7 @@ pub struct VertexBuffer<'a> {
     pub(crate) offset: u64,
     origin: [f64; 2],
     scale: f64,
+    is_projected: bool,
 }
 
 impl<'a> VertexBuffer<'a> {
@@ -28,7 +29,7 @@ impl<'a> VertexBuffer<'a> {
     /// `stride` is the distance between successive vertices in bytes: a multiple of 4, at least 8. Binding calls check
     /// both values.
     pub fn new(buffer: &'a wgpu::Buffer, stride: u64) -> Self {
-        Self { buffer, stride, offset: 0, origin: [0.0; 2], scale: 1.0 }
+        Self { buffer, stride, offset: 0, origin: [0.0; 2], scale: 1.0, is_projected: false }
     }
 
     /// Sets the offset of vertex 0 in bytes: a multiple of 4, 0 by default.
@@ -48,6 +49,18 @@ impl<'a> VertexBuffer<'a> {
         Self { scale, ..self }
     }
 
+    /// Declares that the buffer has coordinates of the Mercator projection, in which vertices of a mesh on the sphere move
+    /// ([`Smoother::project_from_sphere`](crate::Smoother::project_from_sphere)). x is the longitude λ in degrees, and y
+    /// is asinh(tan φ) · 180/π for the latitude φ. The latitude at y is atan(sinh(y · π/180)). The origin is in these
+    /// coordinates too.
+    ///
+    /// A device has no functions that convert to longitude and latitude with enough digits. So a mesh on the sphere takes
+    /// only buffers with this declaration, and other meshes only buffers without it.
+    /// [`DeviceMesh::read_points`](crate::gpu::DeviceMesh::read_points) returns longitudes and latitudes.
+    pub fn in_mercator_projection(self) -> Self {
+        Self { is_projected: true, ..self }
+    }
+
     /// Returns the `max_storage_buffer_binding_size`, in bytes, that a device needs to bind the coordinates of this
     /// many vertices, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). If a buffer holds several meshes,
     /// only the vertices of this mesh are bound, so `offset` matters only modulo 256. If the size overflows, returns
@@ -62,7 +75,7 @@ impl<'a> VertexBuffer<'a> {
     /// Returns the coordinate system of the buffer, after a check of the problem's triangles in single precision.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the origin is not finite, if the scale is not positive and finite, or if rounding to
+    /// [`GpuError::Buffer`] under the conditions of [`unjudged_coordinates`](Self::unjudged_coordinates), or if rounding to
     /// single precision would invert or flatten a triangle of the problem.
     pub(crate) fn coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
         let given = self.unjudged_coordinates(problem)?;
@@ -90,10 +103,25 @@ impl<'a> VertexBuffer<'a> {
     /// Returns the coordinate system of the buffer, even if rounding inverts triangles of the problem.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] unless the origin is finite and the scale is positive and finite.
+    /// [`GpuError::Buffer`] unless the origin is finite, the scale is positive and finite, and the buffer has coordinates
+    /// of the projection exactly if the vertices of the problem move in the projection.
     pub(crate) fn unjudged_coordinates(&self, problem: &Problem) -> Result<Coordinates, GpuError> {
         let refuse = |problem: String| Err(GpuError::Buffer(problem));
-        let Self { origin, scale, .. } = *self;
+        let Self { origin, scale, is_projected, .. } = *self;
+        match (problem.is_projected(), is_projected) {
+            (true, false) => return refuse(
+                "the vertices move in the Mercator projection of the sphere, and a device does not convert them to longitude \
+                 and latitude: fill the buffer with coordinates of the projection and declare them by \
+                 VertexBuffer::in_mercator_projection, or draw the points of DeviceMesh::read_points"
+                    .to_owned(),
+            ),
+            (false, true) => return refuse(
+                "it has coordinates of the Mercator projection, but the vertices of the mesh move in the mesh's own \
+                 coordinates: leave out VertexBuffer::in_mercator_projection"
+                    .to_owned(),
+            ),
+            _ => {}
+        }
         if !origin.iter().all(|x| x.is_finite()) {
             return refuse(format!("the origin is {origin:?}, not a point"));
         }
