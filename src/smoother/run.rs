@@ -8,7 +8,7 @@ use crate::error::SmoothError;
 use crate::mesh::Mesh;
 use crate::options::Options;
 use crate::outcome::Outcome;
-use crate::parallel::pace::{BUDGET, paced};
+use crate::parallel::pace::{budget_after, paced};
 use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Progress};
 use crate::whole::Device;
 
@@ -112,7 +112,8 @@ impl<'r> Run<'r> {
 
 /// A run that is awaited does not block the thread while a device works. The future completes only if the application
 /// polls the device meanwhile, as an application that draws frames does (`Device::poll` with `PollType::Poll` is enough).
-/// While the run itself computes, also on the CPU, a poll ends at the first pause that comes 4 ms after its start or later.
+/// While the run itself computes, also on the CPU, a poll ends at the first pause that comes 4 ms after its start or later,
+/// or 0.25 ms if the last poll ended less than 5 ms ago.
 /// Dropping the future cancels the run without an outcome. The future is `Send`, except in a browser.
 impl<'r> IntoFuture for Run<'r> {
     type Output = Result<Outcome, SmoothError>;
@@ -124,7 +125,7 @@ impl<'r> IntoFuture for Run<'r> {
             #[cfg(feature = "gpu")]
             Backend::Gpu(gpu) => Some(Device::awaited(gpu)),
         };
-        Box::pin(paced(BUDGET, Box::pin(self.begin(device))))
+        Box::pin(paced(budget_after, Box::pin(self.begin(device))))
     }
 }
 
