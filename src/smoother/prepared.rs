@@ -1,6 +1,7 @@
 //! A prepared mesh: topology, layout, targets and curves, which serve any number of runs.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::time::Duration;
 
 use glam::DVec2;
@@ -37,6 +38,15 @@ pub struct Smoother<'a> {
     /// projection would invert slivers.
     pub(super) opened: Option<Box<Smoother<'static>>>,
     prepare: Duration,
+}
+
+impl fmt::Debug for Smoother<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (MeshSize { vertices, triangles }, free) = (self.size(), self.problem.free_count());
+        let mut debug = f.debug_struct("Smoother");
+        debug.field("vertices", &vertices).field("triangles", &triangles).field("free", &free);
+        debug.finish_non_exhaustive()
+    }
 }
 
 impl Smoother<'static> {
@@ -323,6 +333,8 @@ mod tests {
         let run = |smoother: &Smoother<'_>| smoother.run(&Options::default()).block().unwrap();
         assert_eq!(run(&kept).points, run(&borrowed).points);
         let flat = Mesh { points: vec![[0.0; 2]; 5], ..mesh };
-        assert!(Smoother::from_mesh(flat).is_err());
+        Smoother::from_mesh(flat).unwrap_err();
+        let expected = "Smoother { vertices: 5, triangles: 4, free: 1, .. }";
+        assert_eq!(format!("{kept:?}"), expected);
     }
 }
