@@ -37,6 +37,9 @@ pub struct Outcome {
     /// Whether [`Method::Auto`](crate::Method::Auto) ran without corrections because the coarser levels do not fit the
     /// device's limits.
     pub levels_left_out: bool,
+    /// Time in which the coarser levels were built and fitted: a part of [`smooth`](Self::smooth), with the readback of
+    /// the stiffness and the upload of the levels. A run that has left its device counts from then on.
+    pub levels: Duration,
     /// The sweep whose positions are [`points`](Self::points); 0 for the mesh before the run.
     pub best_sweep: u32,
     /// Objectives: entry 0 before the first sweep, entry k after sweep k.

@@ -7,7 +7,13 @@ use crate::layout::Problem;
 use crate::parallel::pace::now;
 use crate::run::{Plan, Stepwise, StepwiseRun};
 
+pub use crate::gpu::scope::DeviceCounts;
 pub use crate::gpu::{BindLayout, Kernel};
+
+/// Returns the counts of the work that the library has given to a device since the device was opened.
+pub fn device_counts(gpu: &Gpu) -> DeviceCounts {
+    gpu.counts()
+}
 
 /// Starts a run of sweeps on a device from `positions`, which are normalized and in the problem's order.
 ///

@@ -236,13 +236,12 @@ impl<E: Engine> Session<E> {
     pub(crate) fn counts(&self) -> Counts {
         let sweeps = self.history.sweeps();
         match &self.strategy {
-            Strategy::Sweeps => {
-                Counts { alternated: sweeps, corrections: 0, levels_left_out: false }
-            }
+            Strategy::Sweeps => Counts { alternated: sweeps, ..Counts::NONE },
             Strategy::Corrected(corrections) => Counts {
                 alternated: corrections.alternated().unwrap_or(sweeps),
                 corrections: corrections.taken(),
                 levels_left_out: corrections.is_left_out(),
+                levels: corrections.levels_time(),
             },
         }
     }
@@ -256,6 +255,14 @@ pub(crate) struct Counts {
     pub(crate) alternated: u32,
     pub(crate) corrections: u32,
     pub(crate) levels_left_out: bool,
+    /// Time of building and fitting the coarser levels.
+    pub(crate) levels: Duration,
+}
+
+impl Counts {
+    /// The counts of a run without sweeps.
+    pub(crate) const NONE: Self =
+        Self { alternated: 0, corrections: 0, levels_left_out: false, levels: Duration::ZERO };
 }
 
 /// The reason why a run cannot continue.

@@ -290,6 +290,7 @@ impl Smoother<'_> {
             opening_sweeps: ended.opening_sweeps,
             closing_sweeps: ended.closing_sweeps,
             levels_left_out: ended.counts.levels_left_out,
+            levels: ended.counts.levels,
             best_sweep: if gains { best_sweep as u32 } else { 0 },
             // A decay that has just begun may promise more than the distance between f and its lower limit.
             remaining: ended
@@ -381,6 +382,7 @@ impl Smoother<'_> {
             opening_sweeps: 0,
             closing_sweeps: 0,
             levels_left_out: false,
+            levels: Duration::ZERO,
             best_sweep: 0,
             remaining: None,
             projection_error: 0.0,

@@ -354,7 +354,6 @@ impl<'s> Live<'s> {
     /// Ends the run for the reason `stop`, with the vertices at `positions`.
     pub(crate) async fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> RunEnd {
         let Self { plan, problem, last, session, .. } = self;
-        let none = Counts { alternated: 0, corrections: 0, levels_left_out: false };
         let (counts, remaining, history) = match session {
             Some(session) => {
                 let history = session.history();
@@ -362,7 +361,7 @@ impl<'s> Live<'s> {
             }
             None => {
                 let history = History::resumed(&plan, &last.log, None);
-                (Counts { alternated: history.sweeps(), ..none }, None, history)
+                (Counts { alternated: history.sweeps(), ..Counts::NONE }, None, history)
             }
         };
         let mut held = 0;

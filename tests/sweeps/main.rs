@@ -4,6 +4,7 @@ mod adapted;
 mod agreement;
 mod altitude;
 mod coloring;
+mod counts;
 mod fields;
 mod flat;
 mod global;

@@ -89,6 +89,7 @@ async fn fault(
             let mut pass = encoder.begin_compute_pass(&descriptor);
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &bound, &[]);
+            gpu.device.counters().add_dispatch(false);
             pass.dispatch_workgroups((cases.len() as u32).div_ceil(WORKGROUP), 1, 1);
         }
         gpu.queue.submit([encoder.finish()]);

@@ -3,11 +3,12 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
+use web_time::Instant;
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::scope::{poll, scoped};
+use crate::gpu::scope::{Count, poll, scoped};
 use crate::parallel::pace::pause;
 
 /// Returns the binding of one uniform of type `T`, read at a dynamic offset.
@@ -49,6 +50,7 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
 ) -> wgpu::Buffer {
     let bytes: &[u8] = bytemuck::cast_slice(contents);
     let is_large = bytes.len() > PIECE;
+    gpu.device.counters().add(Count::Allocated, bytes.len() as u64);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(&format!("gpu-smooth {label}")),
         size: (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
@@ -63,6 +65,7 @@ pub(crate) fn filled<T: bytemuck::NoUninit>(
     // wgpu's own `create_buffer_init` would panic.
     if let Ok(mut view) = buffer.get_mapped_range_mut(..) {
         view.slice(..bytes.len()).copy_from_slice(bytes);
+        gpu.device.counters().add(Count::Uploaded, bytes.len() as u64);
     }
     buffer.unmap();
     buffer
@@ -74,14 +77,18 @@ pub(crate) fn write_by_pieces(gpu: &Gpu, buffer: &wgpu::Buffer, first: u64, byte
     let mut under_way = VecDeque::new();
     for (at, piece) in (first..).step_by(PIECE).zip(bytes.chunks(PIECE)) {
         if under_way.len() == UNDER_WAY {
-            let submission_index = under_way.pop_front();
-            // If the device is lost, reading back the results reports it.
-            let wait = wgpu::PollType::Wait { submission_index, timeout: None };
-            let _ = poll(&gpu.device, wait);
+            wait_for(gpu, under_way.pop_front());
         }
         gpu.queue.write_buffer(buffer, at, piece);
         under_way.push_back(gpu.queue.submit([]));
     }
+}
+
+/// Waits for a submission. If the device is lost, reading back the results reports it.
+fn wait_for(gpu: &Gpu, submission_index: Option<wgpu::SubmissionIndex>) {
+    let began = Instant::now();
+    let _ = poll(&gpu.device, wgpu::PollType::Wait { submission_index, timeout: None });
+    gpu.device.counters().add_wait(began.elapsed());
 }
 
 /// Creates a buffer that holds `arrays` one after the other, with pauses between its pieces. The size of `T` must be a
@@ -112,8 +119,7 @@ pub(crate) async fn filled_with_pauses<T: bytemuck::NoUninit + Sync>(
         };
         under_way.push_back(scoped(&gpu.device, || {
             if oldest.is_some() {
-                let wait = wgpu::PollType::Wait { submission_index: oldest, timeout: None };
-                let _ = poll(&gpu.device, wait);
+                wait_for(gpu, oldest);
             }
             gpu.queue.write_buffer(&buffer, at, piece);
             gpu.queue.submit([])
@@ -124,6 +130,7 @@ pub(crate) async fn filled_with_pauses<T: bytemuck::NoUninit + Sync>(
 
 /// Creates a buffer of zeros. To be called in an error scope.
 pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::Buffer {
+    gpu.device.counters().add(Count::Allocated, size);
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(&format!("gpu-smooth {label}")),
         size,

@@ -11,7 +11,7 @@ use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::row::User;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::scope::{WatchedDevice, caught, check_alive, poll};
+use crate::gpu::scope::{CountedQueue, DeviceCounts, WatchedDevice, caught, check_alive, poll};
 use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::run::Plan;
@@ -20,7 +20,7 @@ use crate::run::Plan;
 #[derive(Clone)]
 pub struct Gpu {
     pub(crate) device: WatchedDevice,
-    pub(crate) queue: wgpu::Queue,
+    pub(crate) queue: CountedQueue,
     pub(crate) pipelines: Arc<Pipelines>,
     summary: Arc<AdapterSummary>,
     /// Result of [`Gpu::check_arithmetic`]: the operation that the adapter computes wrongly, or `None` if all pass.
@@ -89,6 +89,7 @@ impl Gpu {
         summary: AdapterSummary,
     ) -> Result<Self, GpuError> {
         limits::check(&device.limits())?;
+        let queue = CountedQueue::new(queue, Arc::clone(device.counters()));
         let (pipelines, arithmetic) = (Arc::new(Pipelines::default()), Arc::default());
         Ok(Self { device, queue, pipelines, summary: Arc::new(summary), arithmetic })
     }
@@ -137,6 +138,11 @@ impl Gpu {
     /// Returns the queue, a handle that the caller may clone.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
+    }
+
+    /// Returns the counts of the work that this library has given to the device.
+    pub(crate) fn counts(&self) -> DeviceCounts {
+        self.device.counters().counts()
     }
 
     /// Returns the name, driver, backend and kind of the adapter in use.

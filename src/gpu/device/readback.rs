@@ -4,10 +4,11 @@ use std::marker::PhantomData;
 
 use bytemuck::Pod;
 use futures_intrusive::channel::shared::{OneshotReceiver, oneshot_channel};
+use web_time::Instant;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::scope::{poll, scoped};
+use crate::gpu::scope::{Count, poll, scoped};
 use crate::parallel::paced;
 
 /// Number of values that are copied between two pauses.
@@ -77,6 +78,7 @@ impl<T: Pod + Send> Copied<'_, T> {
     /// [`GpuError::Lost`] if the device is lost.
     pub(crate) async fn values(self, waiting: Waiting) -> Result<Vec<T>, GpuError> {
         let Self { gpu, staging, arrival, .. } = self;
+        let (counters, began) = (gpu.device.counters(), Instant::now());
         if waiting == Waiting::Block {
             if cfg!(target_arch = "wasm32") {
                 return Err(GpuError::WouldBlock);
@@ -96,6 +98,8 @@ impl<T: Pod + Send> Copied<'_, T> {
         }
         let view =
             staging.get_mapped_range(..).map_err(|error| GpuError::Lost(error.to_string()))?;
+        counters.add_wait(began.elapsed());
+        counters.add(Count::ReadBack, view.len() as u64);
         let mut values = vec![T::zeroed(); view.len() / size_of::<T>()];
         paced::in_order(values.len(), CHUNK, |range| {
             let bytes = range.start * size_of::<T>()..range.end * size_of::<T>();

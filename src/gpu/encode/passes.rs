@@ -96,6 +96,7 @@ impl<'e> Passes<'e> {
         color: Option<u32>,
         dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>),
     ) {
+        pipeline.count_dispatch();
         match &mut self.0 {
             State::One { pass, set } => {
                 if set.as_ref() != Some(&pipeline.raw) {

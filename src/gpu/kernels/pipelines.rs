@@ -1,19 +1,30 @@
 //! Creates pipelines and bind groups. The pipelines of runs are created once for a device.
 
 use std::collections::HashMap;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use web_time::Instant;
 
 use crate::error::GpuError;
 use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::layouts::{BindLayout, Bindings};
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::scope::{WatchedDevice, scoped};
+use crate::gpu::scope::{Counters, WatchedDevice, scoped};
 
 /// A kernel that is ready to run.
 #[derive(Clone)]
 pub(crate) struct Pipeline {
     pub(crate) kernel: Kernel,
     pub(crate) raw: wgpu::ComputePipeline,
+    /// Counters of the device.
+    counters: Arc<Counters>,
+}
+
+impl Pipeline {
+    /// Counts a dispatch of the kernel.
+    pub(crate) fn count_dispatch(&self) {
+        self.counters.add_dispatch(matches!(self.kernel, Kernel::Sweep(..)));
+    }
 }
 
 /// Pipelines of a device, each compiled at the first request.
@@ -99,37 +110,45 @@ impl Pipelines {
         form: impl Into<MeshForm>,
     ) -> Result<Pipeline, GpuError> {
         let form = kernel.sees(form.into());
+        let ready = |raw: &wgpu::ComputePipeline| Pipeline {
+            kernel: kernel.clone(),
+            raw: raw.clone(),
+            counters: Arc::clone(device.counters()),
+        };
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(raw) = made.get(&(kernel.clone(), form)) {
-            return Ok(Pipeline { kernel: kernel.clone(), raw: raw.clone() });
+            return Ok(ready(raw));
         }
         let wgsl = kernel.composed(form);
         let raw = scoped(device, || self.compile(device, kernel, form.positions, wgsl))?;
-        made.insert((kernel.clone(), form), raw.clone());
-        Ok(Pipeline { kernel: kernel.clone(), raw })
+        let pipeline = ready(&raw);
+        made.insert((kernel.clone(), form), raw);
+        Ok(pipeline)
     }
 
     /// Compiles `wgsl` with the entry point and the bindings of a kernel. Must be called in an error scope.
     pub(crate) fn compile(
         &self,
-        device: &wgpu::Device,
+        device: &WatchedDevice,
         kernel: &Kernel,
         positions: Positions,
         wgsl: String,
     ) -> wgpu::ComputePipeline {
-        let label = kernel.label();
+        let (label, began) = (kernel.label(), Instant::now());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(&label),
             source: wgpu::ShaderSource::Wgsl(wgsl.into()),
         });
-        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(&label),
             layout: Some(&self.layout(device, kernel.layout(), positions).pipeline),
             module: &module,
             entry_point: Some(kernel.entry_point()),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: self.cache.as_ref(),
-        })
+        });
+        device.counters().add_kernel(began.elapsed());
+        pipeline
     }
 }
 

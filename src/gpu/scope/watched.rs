@@ -5,14 +5,17 @@ use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::GpuError;
+use crate::gpu::scope::counts::Counters;
 #[cfg(target_arch = "wasm32")]
 use crate::gpu::scope::reports::Reports;
 
-/// A device with the failures that arrive outside of calls: its loss and, in a browser, the errors of earlier calls.
+/// A device with the failures that arrive outside of calls (its loss and, in a browser, the errors of earlier calls), and
+/// with counters of the work that this library gives to it.
 #[derive(Clone)]
 pub(crate) struct WatchedDevice {
     raw: wgpu::Device,
     lost: Arc<Mutex<Option<String>>>,
+    counters: Arc<Counters>,
     #[cfg(target_arch = "wasm32")]
     reports: Reports,
 }
@@ -43,9 +46,14 @@ impl WatchedDevice {
         Self {
             raw,
             lost: Arc::default(),
+            counters: Arc::default(),
             #[cfg(target_arch = "wasm32")]
             reports: Reports::default(),
         }
+    }
+
+    pub(crate) fn counters(&self) -> &Arc<Counters> {
+        &self.counters
     }
 
     fn note_loss(&self) {

@@ -1,5 +1,7 @@
 //! Decides when the coarser levels are built, and when they are fitted to a mesh that has changed.
 
+use web_time::Instant;
+
 use super::plan_steps::OMEGA_BETWEEN;
 use super::state::{Corrections, ESTIMATES};
 use crate::error::GpuError;
@@ -101,6 +103,7 @@ impl Corrections {
         change: Change,
         now: usize,
     ) -> Result<bool, GpuError> {
+        let began = Instant::now();
         // Levels that are replaced are freed before new levels are built.
         let before = engine.take_hierarchy().filter(|_| change == Change::Fit);
         self.fitted = now;
@@ -119,7 +122,9 @@ impl Corrections {
             Some(before) => before.fitted_to(&self.problem, roots).await,
             None => Hierarchy::new(&self.problem, roots).await,
         };
-        match engine.set_hierarchy(hierarchy).await {
+        let set = engine.set_hierarchy(hierarchy).await;
+        self.levels_time += began.elapsed();
+        match set {
             Err(error @ GpuError::Limit { .. }) => {
                 self.left_out = Some(error);
                 Ok(false)

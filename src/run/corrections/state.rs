@@ -1,5 +1,7 @@
 //! The state of a run with corrections: its stage, levels, estimates and acceleration.
 
+use std::time::Duration;
+
 use super::plan_steps::exponents;
 use crate::error::GpuError;
 use crate::layout::Problem;
@@ -74,6 +76,8 @@ pub(crate) struct Corrections {
     /// Whether the next sweep needs an engine in double precision: corrections begin again, and in single precision
     /// they would be refused because of rounding.
     pub(super) needs_double: bool,
+    /// Time of building and fitting the levels.
+    pub(super) levels_time: Duration,
 }
 
 /// The state of the stage that corrects sweeps.
@@ -128,8 +132,14 @@ impl Corrections {
             left_out: None,
             was_reopened: false,
             was_left_out: false,
+            levels_time: Duration::ZERO,
             needs_double: false,
         }
+    }
+
+    /// Returns the time of building and fitting the levels, from the readback of the stiffness to the upload.
+    pub(crate) fn levels_time(&self) -> Duration {
+        self.levels_time
     }
 
     /// Returns the mesh with the maps of the present levels.

@@ -1,0 +1,110 @@
+//! The work that a whole run gives to a device: dispatches, submissions, waits, late kernels and bytes.
+//!
+//! Each of these costs time on a graphics card that a software driver does not show. A change that lowers a number lowers
+//! it here too; a change that raises a number gives the reason.
+
+use std::time::Duration;
+
+use gpu_smooth::internal::{DeviceCounts, Plan, Stepwise, device_counts, prepare, run_on_gpu};
+use gpu_smooth::{Backend, CheckpointPolicy, Gpu, Mesh, Method, Options, Smoother, Stopping};
+
+/// The counts of one run, with bytes for each vertex, rounded.
+#[derive(Debug, PartialEq)]
+struct Work {
+    sweeps: u32,
+    corrections: u32,
+    dispatches: u64,
+    submissions: u64,
+    waits: u64,
+    /// Kernels compiled before the first sweep of the run and after it.
+    kernels: [u64; 2],
+    uploaded: u64,
+    read_back: u64,
+    allocated: u64,
+}
+
+fn open() -> Gpu {
+    Gpu::open(Some("llvmpipe")).expect("lavapipe is needed: tests/run installs it")
+}
+
+fn perturbed(vertices: usize) -> Mesh {
+    let outline = support::Outline::parse(include_str!("../../meshes/plate.outline")).unwrap();
+    support::perturb_random(&support::triangulate(&outline, vertices).unwrap(), 1.0, 1)
+}
+
+/// Returns the work of a run that gave `counts` to its device, on a mesh of `vertices` vertices.
+fn work(counts: DeviceCounts, vertices: usize, [sweeps, corrections]: [u32; 2]) -> Work {
+    let DeviceCounts { dispatches, submissions, waits, kernels, late_kernels, .. } = counts;
+    let each = |bytes: u64| (bytes as f64 / vertices as f64).round() as u64;
+    Work {
+        sweeps,
+        corrections,
+        dispatches,
+        submissions,
+        waits,
+        kernels: [kernels - late_kernels, late_kernels],
+        uploaded: each(counts.uploaded),
+        read_back: each(counts.read_back),
+        allocated: each(counts.allocated),
+    }
+}
+
+/// A policy that never saves positions. The default policy saves them each second, with a readback.
+struct NeverSaved;
+
+impl CheckpointPolicy for NeverSaved {
+    fn interval(&self) -> Duration {
+        Duration::MAX
+    }
+}
+
+/// A whole run on a device of its own, which compiles every kernel in the run.
+#[test]
+fn a_corrected_run_gives_the_device_no_more_work_than_before() {
+    let (gpu, mesh) = (open(), perturbed(20_000));
+    let smoother = Smoother::new(&mesh).unwrap();
+    let before = device_counts(&gpu);
+    let backend = Backend::Gpu(gpu.clone());
+    let options = Options::default();
+    let run = smoother.run(&options).on(&backend).checkpoints(NeverSaved);
+    let outcome = run.block().unwrap();
+    let counts = device_counts(&gpu).since(&before);
+    let done = [outcome.sweeps, outcome.corrections];
+    let expected = Work {
+        sweeps: 11,
+        corrections: 5,
+        dispatches: 180,
+        submissions: 19,
+        waits: 14,
+        kernels: [3, 11],
+        uploaded: 103,
+        read_back: 31,
+        allocated: 135,
+    };
+    assert_eq!(work(counts, mesh.points.len(), done), expected);
+}
+
+/// Whole runs without corrections do as many sweeps in a submission as take a tenth of a second. Here one submission has
+/// all sweeps, whatever their time.
+#[test]
+fn sweeps_alone_give_the_device_no_more_work_than_before() {
+    let (gpu, mesh) = (open(), perturbed(2000));
+    let (_, problem) = prepare(&mesh).unwrap();
+    let stopping = Stopping::Tolerance(0.0);
+    let plan = Plan::new(&Options { method: Method::RELAXED, stopping, ..Options::default() });
+    let before = device_counts(&gpu);
+    run_on_gpu(&gpu, &problem, problem.positions(), plan).unwrap().advance(20).unwrap();
+    let counts = device_counts(&gpu).since(&before);
+    let expected = Work {
+        sweeps: 20,
+        corrections: 0,
+        dispatches: 142,
+        submissions: 1,
+        waits: 1,
+        kernels: [3, 0],
+        uploaded: 63,
+        read_back: 11,
+        allocated: 76,
+    };
+    assert_eq!(work(counts, mesh.points.len(), [20, 0]), expected);
+}
