@@ -35,6 +35,10 @@ pub(crate) struct BenchArgs {
     /// Measure the first adapter with NAME in its name
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,
+    /// Time whole runs and their phases instead of single sweeps: set-up, coarser levels, compilation of kernels and waits
+    /// for the device, with counts of the work that a run gives to the device
+    #[arg(long, conflicts_with = "baseline")]
+    pub(crate) runs: bool,
     /// Seconds to measure for each line
     #[arg(long, default_value_t = 2.0, value_name = "S", value_parser = parse::nonnegative, allow_negative_numbers = true)]
     pub(crate) seconds: f64,

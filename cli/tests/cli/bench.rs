@@ -36,6 +36,8 @@ fn both_engines_are_measured_on_lattices_of_the_sizes_asked_for() {
     for name in ["sweep edge", "sweep imr", "objective"] {
         assert!(names.contains(&name), "{name} in {names:?}");
     }
+    // No frame corrects sweeps by alternating metrics.
+    assert!(rows[1]["corrected_kernels"].is_null(), "{}", rows[1]);
     assert!(kernels.iter().all(|kernel| kernel["seconds_per_sweep"].as_f64().unwrap() > 0.0));
 }
 
@@ -48,6 +50,7 @@ fn a_mesh_of_the_user_is_measured_and_printed_as_text() {
     assert!(!run.out.contains("kernel"), "{}", run.out);
     let run = folder.line("bench in --engine gpu --seconds 0").clean();
     assert_holds(&run.out, &["sweep imr", "by its clock", "a sweep without clock"]);
+    assert_holds(&run.out, &["a corrected sweep of", "coarsest_solve", "prolong_solution"]);
     // The shares are of the sum of the kernels, which a row below them has.
     let field = |name: &str, column: usize| -> f64 {
         let row = run.out.lines().find(|row| row.trim_start().starts_with(name)).unwrap();
@@ -143,6 +146,51 @@ fn times_of_kernels_are_printed_as_markdown() {
     let rows = table(&out);
     let sweep = rows.iter().find(|row| row[0] == "sweep imr").unwrap();
     assert_eq!((sweep.len(), rows[3][0].as_str()), (6, "kernel"));
+}
+
+#[test]
+fn whole_runs_are_timed_by_phase_on_both_engines() {
+    let folder = small();
+    let args = "bench --runs --vertices 900 --seconds 0 --json";
+    let rows = rows(&folder.line(args).clean().out);
+    assert_eq!(rows.len(), 4);
+    for (row, first) in rows.iter().zip([true, false, true, false]) {
+        let number = |key: &str| row[key].as_f64().unwrap();
+        assert_eq!((row["first"].as_bool(), row["runs"].as_u64()), (Some(first), Some(1)));
+        let f: Vec<f64> =
+            row["f"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect();
+        assert!(f[1] < f[0] && number("sweeps") > 1.0 && number("corrections") > 0.0, "{row}");
+        for part in ["levels_seconds", "compiling_seconds", "waiting_seconds"] {
+            assert!(number(part) <= number("smooth_seconds"), "{part}: {row}");
+        }
+        assert!(number("levels_seconds") > 0.0 && number("prepare_seconds") > 0.0, "{row}");
+    }
+    let [cpu, _, gpu, again] = &rows[..] else { unreachable!() };
+    assert!(cpu["engine"].as_str().unwrap().starts_with("cpu, "), "{cpu}");
+    assert_eq!((cpu["dispatches"].as_u64(), cpu["waits"].as_u64()), (Some(0), Some(0)));
+    assert!(!gpu["driver"].as_str().unwrap().is_empty(), "{gpu}");
+    // The second run finds all kernels compiled, and does the same work.
+    let count = |row: &Value, key: &str| row[key].as_u64().unwrap();
+    assert!(count(gpu, "kernels_after_first_sweep") > 0 && count(again, "kernels") == 0);
+    for key in ["dispatches", "submissions", "waits", "uploaded_bytes", "read_back_bytes"] {
+        assert!(
+            count(gpu, key) > 0 && count(gpu, key) == count(again, key),
+            "{key}: {gpu} {again}"
+        );
+    }
+}
+
+#[test]
+fn whole_runs_of_a_mesh_of_the_user_are_printed_as_text_and_markdown() {
+    let folder = small();
+    let vertices = folder.mesh("in").points.len().to_string();
+    let run = folder.line("bench in --runs --engine cpu --seconds 0").clean();
+    assert_holds(&run.out, &["Whole runs by imr", "prepare", "late kernels", "cpu, ", &vertices]);
+    let out = folder.line("bench in --runs --engine gpu --seconds 0 --markdown").clean().out;
+    let rows = table(&out);
+    assert_eq!((rows.len(), rows[0][1].as_str(), rows[3][1].as_str()), (4, "run", "of 1"));
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()));
+    assert_eq!(folder.line("bench in --runs --baseline in.node").code, Some(2));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use gpu_smooth::{
-    Mesh, Options, SmoothError, Stopping,
+    Mesh, Method, Options, SmoothError, Stopping,
     gpu::Kernel,
     internal::{Plan, Problem, Stepwise, prepare, run_on_cpu, run_on_gpu},
     targets::Surface,
@@ -14,7 +14,7 @@ use crate::args::EngineChoice;
 use crate::commands::bench::baseline::Baseline;
 use crate::commands::bench::machine::Place;
 use crate::commands::bench::report::{Form, KernelRow, Row};
-use crate::commands::bench::{kernels, lattice, machine, rates, sweeps};
+use crate::commands::bench::{kernels, lattice, machine, rates, runs, sweeps};
 use crate::error::CliError;
 use crate::load::streams::read;
 use crate::load::{LoadedMesh, explain, lay_out};
@@ -27,6 +27,9 @@ type Explain<'a> = dyn Fn(SmoothError) -> CliError + 'a;
 
 pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
     let file = args.mesh.as_deref().map(|mesh| laid_out(mesh, args, quiet)).transpose()?;
+    if args.runs {
+        return runs::run(args, file.as_ref(), quiet);
+    }
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let places = places(args, quiet)?;
     let form = Form::new(args);
@@ -113,17 +116,23 @@ fn measure(
         ..Options::default()
     };
     let plan = Plan::new(&options);
-    let (seconds, kernels) = match &place.gpu {
+    let (seconds, kernels, corrected) = match &place.gpu {
         None => {
             let mut engine = run_on_cpu(problem, problem.positions(), plan);
-            (sweeps::time(&mut engine, args.seconds)?, None)
+            (sweeps::time(&mut engine, args.seconds)?, None, None)
         }
         Some(gpu) => {
             let mut engine: Box<dyn Stepwise> =
                 Box::new(run_on_gpu(gpu, problem, problem.positions(), plan)?);
             let seconds = sweeps::time(&mut *engine, args.seconds)?;
             drop(engine);
-            (seconds, kernels::time(gpu, mesh, &options)?)
+            let corrected = Options { method: Method::Multilevel, ..options.clone() };
+            let corrected = match kernels::time(gpu, mesh, &corrected) {
+                // No frame corrects sweeps by EDGE or by alternating metrics.
+                Err(SmoothError::Option(_)) => None,
+                timed => timed?,
+            };
+            (seconds, kernels::time(gpu, mesh, &options)?, corrected)
         }
     };
     let (sweep, objective) = (sweeps::sweep_bytes(problem), sweeps::objective_bytes(problem));
@@ -151,6 +160,7 @@ fn measure(
         bytes_per_second: (sweep + objective) as f64 / seconds,
         share_of_copy_rate: (sweep + objective) as f64 / seconds / place.copy_rate,
         kernels: kernels.map(|kernels| kernels.into_iter().map(kernel_row).collect()),
+        corrected_kernels: corrected.map(|kernels| kernels.into_iter().map(kernel_row).collect()),
     })
 }
 

@@ -19,8 +19,10 @@ pub(crate) struct KernelTime {
     pub(crate) seconds: f64,
 }
 
-/// Times the kernels of a sweep and of the objective, in the order of execution. `None` if the device has no
-/// timestamps.
+/// Times the kernels of a sweep and of the objective, in the order of execution; with [`Method::Multilevel`], those of
+/// the correction after the sweep too. `None` if the device has no timestamps.
+///
+/// [`Method::Multilevel`]: gpu_smooth::Method::Multilevel
 ///
 /// The timestamps separate the kernels, each of which waits for the end of the kernel before. So the times add up to
 /// more than the time of a sweep without timestamps, above all on small meshes.

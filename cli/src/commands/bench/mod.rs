@@ -7,6 +7,7 @@ mod lattice;
 mod machine;
 mod rates;
 mod report;
+mod runs;
 mod sweeps;
 
 pub(crate) use command::run;

@@ -9,8 +9,10 @@ use rayon::prelude::*;
 const BYTES: u64 = 128 << 20;
 /// Largest number of timed calls. The fastest call counts.
 const MAX_CALLS: usize = 6;
-/// Copies encoded into one submission to a GPU.
-const SUBMITTED: u32 = 4;
+/// Intended duration of a submission to a GPU, beside which the time to submit and to wait is small.
+const SUBMISSION: Duration = Duration::from_millis(20);
+/// Largest number of copies in a submission.
+const MAX_COPIES: f64 = 64.0;
 
 /// Returns the bytes per second that all cores together read and write in a copy. The first call is always made, and further
 /// calls begin within `seconds` seconds.
@@ -59,9 +61,9 @@ pub(crate) fn on_gpu(gpu: &Gpu, seconds: f64) -> f64 {
         entries: &entries,
     });
     let groups = (bytes / 16).div_ceil(256).min(65_535) as u32;
-    let copy = || {
+    let copy = |copies: u32| {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        for _ in 0..SUBMITTED {
+        for _ in 0..copies {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &bind_group, &[]);
@@ -71,7 +73,11 @@ pub(crate) fn on_gpu(gpu: &Gpu, seconds: f64) -> f64 {
         // On a lost device, nothing is copied; the following measurements report the loss.
         device.poll(wgpu::PollType::wait_indefinitely()).ok();
     };
-    fastest(seconds, SUBMITTED, copy) * bytes as f64 / BYTES as f64
+    let began = Instant::now();
+    copy(1);
+    let copies = SUBMISSION.as_secs_f64() / began.elapsed().as_secs_f64();
+    let copies = copies.clamp(1.0, MAX_COPIES) as u32;
+    fastest(seconds, copies, || copy(copies)) * bytes as f64 / BYTES as f64
 }
 
 /// Returns the bytes read and written per second in the fastest of several calls: [`MAX_CALLS`], or fewer if `seconds`

@@ -32,6 +32,8 @@ pub(super) struct Row {
     pub(super) share_of_copy_rate: f64,
     /// Time of each kernel by the device's timestamps; `None` on devices without timestamps.
     pub(super) kernels: Option<Vec<KernelRow>>,
+    /// The same for a sweep with a correction from coarser levels.
+    pub(super) corrected_kernels: Option<Vec<KernelRow>>,
 }
 
 /// Time of a kernel per sweep.
@@ -153,12 +155,16 @@ impl Form {
 
     /// Returns the tables of kernels, one for each measurement with timestamps.
     pub(super) fn kernels(self, rows: &[Row]) -> String {
-        let timed = rows.iter().filter_map(|row| Some((row, row.kernels.as_ref()?)));
+        let timed = rows.iter().flat_map(|row| {
+            [("a sweep", &row.kernels), ("a corrected sweep", &row.corrected_kernels)]
+                .into_iter()
+                .filter_map(move |(what, kernels)| Some((row, what, kernels.as_ref()?)))
+        });
         let mut text = String::new();
-        for (row, kernels) in timed {
+        for (row, what, kernels) in timed {
             let (vertices, colors, engine) = (row.vertices, row.colors, &row.engine);
             text += &format!(
-                "\n{vertices} vertices in {colors} colors on {engine}, each kernel by itself, by its clock\n"
+                "\n{what} of {vertices} vertices in {colors} colors on {engine}, each kernel by itself, by its clock\n"
             );
             let sum: f64 = kernels.iter().map(|kernel| kernel.seconds_per_sweep).sum();
             let head = ["kernel", "passes", "\u{b5}s/sweep", "share", "GB/s", "of copying"];
@@ -179,7 +185,8 @@ impl Form {
                     &share.unwrap_or_default(),
                 ]);
             }
-            for (name, seconds) in [(APART, sum), (TOGETHER, row.seconds_per_sweep)] {
+            let together = (what == "a sweep").then_some((TOGETHER, row.seconds_per_sweep));
+            for (name, seconds) in std::iter::once((APART, sum)).chain(together) {
                 text += self.kernel([name, "", &microseconds(seconds), "", "", ""]).trim_end();
                 text.push('\n');
             }
