@@ -6,7 +6,7 @@
 //! cargo bench --bench convergence -- MESH...        # mesh files instead of generated meshes
 //! ```
 //!
-//! Compare ratios, not times.
+//! Compare ratios, not times. The variable `GPU_SMOOTH_ADAPTER` names the adapter; the default is the best.
 
 #![allow(clippy::print_stdout)]
 
@@ -24,7 +24,7 @@ fn main() {
     let (sizes, files) = arguments();
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     let mut backends = vec![("cpu".to_owned(), Backend::Cpu)];
-    match Gpu::open(None) {
+    match Gpu::open(std::env::var("GPU_SMOOTH_ADAPTER").ok().as_deref()) {
         Ok(gpu) => backends.push((gpu.adapter().name.clone(), Backend::Gpu(gpu))),
         Err(error) => println!("no GPU: {error}"),
     }

@@ -4,7 +4,8 @@
 //! `cargo bench --bench frames -- [VERTICES...]`, 2,000, 20,000 and 200,000 by default. A frame consists of an import,
 //! three sweeps, the objective and the export; `corrected` adds three corrections from coarser levels. `valid` adds
 //! five untangling sweeps, which find no inverted triangle. `all` adds a mask, a move of the hole, the last valid
-//! positions and two readbacks, and its sweeps end by themselves. The minimum follows each median.
+//! positions and two readbacks, and its sweeps end by themselves. The minimum follows each median. The variable
+//! `GPU_SMOOTH_ADAPTER` names the adapter; the default is the best.
 
 #![allow(clippy::print_stdout)]
 
@@ -26,7 +27,8 @@ fn main() {
     let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
     let sizes = if sizes.is_empty() { vec![2000, 20_000, 200_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
-    let gpu = Gpu::open(None).unwrap();
+    let adapter = std::env::var("GPU_SMOOTH_ADAPTER").ok();
+    let gpu = Gpu::open(adapter.as_deref()).unwrap();
     println!("{}: medians (and the least)", gpu.adapter().name);
     for vertices in sizes {
         let mesh = support::triangulate(&outline, vertices).unwrap();
