@@ -1,12 +1,18 @@
-//! Checks of each kernel's WGSL without an adapter: core WebGPU only, within the limits guaranteed by browsers.
+//! Checks of each kernel's WGSL without an adapter: core WebGPU only, within the limits guaranteed by browsers, and
+//! translated for each backend.
+
+mod backends;
+mod translations;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use gpu_smooth::gpu::Kernel;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, Block, Module, ShaderStage, Statement};
+use rayon::prelude::*;
 
 /// Guaranteed minimum of WebGPU's `max_compute_invocations_per_workgroup`.
 const MOST_INVOCATIONS: u32 = 256;
@@ -22,29 +28,41 @@ fn validated(wgsl: &str) -> Result<(Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
-/// Returns the modules of each kernel: for meshes bound as a whole, for large meshes, for meshes with targets, and for
-/// strongly stretched meshes.
-fn modules() -> impl Iterator<Item = (Kernel, Module)> {
-    let both = |kernel: Kernel| {
-        [
-            kernel.wgsl(),
-            kernel.wgsl_for_large_meshes(),
-            kernel.wgsl_for_targets(),
-            kernel.wgsl_for_stretched_meshes(),
-        ]
-        .map(|wgsl| {
-            let (module, _) =
+/// A kernel with a valid module.
+struct Validated {
+    kernel: Kernel,
+    module: Module,
+    info: ModuleInfo,
+}
+
+/// Returns the distinct modules of each kernel: for meshes bound as a whole, for large meshes, for meshes with targets,
+/// and for strongly stretched meshes. All tests share them, as validation takes most of their time.
+fn modules() -> &'static [Validated] {
+    static MODULES: OnceLock<Vec<Validated>> = OnceLock::new();
+    MODULES.get_or_init(|| {
+        let of_kernel = |kernel: Kernel| {
+            let forms = BTreeSet::from([
+                kernel.wgsl(),
+                kernel.wgsl_for_large_meshes(),
+                kernel.wgsl_for_targets(),
+                kernel.wgsl_for_stretched_meshes(),
+            ]);
+            forms.into_iter().map(move |wgsl| (kernel.clone(), wgsl))
+        };
+        let sources: Vec<_> = Kernel::all().into_iter().flat_map(of_kernel).collect();
+        let validated = |(kernel, wgsl): (Kernel, String)| {
+            let (module, info) =
                 validated(&wgsl).unwrap_or_else(|error| panic!("{}: {error}", kernel.label()));
-            (kernel.clone(), module)
-        })
-    };
-    Kernel::all().into_iter().flat_map(both)
+            Validated { kernel, module, info }
+        };
+        sources.into_par_iter().map(validated).collect()
+    })
 }
 
 #[test]
 fn every_kernel_is_core_webgpu() {
-    // Composing a module also validates it.
-    assert!(modules().count() > 0);
+    // Making the modules validates them.
+    assert!(modules().len() > Kernel::all().len());
 }
 
 #[test]
@@ -79,7 +97,7 @@ fn every_entry_point_of_the_shader_files_has_a_row_in_the_table() {
 
 #[test]
 fn every_kernel_has_one_entry_point_of_its_name() {
-    for (kernel, module) in modules() {
+    for Validated { kernel, module, .. } in modules() {
         let [entry] = &module.entry_points[..] else {
             panic!("{} has {} entry points", kernel.label(), module.entry_points.len());
         };
@@ -92,7 +110,7 @@ fn every_kernel_has_one_entry_point_of_its_name() {
 
 #[test]
 fn workgroups_are_as_wide_as_the_table_says_and_within_the_limit() {
-    for (kernel, module) in modules() {
+    for Validated { kernel, module, .. } in modules() {
         let size = module.entry_points[0].workgroup_size;
         assert_eq!(size, [kernel.workgroup_size(), 1, 1], "{}", kernel.label());
         assert!(size.iter().product::<u32>() <= MOST_INVOCATIONS);
@@ -101,7 +119,7 @@ fn workgroups_are_as_wide_as_the_table_says_and_within_the_limit() {
 
 #[test]
 fn storage_buffers_and_workgroup_memory_are_within_the_limits() {
-    for (kernel, module) in modules() {
+    for Validated { kernel, module, .. } in modules() {
         let is_storage = |space| matches!(space, AddressSpace::Storage { .. });
         let spaces = module.global_variables.iter().map(|(_, variable)| variable.space);
         let storage = spaces.filter(|&space| is_storage(space)).count();
@@ -170,8 +188,8 @@ fn barriers(module: &Module) -> Result<usize, &'static str> {
 
 #[test]
 fn no_invocation_leaves_before_a_barrier() {
-    for (kernel, module) in modules() {
-        let count = barriers(&module).unwrap_or_else(|fault| panic!("{}: {fault}", kernel.label()));
+    for Validated { kernel, module, .. } in modules() {
+        let count = barriers(module).unwrap_or_else(|fault| panic!("{}: {fault}", kernel.label()));
         // Only invocations that share results wait for each other. They form one workgroup of the largest guaranteed
         // size.
         let shares = kernel.workgroup_size() == MOST_INVOCATIONS;
