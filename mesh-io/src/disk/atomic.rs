@@ -17,7 +17,7 @@ pub(crate) type FileWrite<'a> =
 /// Replaces the content of a file. Whatever happens meanwhile, the file has either its old content or all of `content`.
 ///
 /// Writes `content` to a temporary file in the same directory, then renames this file. Symbolic links are followed, and
-/// permissions are kept. Devices and pipes are written to directly.
+/// permissions are kept. The owner and the group are kept where the system allows it. Devices and pipes are written to directly.
 ///
 /// # Errors
 /// [`WriteError::Io`] if the system refuses; an existing file at `path` is then unchanged.
@@ -186,6 +186,8 @@ fn stage<'d>(
         content(&mut out)?;
         let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
         if let Some(existing) = existing {
+            // A change of the owner may clear bits of the permissions, so the owner comes first.
+            file.set_owner(&existing);
             file.set_permissions(existing.permissions())?;
         }
         // Without this, a crash after the rename could leave an empty file under the new name.
@@ -340,6 +342,25 @@ mod tests {
         assert!(error.contains("Make room"), "{error}");
         assert_eq!(fs::read_to_string(&a).unwrap(), "old");
         assert_eq!(entries(directory.path()), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_replaced_file_keeps_its_owner_group_and_mode() {
+        use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a");
+        fs::write(&path, "old").unwrap();
+        // Only root may give a file away. Other users check that their own files stay theirs.
+        let _ = chown(&path, Some(12_345), Some(23_456));
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        let facts = || {
+            let found = fs::metadata(&path).unwrap();
+            [found.uid(), found.gid(), found.mode() & 0o7777]
+        };
+        let before = facts();
+        write(&path, b"new").unwrap();
+        assert_eq!((facts(), fs::read_to_string(&path).unwrap().as_str()), (before, "new"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::disk::atomic::{FileWrite, write_all_if};
 use crate::disk::file_system::{FileSystem, NewFile, OsFileSystem};
-use std::fs::{self, Permissions};
+use std::fs::{self, Metadata, Permissions};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -89,6 +89,10 @@ impl Write for Faulty {
 }
 
 impl NewFile for Faulty {
+    fn set_owner(&self, existing: &Metadata) {
+        self.file.set_owner(existing);
+    }
+
     fn set_permissions(&self, permissions: Permissions) -> io::Result<()> {
         self.faults.ask(true)?;
         self.file.set_permissions(permissions)

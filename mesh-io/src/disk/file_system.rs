@@ -1,6 +1,6 @@
 //! Operations of the file system that writes need, as a trait, so that tests can make each operation fail.
 
-use std::fs::{self, File, OpenOptions, Permissions};
+use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -21,6 +21,8 @@ pub(crate) trait FileSystem {
 
 /// A new file that is open for writing.
 pub(crate) trait NewFile: Write + Send {
+    /// Gives the file the owner and the group of an existing file, each if the system allows it.
+    fn set_owner(&self, existing: &Metadata);
     fn set_permissions(&self, permissions: Permissions) -> io::Result<()>;
     /// Forces the content to the disk.
     fn sync(&self) -> io::Result<()>;
@@ -57,6 +59,23 @@ impl FileSystem for OsFileSystem {
 }
 
 impl NewFile for File {
+    #[cfg(unix)]
+    fn set_owner(&self, existing: &Metadata) {
+        use std::os::unix::fs::{MetadataExt, fchown};
+        let Ok(own) = self.metadata() else { return };
+        let (user, group) = (existing.uid(), existing.gid());
+        // Most systems let only root give files away, and other users choose among their own groups.
+        if own.gid() != group {
+            let _ = fchown(self, None, Some(group));
+        }
+        if own.uid() != user {
+            let _ = fchown(self, Some(user), None);
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn set_owner(&self, _: &Metadata) {}
+
     fn set_permissions(&self, permissions: Permissions) -> io::Result<()> {
         File::set_permissions(self, permissions)
     }
