@@ -17,6 +17,7 @@ use gpu_smooth::{
     gpu::{DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer},
     wgpu,
 };
+use gpu_smooth_job::Job;
 use mesh_io::MeshFile;
 use picture::Picture;
 use wgpu::BufferUsages as Usage;
@@ -36,9 +37,9 @@ fn main() -> Result<()> {
     let out = args.next().unwrap_or(".".into());
 
     let file = MeshFile::read(&mesh)?;
-    let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
-    let mesh = Mesh { points, triangles, fixed: file.constraints().vertices.clone() };
-    let [before, after] = smooth_and_draw(&mesh, 5)?;
+    // Vertices that the file constrains, and vertices between its regions, are fixed.
+    let job = Job::of_file(&file)?;
+    let [before, after] = smooth_and_draw(job.mesh(), 5)?;
     for (name, frame) in [("before.png", before), ("after.png", after)] {
         frame.write(&out.join(name))?;
         let ObjectiveValues { worst_imr, inverted, .. } = frame.quality;

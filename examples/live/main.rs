@@ -70,8 +70,7 @@ pub(crate) fn run(args: &[String]) -> Result<()> {
         }
     }
     let file = mesh_io::MeshFile::read(mesh.as_ref())?;
-    let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
-    let mesh = gpu_smooth::Mesh { points, triangles, fixed: file.constraints().vertices.clone() };
+    let mesh = gpu_smooth_job::Job::of_file(&file)?.into_mesh();
 
     let script = match script {
         Some(path) => {

@@ -3,12 +3,10 @@
 use crate::error::CliError;
 use crate::load::plane::{likewise, of_file, remark};
 use gpu_smooth::{
-    Mesh, MeshError, Topology,
-    interpolate::Chart,
-    plane::Plane,
-    precision::{Precision, Rounding},
+    Mesh, MeshError, Topology, interpolate::Chart, plane::Plane, precision::Precision,
     slide::Periodic,
 };
+use gpu_smooth_job::{Domain, smoother_precision};
 use mesh_io::{MeshFile, PointField, SourceLocation, WriteError};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -36,15 +34,7 @@ pub(crate) struct LoadedMesh {
 impl LoadedMesh {
     /// Makes the mesh of a file. Constrained vertices and vertices between regions are fixed.
     pub(crate) fn new(source: MeshFile) -> Self {
-        let constraints = source.constraints();
-        let (mut fixed, anchored) = (constraints.vertices.clone(), constraints.anchored.clone());
-        let mut interfaces = source.interface_vertices();
-        let mut is_fixed = vec![false; source.points().len()];
-        fixed.iter().for_each(|&v| is_fixed[v as usize] = true);
-        interfaces.retain(|&v| !is_fixed[v as usize]);
-        fixed.extend_from_slice(&interfaces);
-        let (points, triangles) = (source.points().to_vec(), source.triangles().to_vec());
-        let mesh = Mesh { points, triangles, fixed };
+        let Domain { mesh, interfaces, anchored, .. } = Domain::of_file(&source);
         Self {
             source,
             mesh,
@@ -84,7 +74,8 @@ impl LoadedMesh {
     /// Returns the precision with which the file stores the coordinates of the mesh. Coordinates in a tilted plane are
     /// not stored, so that a run does not round them.
     pub(crate) fn precision(&self) -> Precision {
-        self.plane().map_or_else(|| precision(self.source.precision()), Plane::run_precision)
+        self.plane()
+            .map_or_else(|| smoother_precision(self.source.precision()), Plane::run_precision)
     }
 
     /// Returns the vertices of the file by which options select vertices: x and y, or positions in the plane of the
@@ -98,7 +89,7 @@ impl LoadedMesh {
     /// # Errors
     /// Returns an error if the vertices do not lie in a plane.
     pub(crate) fn lay_out_in_plane(&mut self) -> Result<Vec<String>, CliError> {
-        let plane = of_file(&self.source, precision(self.source.precision()))?;
+        let plane = of_file(&self.source)?;
         let remarks = plane.as_ref().and_then(remark).into_iter().collect();
         self.take_plane(plane);
         Ok(remarks)
@@ -337,29 +328,6 @@ impl LoadedMesh {
     }
 }
 
-/// Converts a precision of mesh-io to one of the smoother.
-pub(crate) fn precision(stored: mesh_io::Precision) -> Precision {
-    use mesh_io::Precision as Stored;
-    /// Makes the rounding rule of a precision. Each rule needs functions of its own, because function pointers capture
-    /// nothing.
-    macro_rules! rule {
-        ($variant:ident) => {
-            Precision::Custom(Rounding {
-                name: stringify!($variant),
-                round: |number| Stored::$variant.rounded(number),
-                error: |size| Stored::$variant.error(size),
-            })
-        };
-    }
-    match stored {
-        Stored::Single => Precision::Single,
-        Stored::Double => Precision::Double,
-        Stored::Text20 => rule!(Text20),
-        Stored::Text16 => rule!(Text16),
-        Stored::Text8 => rule!(Text8),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -400,13 +368,5 @@ mod tests {
         assert_eq!(mesh.mesh().fixed, [1, 2, 3]);
         assert!(mesh.fix(&[0, 5]).is_err() && mesh.fix_all_but(&[5]).is_err());
         assert_eq!(mesh.mesh().fixed, [1, 2, 3]);
-    }
-
-    #[test]
-    fn precisions_of_files_round_and_are_told_apart_by_name() {
-        let text8 = precision(mesh_io::Precision::Text8);
-        assert_eq!(text8.rounded(0.123_456_789), mesh_io::Precision::Text8.rounded(0.123_456_789));
-        assert_ne!(text8, precision(mesh_io::Precision::Text16));
-        assert_eq!(text8.name(), "Text8");
     }
 }

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use gpu_smooth::{
     Gpu, GpuError, Mesh, MeshSize, Topology, gpu::VertexBuffer, topology::signed_area, wgpu,
 };
+use gpu_smooth_job::Job;
 use mesh_io::MeshFile;
 use scene::{STRIDE, Scene, Seen};
 
@@ -24,9 +25,9 @@ pub(crate) type Result<T> = std::result::Result<T, Box<dyn std::error::Error + S
 fn main() -> Result<()> {
     let path = std::env::args().nth(1).map_or_else(default_mesh, PathBuf::from);
     let file = MeshFile::read(&path)?;
-    let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
-    let mesh = Mesh { points, triangles, fixed: file.constraints().vertices.clone() };
-    for (act, told) in acts(&mesh)? {
+    // Vertices that the file constrains, and vertices between its regions, are fixed.
+    let job = Job::of_file(&file)?;
+    for (act, told) in acts(job.mesh())? {
         println!("{act}: {told:?}");
     }
     Ok(())

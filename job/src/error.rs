@@ -1,0 +1,53 @@
+//! Errors of jobs.
+
+use std::path::PathBuf;
+
+use gpu_smooth::SmoothError;
+use mesh_io::{FieldError, ReadError, SourceLocation, WriteError};
+
+/// Error of the plane of a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlaneError {
+    /// The third coordinates cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The vertices do not lie in one plane.
+    #[error(
+        "{place}: the mesh is not planar: vertex {} is at a distance of {distance} from the plane nearest to all vertices. Curved surfaces are not smoothed",
+        place.id
+    )]
+    NotPlanar {
+        /// The vertex farthest from the plane nearest to all vertices.
+        place: SourceLocation,
+        /// Distance of the vertex from the plane. Not finite if a coordinate is not finite.
+        distance: f64,
+    },
+    /// Some vertices of a mesh outside of the plane of x and y lack z.
+    #[error("{}: some vertices have no z: give each vertex three coordinates", .0.display())]
+    NoZ(PathBuf),
+    /// The list of points does not have one entry per vertex.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+}
+
+/// Error of a job.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JobError {
+    /// The plane of the mesh cannot be determined.
+    #[error(transparent)]
+    Plane(#[from] PlaneError),
+    /// The mesh cannot be smoothed, or the run has failed.
+    #[error("{}: {error}", path.display())]
+    Smooth {
+        /// The file of the mesh.
+        path: PathBuf,
+        /// The error of the smoother. Vertices and triangles are zero-based indices.
+        #[source]
+        error: SmoothError,
+    },
+    /// The smoothed mesh cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
