@@ -242,7 +242,7 @@ def row(program, name, mesh, folder):
     f = [sized[when]["f"]["imr"] for when in ("before", "after")]
     cells += [f"{f[0]:.3f}", f"{f[1]:.3f}", f"{sized['change']['size']['p95']:.2f}", sized["sweeps"]]
     stops = [sized["stop"]]
-    for options in (["--free-first-layer"], []):
+    for options in (["--keep-layers", "none"], []):
         shaped, out = measured(program, mesh, folder, "--target", "keep-shape", *options)
         for path, converted in [(mesh, "before.mesh"), (out, "after.mesh")]:
             command = [program, "convert", path, folder / converted, "--force", "--lossy", "-q"]

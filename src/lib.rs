@@ -56,6 +56,7 @@ mod error;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod interpolate;
+pub mod layers;
 mod layout;
 pub mod measure;
 mod mesh;

@@ -41,11 +41,11 @@ class MeshOptions(TypedDict, total=False):
     corner_angle: float | None
     hausdorff: float | None
     periodic: Array | None
+    keep_layers: str | None
     only_bad: float | None
     rings: int | None
     target: Target | None
     target_rings: int | None
-    free_first_layer: bool | None
     target_of: Literal["vertex", "place"] | None
     surface: Surface | None
     z: ThirdCoordinate | None

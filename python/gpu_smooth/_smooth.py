@@ -34,7 +34,7 @@ class Smoother:
         Vertices of each triangle, numbered from 0.
     **options
         Options that belong to the mesh: `fixed`, `lines`, `regions`, `slide`, `corner_angle`, `hausdorff`, `periodic`,
-        `only_bad`, `rings`, `target`, `target_rings`, `free_first_layer`, `target_of`, `surface`, `z` and `untangle`.
+        `keep_layers`, `only_bad`, `rings`, `target`, `target_rings`, `target_of`, `surface`, `z` and `untangle`.
         `smooth` describes each.
 
     Raises
@@ -145,13 +145,16 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         a tenth of the local edge length.
     periodic : array_like of int, shape (k, 2), optional
         With `slide`: pairs of vertices that slide together.
+    keep_layers : str, default "auto"
+        Boundary layers whose vertices stay: `"auto"` for the layers that are found above walls, `"none"`, `"rows=N"` for
+        the first N rows, or `"within=DISTANCE"` for all vertices within a distance of walls, in the unit of the points.
+        Walls are the boundary, `lines` and lines between regions. If no other vertex is free, the points do not move.
     only_bad : float, optional
         Let only vertices move that are near a triangle with a larger inverse mean ratio.
     rings : int, default 2
         With `only_bad`: number of rings of triangles that count as near.
     target : str, array_like or tuple, default "equilateral"
         Wanted elements: `"equilateral"` of any size, `"keep-size"` or `"keep-shape"` as in the given mesh (with
-        `"keep-shape"`, the first layer of vertices at the boundary is fixed, which keeps the spacing at walls; with
         `"keep-size"`, sizes weigh more on stretched meshes); an array of
         shape (n,) with edge lengths, or of shape (n, 3) with tensors (xx, xy, yy) under which elements are equilateral
         with edges of length 1 (x and y are `Result.axes` in other planes); or a tuple (points, triangles, array) with such an array on another mesh. Only ratios of
@@ -159,8 +162,6 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     target_rings : int, optional
         With `"keep-size"` and `"keep-shape"`: number of rings over which sizes and shapes are averaged. The default is 0
         for sizes and 1 for shapes.
-    free_first_layer : bool, default False
-        With `"keep-shape"`: let the first layer of vertices at the boundary move too.
     target_of : {"vertex", "place"}, optional
         Whether targets move with the vertices, or belong to places. The default is "place" for targets of another mesh,
         else "vertex".

@@ -63,6 +63,8 @@ pub(crate) struct Layout {
     pub(crate) tangled: Option<Vec<[f64; 2]>>,
     pub(crate) chart: Option<Chart>,
     constraints: Constraints,
+    /// Whether all free vertices are in boundary layers that stay. A run then has no sweeps.
+    pub(crate) is_all_kept: bool,
 }
 
 impl Input {
@@ -82,7 +84,7 @@ impl Input {
             constraints.held.extend_from_slice(chart.held());
             mesh = chart.mesh().clone();
         }
-        movement::fix_first_layer(&mut mesh, options, &mut constraints)?;
+        let is_all_kept = movement::keep_layers(&mut mesh, options, &mut constraints)?;
         let mut tangled = None;
         if options.untangles {
             let done = untangled(&mesh, stored, observer)?;
@@ -90,7 +92,7 @@ impl Input {
                 tangled = Some(std::mem::replace(&mut mesh.points, points));
             }
         }
-        Ok(Self { mesh, layout: Layout { tangled, chart, constraints } })
+        Ok(Self { mesh, layout: Layout { tangled, chart, constraints, is_all_kept } })
     }
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.

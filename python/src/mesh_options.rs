@@ -1,6 +1,7 @@
 //! The options that belong to a mesh: vertices that may move, targets and the surface of coordinates.
 
 use gpu_smooth::Metric;
+use gpu_smooth::layers::KeepLayers;
 use gpu_smooth::options::OptionRange;
 use gpu_smooth::targets::Surface;
 use pyo3::prelude::*;
@@ -20,11 +21,11 @@ pub(crate) const NAMES: &[&str] = &[
     "corner_angle",
     "hausdorff",
     "periodic",
+    "keep_layers",
     "only_bad",
     "rings",
     "target",
     "target_rings",
-    "free_first_layer",
     "target_of",
     "surface",
     "z",
@@ -59,13 +60,13 @@ pub(crate) struct MeshOptions {
     pub(crate) hausdorff: Option<f64>,
     /// Pairs of vertices that slide together.
     pub(crate) periodic: Vec<[u32; 2]>,
+    /// Boundary layers that stay.
+    pub(crate) keep_layers: KeepLayers,
     /// Inverse mean ratio of bad triangles; only vertices near bad triangles move.
     pub(crate) only_bad: Option<f64>,
     pub(crate) rings: Option<u32>,
     pub(crate) target: Target,
     pub(crate) target_rings: Option<u32>,
-    /// Whether the first layer of vertices at the boundary moves by the target `"keep-shape"` too.
-    pub(crate) frees_first_layer: bool,
     /// Whether targets belong to places.
     pub(crate) of_places: Option<bool>,
     pub(crate) surface: Surface,
@@ -84,11 +85,11 @@ impl MeshOptions {
             corner_angle: None,
             hausdorff: None,
             periodic: Vec::new(),
+            keep_layers: KeepLayers::Auto,
             only_bad: None,
             rings: None,
             target: Target::Equilateral,
             target_rings: None,
-            frees_first_layer: false,
             of_places: None,
             surface: Surface::Plane,
             z: ThirdCoordinate::Coordinate,
@@ -108,6 +109,12 @@ impl MeshOptions {
             "corner_angle" => self.corner_angle = Some(given.number(OptionRange::CORNER_ANGLE)?),
             "hausdorff" => self.hausdorff = Some(given.number(OptionRange::HAUSDORFF)?),
             "periodic" => self.periodic = arrays::pairs(name, value, vertices)?,
+            "keep_layers" => {
+                let words =
+                    "\"auto\", \"none\", \"rows=N\" with N from 1 to 1000, or \"within=DISTANCE\"";
+                let text = value.extract::<String>().map_err(|_| given.refused(words))?;
+                self.keep_layers = text.parse().map_err(|_| given.refused(words))?;
+            }
             "only_bad" => {
                 let is_ratio = |ratio: f64| ratio >= 1.0 && ratio.is_finite();
                 self.only_bad =
@@ -116,7 +123,6 @@ impl MeshOptions {
             "rings" => self.rings = Some(given.count(0, u32::MAX)?),
             "target" => self.target = target(given, vertices)?,
             "target_rings" => self.target_rings = Some(given.count(0, 1000)?),
-            "free_first_layer" => self.frees_first_layer = given.flag()?,
             "target_of" => {
                 self.of_places = Some(given.word(&[("vertex", false), ("place", true)])?)
             }
@@ -148,10 +154,6 @@ impl MeshOptions {
             (
                 self.target_rings.is_some() && !is_kept,
                 "target_rings needs target=\"keep-size\" or \"keep-shape\". Drop it, or pass one of them",
-            ),
-            (
-                self.frees_first_layer && !matches!(self.target, Target::KeepShape),
-                "free_first_layer needs target=\"keep-shape\". Drop it, or pass it",
             ),
             (
                 self.of_places == Some(true) && matches!(self.target, Target::Equilateral),

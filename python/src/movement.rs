@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
+use gpu_smooth::layers::{Elements, KeepLayers};
 use gpu_smooth::slide::Periodic;
-use gpu_smooth::{Mesh, MeshError, Slide, Targets, Topology, select};
+use gpu_smooth::{Mesh, MeshError, Slide, Topology, select};
 
-use crate::mesh_options::{MeshOptions, Target};
+use crate::mesh_options::MeshOptions;
 
 /// Edges between triangles of different regions. `regions` has a number per triangle, and is empty without regions.
 fn interface_edges(triangles: &[[u32; 3]], regions: &[i64]) -> Vec<[u32; 2]> {
@@ -48,25 +49,25 @@ pub(crate) fn fix(mesh: &mut Mesh, options: &MeshOptions) -> Result<Constraints,
     Ok(Constraints { lines, held })
 }
 
-/// Fixes the first layer of vertices at the boundary, if the target is `"keep-shape"`, all triangles can be smoothed, and
-/// the options do not free the layer.
-pub(crate) fn fix_first_layer(
+/// Fixes the vertices of the boundary layers that stay. Returns true, and fixes no vertex, if no other vertex is free.
+pub(crate) fn keep_layers(
     mesh: &mut Mesh,
     options: &MeshOptions,
     constraints: &mut Constraints,
-) -> Result<(), MeshError> {
-    if options.frees_first_layer || !matches!(options.target, Target::KeepShape) {
-        return Ok(());
+) -> Result<bool, MeshError> {
+    if options.keep_layers == KeepLayers::None {
+        return Ok(false);
     }
     let topology = Topology::new(mesh)?;
-    // A tangled mesh is refused or untangled before the run.
-    if topology.check_smoothable(&mesh.points).is_ok() {
-        let targets = Targets::keep_shape(&topology, &mesh.points, options.target_rings())?;
-        let layer = targets.first_layer(&topology, &mesh.points)?;
-        constraints.held.extend_from_slice(&layer);
-        mesh.fixed.extend(layer);
+    let points = &mesh.points;
+    let elements = Elements { topology: &topology, points, faces: &[], lines: &constraints.lines };
+    let layers = options.keep_layers.find(&elements, None)?;
+    if layers.have_all_free(&topology) {
+        return Ok(true);
     }
-    Ok(())
+    constraints.held.extend_from_slice(&layers.vertices);
+    mesh.fixed.extend(layers.vertices);
+    Ok(false)
 }
 
 /// Returns the curves along which vertices slide.

@@ -126,7 +126,7 @@ def test_an_error_of_a_mesh_has_the_indices() -> None:
         ({"only_bad": 0.5}, "only_bad: "),
         ({"target": "round"}, "target: "),
         ({"target_rings": 2}, "target_rings needs target"),
-        ({"free_first_layer": True}, "free_first_layer needs target"),
+        ({"keep_layers": "rows=0"}, "keep_layers: "),
         ({"target_of": "place"}, "target_of needs a target"),
         ({"target": (1, 2)}, "target: "),
         ({"surface": "torus"}, "surface: "),

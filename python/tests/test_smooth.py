@@ -37,7 +37,7 @@ def test_points_have_the_bits_of_the_command_line(
     [
         ({"target": "keep-size"}, ["--target", "keep-size"]),
         ({"target": "keep_shape", "target_rings": 4}, ["--target=keep-shape", "--target-rings=4"]),
-        ({"target": "keep-shape", "free_first_layer": True}, ["--target=keep-shape", "--free-first-layer"]),
+        ({"keep_layers": "none"}, ["--keep-layers", "none"]),
         ({"target": "keep-shape", "target_of": "place"}, ["--target=keep-shape", "--target-of=place"]),
         ({"method": "relaxed", "omega": 1.3}, ["--method", "relaxed", "--omega", "1.3"]),
         ({"inner": 3, "tolerance": 1e-3}, ["--inner", "3", "--tolerance", "1e-3"]),

@@ -2,7 +2,6 @@
 
 mod adaptation;
 mod field;
-mod first_layer;
 mod keep;
 mod surface;
 mod tensor;
@@ -91,8 +90,8 @@ impl Targets {
     }
 
     /// Makes targets for elements with the size, stretching and orientation of the mesh's triangles, averaged over
-    /// `rings` rings of neighbors. These targets keep boundary layers and anisotropic adaptation, and remove noise. Fix
-    /// the vertices of [`Self::first_layer`] to keep the spacing at walls.
+    /// `rings` rings of neighbors. These targets keep boundary layers and anisotropic adaptation, and remove noise. To
+    /// keep the spacing at walls, fix the vertices of [`Layers`](crate::layers::Layers).
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -103,28 +102,6 @@ impl Targets {
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
         Ok(Self::of_maps(keep::shapes(topology.triangles(), points, rings)))
-    }
-
-    /// Returns the free vertices of the first layer at the boundary, ascending: the vertices opposite boundary edges. Runs
-    /// keep the spacing at walls if [`Mesh::fixed`](crate::Mesh::fixed) has these vertices. Call the method on the targets
-    /// of [`Self::keep_shape`].
-    ///
-    /// The list omits vertices whose triangle at the boundary is an outlier. An outlier has an inverse mean ratio above 2
-    /// under the targets, and either less than half or more than twice the height of the targets, or an apex beyond the
-    /// ends of the edge by more than half the edge. The list is empty if it would have all free vertices.
-    ///
-    /// # Errors
-    /// [`MeshError::PointCount`] or [`MeshError::ValueCount`] if `points` or the targets do not have one entry per vertex
-    /// of `topology`.
-    pub fn first_layer(
-        &self,
-        topology: &Topology<'_>,
-        points: &[[f64; 2]],
-    ) -> Result<Vec<u32>, MeshError> {
-        topology.check_count(points)?;
-        self.check_count(points.len())?;
-        let layer = first_layer::vertices(topology, points, &self.maps);
-        Ok(if layer.len() < topology.free_count() { layer } else { Vec::new() })
     }
 
     /// Converts targets in lengths on a surface to targets in its coordinates, with the vertices at `points`. Do not

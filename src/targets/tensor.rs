@@ -71,12 +71,6 @@ impl Tensor {
         Self([xx * x * x, xy * x * y, yy * y * y])
     }
 
-    /// Returns the product of the tensor and a vector.
-    pub(crate) fn applied(self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [xx, xy, yy] = self.0;
-        [xx * x + xy * y, xy * x + yy * y]
-    }
-
     /// Returns the square of the tensor.
     pub(crate) fn squared(self) -> Self {
         let [xx, xy, yy] = self.0;

@@ -6,7 +6,6 @@ use gpu_smooth::{
     measure::Change,
     targets::{Adaptation, Surface},
 };
-use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use support::SplitMix64;
 
@@ -63,37 +62,6 @@ fn curved_layer() -> Mesh {
         }
     }
     mesh
-}
-
-/// Returns the factor by which the spacing at 19 of 20 boundary vertices changes at most. The spacing at a boundary
-/// vertex is the mean height of the triangles at its boundary edges, over these edges. Triangles with three vertices on
-/// the boundary do not count.
-fn spacing_change(mesh: &Mesh, after: &[[f64; 2]]) -> f64 {
-    let topology = Topology::new(mesh).unwrap();
-    let is_boundary = support::boundary(mesh);
-    let edges = topology.boundary_edges();
-    let mut sums = vec![[0.0; 2]; mesh.points.len()];
-    for &[a, b] in &edges {
-        let with_edge = topology.star(a).iter().map(|&t| topology.triangles()[t as usize]);
-        let triangle = with_edge.into_iter().find(|t| t.contains(&b)).unwrap();
-        let apex = triangle.into_iter().find(|v| ![a, b].contains(v)).unwrap();
-        if is_boundary[apex as usize] {
-            continue;
-        }
-        let height = |points: &[[f64; 2]]| {
-            let [p, q, r] = [a, b, apex].map(|v| points[v as usize]);
-            support::check::orient([p, q, r]).abs() / (q[0] - p[0]).hypot(q[1] - p[1])
-        };
-        for v in [a, b] {
-            sums[v as usize][0] += height(&mesh.points);
-            sums[v as usize][1] += height(after);
-        }
-    }
-    let at_walls = sums.into_iter().filter(|sums| sums[0] > 0.0);
-    let mut factors: Vec<f64> =
-        at_walls.map(|[before, after]| (after / before).ln().abs().exp()).collect();
-    factors.sort_by(f64::total_cmp);
-    factors[factors.len() * 19 / 20]
 }
 
 fn smoother<'m>(mesh: &'m Mesh, targets: &Targets) -> Smoother<'m> {
@@ -170,71 +138,4 @@ fn sizes_weigh_more_on_stretched_meshes() {
         let unweighted = Targets::keep_shape(&topology, &mesh.points, 0).unwrap().size_weight();
         assert_eq!(unweighted, 1.0);
     }
-}
-
-#[test]
-fn keep_shape_keeps_the_spacing_at_walls_of_adapted_meshes_within_1_1() {
-    let graded = support::perturb_random(&support::graded(40, 0.01), 0.35, 3);
-    for mesh in [graded, of_several_solutions(60, 0.1), curved_layer()] {
-        assert!(support::is_valid(&mesh) && support::is_ccw(&mesh));
-        let topology = Topology::new(&mesh).unwrap();
-        let targets = Targets::keep_shape(&topology, &mesh.points, 1).unwrap();
-        let fixed = targets.first_layer(&topology, &mesh.points).unwrap();
-        let mesh = Mesh { fixed, ..mesh.clone() };
-        let smoother = smoother(&mesh, &targets);
-        for backend in backends() {
-            let outcome = run(&smoother, &by(Metric::Imr), backend);
-            let label = format!("{} after {} sweeps", name(backend), outcome.sweeps);
-            assert!(outcome.stop == Stop::Converged && outcome.sweeps <= 200, "{label}");
-            let change = spacing_change(&mesh, &outcome.points);
-            assert!(change < 1.1, "{label}: {change}");
-            let [before, after] =
-                [&mesh.points, &outcome.points].map(|p| smoother.f(Metric::Imr, p).unwrap());
-            assert!(after < before, "{label}: {after} for {before}");
-        }
-    }
-    // If the first layer is free, the spacing at the curved wall changes.
-    let mesh = curved_layer();
-    let topology = Topology::new(&mesh).unwrap();
-    let targets = Targets::keep_shape(&topology, &mesh.points, 1).unwrap();
-    let outcome = run(&smoother(&mesh, &targets), &by(Metric::Imr), &backends()[0]);
-    let change = spacing_change(&mesh, &outcome.points);
-    assert!(change > 1.2, "{change}");
-}
-
-#[test]
-fn the_first_layer_omits_outliers() {
-    let mesh = of_several_solutions(40, 0.2);
-    let layer = |mesh: &Mesh| {
-        let topology = Topology::new(mesh).unwrap();
-        let targets = Targets::keep_shape(&topology, &mesh.points, 1).unwrap();
-        targets.first_layer(&topology, &mesh.points).unwrap()
-    };
-    let all = layer(&mesh);
-    let is_boundary = support::boundary(&mesh);
-    let topology = Topology::new(&mesh).unwrap();
-    let edges = topology.boundary_edges();
-    let has_edge = |t: &&[u32; 3]| edges.iter().any(|[a, b]| t.contains(a) && t.contains(b));
-    let at_edges: BTreeSet<u32> =
-        mesh.triangles.iter().filter(has_edge).flatten().copied().collect();
-    let expected: Vec<u32> = at_edges.into_iter().filter(|&v| !is_boundary[v as usize]).collect();
-    assert_eq!(all, expected);
-    // A vertex that is nearly on the boundary makes a triangle far below the height of its neighbors.
-    let moved = all[all.len() / 2];
-    let edge = edges.iter().find(|&[a, b]| {
-        mesh.triangles.iter().any(|t| t.contains(a) && t.contains(b) && t.contains(&moved))
-    });
-    let [a, b] = edge.unwrap().map(|v| mesh.points[v as usize]);
-    let mut flat = mesh.clone();
-    let middle = [0, 1].map(|x| 0.5 * (a[x] + b[x]));
-    let point = &mut flat.points[moved as usize];
-    *point = [0, 1].map(|x| middle[x] + 0.1 * (point[x] - middle[x]));
-    assert!(support::is_valid(&flat));
-    let left: Vec<u32> = all.iter().copied().filter(|&v| v != moved).collect();
-    assert_eq!(layer(&flat), left);
-    // A mesh whose free vertices are all in the first layer keeps these vertices free.
-    assert_eq!(layer(&support::lattice(3, 3)), []);
-    let errors = [Targets::equilateral(3), Targets::equilateral(mesh.points.len())];
-    assert!(errors[0].first_layer(&topology, &mesh.points).is_err());
-    assert!(errors[1].first_layer(&topology, &mesh.points[1..]).is_err());
 }

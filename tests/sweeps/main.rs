@@ -13,6 +13,7 @@ mod guard;
 mod hard;
 mod hubs;
 mod invariance;
+mod layers;
 mod limit;
 mod multilevel;
 mod not_finite;

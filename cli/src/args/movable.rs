@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::parse;
+use crate::args::parse::{self, KeptLayers};
 
 const HEADING: &str = "What may move";
 
@@ -28,6 +28,11 @@ pub(crate) struct MoveArgs {
     /// Fix the vertices in this box
     #[arg(long, value_name = "X0,Y0,X1,Y1", help_heading = HEADING, value_parser = parse::corners, allow_hyphen_values = true)]
     pub(crate) fix_box: Vec<[[f64; 2]; 2]>,
+    /// Boundary layers that stay: those found above walls (auto), none, the first N rows (rows=N), or all vertices within a
+    /// distance of walls (within=DISTANCE), in the unit of the mesh. Names or tags of groups behind a comma limit the walls
+    /// to these groups [default: auto; none for compare]
+    #[arg(long, value_name = "auto|none|rows=N|within=DISTANCE[,GROUP...]", help_heading = HEADING, value_parser = parse::kept_layers)]
+    pub(crate) keep_layers: Option<KeptLayers>,
     /// Let only vertices move whose triangles all belong to these groups
     #[arg(long, value_name = "NAME|TAG,...", help_heading = HEADING, value_parser = parse::group_names, allow_hyphen_values = true)]
     pub(crate) only: Vec<String>,

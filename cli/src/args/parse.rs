@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use gpu_smooth::{Scheme, options::OptionRange};
+use gpu_smooth::{Scheme, layers::KeepLayers, options::OptionRange};
 
 /// The desired f of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,26 @@ pub(crate) fn group_names(text: &str) -> Result<String, String> {
     match is_option || text.trim().is_empty() {
         true => Err("the name or the tag of a group is needed".into()),
         false => Ok(text.to_owned()),
+    }
+}
+
+/// The value of `--keep-layers`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct KeptLayers {
+    pub(crate) keep: KeepLayers,
+    /// Names or tags of the groups of walls, with commas between them; `None` for all walls.
+    pub(crate) groups: Option<String>,
+}
+
+/// Parses the layers that stay, and the groups of their walls behind a comma.
+pub(crate) fn kept_layers(text: &str) -> Result<KeptLayers, String> {
+    let (keep, groups) = match text.split_once(',') {
+        Some((keep, groups)) => (keep, Some(group_names(groups)?)),
+        None => (text, None),
+    };
+    match (keep.parse()?, groups) {
+        (KeepLayers::None, Some(_)) => Err("none takes no groups".into()),
+        (keep, groups) => Ok(KeptLayers { keep, groups }),
     }
 }
 

@@ -11,8 +11,7 @@ const HEADING: &str = "Target elements";
 #[derive(Args)]
 pub(crate) struct TargetArgs {
     /// Desired shape and size of elements: equilateral, of any size (equilateral); equilateral, of their present sizes
-    /// (keep-size); of their present size, stretching and orientation, with the first layer of vertices at the boundary
-    /// fixed, which keeps the spacing at walls (keep-shape); equilateral, of the sizes in SOURCE
+    /// (keep-size); of their present size, stretching and orientation (keep-shape); equilateral, of the sizes in SOURCE
     /// (size=SOURCE); or equilateral under the tensors in SOURCE (metric=SOURCE). SOURCE has a value for each vertex: a
     /// .sol file of Medit, a metric file of BAMG, or the name of point data of IN. SOURCE may also refer to another
     /// mesh: BACKGROUND:DATA, where BACKGROUND is a mesh file and DATA its point data or a .sol or BAMG file, or a view
@@ -22,9 +21,6 @@ pub(crate) struct TargetArgs {
     /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 1 for keep-shape, 0 for keep-size]
     #[arg(long, value_name = "N", help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) target_rings: Option<u32>,
-    /// With keep-shape: let the first layer of vertices at the boundary move too
-    #[arg(long, help_heading = HEADING)]
-    pub(crate) free_first_layer: bool,
     /// Owner of targets: vertices, which carry them along, or places, so that targets are evaluated again at the new
     /// positions of vertices [default: place for a BACKGROUND, else vertex]
     #[arg(long, value_enum, value_name = "WHAT", help_heading = HEADING)]

@@ -13,7 +13,7 @@ pub(crate) enum FixedBy {
     Constraint,
     /// Triangles of several regions meet at the vertex.
     Interface,
-    /// An option fixes the vertex, such as `--fix`, `--only` or `--target keep-shape`.
+    /// An option fixes the vertex, such as `--fix` or `--only`, or the layers that `--keep-layers` keeps.
     Option,
     /// The triangles around the vertex form no single fan.
     Connectivity,
@@ -38,7 +38,7 @@ impl FixedBy {
             Self::Constraint => "on lines, points or other elements of the file",
             Self::Interface if slides => "between regions",
             Self::Interface => "between regions (--free-interfaces lets them move)",
-            Self::Option => "by options, such as --fix, --only and --target keep-shape",
+            Self::Option => "in boundary layers, or by options such as --fix and --only",
             Self::Connectivity => "where the triangles around a vertex form no single fan",
         }
     }

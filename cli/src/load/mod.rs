@@ -3,8 +3,10 @@
 pub(crate) mod explain;
 mod fields;
 mod fixed;
+mod layers;
 mod mesh;
 mod movable;
+mod named;
 pub(crate) mod overwrite;
 mod plane;
 pub(crate) mod remarks;

@@ -2,10 +2,12 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{MeshError, Targets, Topology, select};
-use mesh_io::{Group, Groups};
+use gpu_smooth::{MeshError, Topology, select};
+use mesh_io::Groups;
 
 use crate::load::explain;
+use crate::load::layers::keep_layers;
+use crate::load::named::{named, refusal};
 use crate::request::{MovableRequest, NearBad};
 use crate::terminal::numbers::sig6;
 
@@ -43,8 +45,10 @@ impl MovableRequest {
         if self.restricts() {
             self.restrict(file, &mut choice)?;
         }
-        if let Some(rings) = self.first_layer {
-            choice.notes.extend(fix_first_layer(file, rings)?);
+        if let Some(kept) = self.keep_layers.as_ref().filter(|_| choice.nothing_to_do.is_none()) {
+            let layers = keep_layers(file, kept)?;
+            choice.notes.extend(layers.notes);
+            choice.nothing_to_do = layers.nothing_to_do;
         }
         Ok(choice)
     }
@@ -78,32 +82,6 @@ impl MovableSelection {
                 .with_remedy("--fix, --only and the like leave nothing to smooth: let more move")
         })
     }
-}
-
-/// Fixes the first layer of vertices at the boundary, if all triangles can be smoothed. Returns a note on the number of
-/// vertices; `None` if no vertex was fixed.
-fn fix_first_layer(file: &mut LoadedMesh, rings: u32) -> Result<Option<String>, CliError> {
-    let mesh = file.mesh();
-    // The preparation of the run reports errors of the mesh, and untangles a tangled mesh.
-    let Ok(topology) = Topology::new(mesh) else { return Ok(None) };
-    if topology.check_smoothable(&mesh.points).is_err() {
-        return Ok(None);
-    }
-    let layer = Targets::keep_shape(&topology, &mesh.points, rings)
-        .and_then(|targets| targets.first_layer(&topology, &mesh.points))
-        .map_err(|error| explain::mesh_error(file, &error))?;
-    let free = topology.free_count();
-    drop(topology);
-    file.fix(&layer)?;
-    let count = match layer.len() {
-        0 => return Ok(None),
-        1 => "1 vertex stays".to_owned(),
-        n => format!("{n} vertices stay"),
-    };
-    Ok(Some(format!(
-        "--target keep-shape: {count} fixed in the first layer at the boundary, of {free} free ones, to keep the spacing there \
-         (--free-first-layer lets them move)"
-    )))
 }
 
 /// Returns a note on vertices between regions that remain fixed for another reason; `None` if all were freed.
@@ -154,9 +132,9 @@ impl<'f> SelectionResolver<'f> {
         if !request.fix.is_empty() {
             let groups = self.groups()?;
             for text in &request.fix {
-                for (name, group) in self.named(&groups, "--fix", text)? {
+                for (name, group) in named(file, &groups, "--fix", text)? {
                     if group.vertices().is_empty() {
-                        return Err(self.refusal("--fix", &format!("{group} has no elements")));
+                        return Err(refusal(file, "--fix", &format!("{group} has no elements")));
                     }
                     hold(format!("--fix {name} ({group})"), group.vertices().to_vec());
                 }
@@ -186,23 +164,24 @@ impl<'f> SelectionResolver<'f> {
         request: &MovableRequest,
         choice: &mut MovableSelection,
     ) -> Result<Vec<Vec<u32>>, CliError> {
+        let file = self.file;
         let mut lists = Vec::new();
         let of_all = self.topology.free_count();
         if !request.only.is_empty() {
             let groups = self.groups()?;
-            let (mut triangles, mut named) = (Vec::new(), Vec::new());
+            let (mut triangles, mut names) = (Vec::new(), Vec::new());
             for text in &request.only {
-                for (name, group) in self.named(&groups, "--only", text)? {
+                for (name, group) in named(file, &groups, "--only", text)? {
                     if group.triangles().is_empty() {
-                        return Err(self.refusal("--only", &format!("{group} has no triangles")));
+                        return Err(refusal(file, "--only", &format!("{group} has no triangles")));
                     }
                     triangles.extend_from_slice(group.triangles());
-                    named.push(format!("{name} ({group})"));
+                    names.push(format!("{name} ({group})"));
                 }
             }
             let vertices = select::vertices_inside(&self.topology, &triangles);
             let free = self.free_among(&vertices);
-            choice.notes.push(format!("--only {}: {}", named.join(", "), may_move(free, of_all)));
+            choice.notes.push(format!("--only {}: {}", names.join(", "), may_move(free, of_all)));
             lists.push(vertices);
         }
         if let Some(NearBad { above: limit, rings }) = request.near_bad {
@@ -232,34 +211,6 @@ impl<'f> SelectionResolver<'f> {
 
     fn groups(&self) -> Result<Groups, CliError> {
         Ok(self.file.source.groups()?)
-    }
-
-    /// Returns the groups that the value of an option names, separated by commas. Each group is paired with the name
-    /// used in the value.
-    fn named<'t, 'g>(
-        &self,
-        groups: &'g Groups,
-        option: &str,
-        text: &'t str,
-    ) -> Result<Vec<(&'t str, &'g Group)>, CliError> {
-        // A group's name may contain commas.
-        let ends = |name: &str| name.contains(',') && text.ends_with(name);
-        if groups.iter().any(|group| group.name.as_deref().is_some_and(ends))
-            && let Ok(group) = groups.find(text)
-        {
-            return Ok(vec![(text, group)]);
-        }
-        let find = |name: &'t str| match groups.find(name.trim()) {
-            Ok(group) => Ok((name.trim(), group)),
-            Err(error) => Err(self.refusal(option, &error.to_string())),
-        };
-        text.split(',').map(find).collect()
-    }
-
-    fn refusal(&self, option: &str, problem: &str) -> CliError {
-        let path = self.file.source.path().display();
-        CliError::input(format!("{path}: {option}: {problem}"))
-            .with_remedy("`gpu-smooth groups` lists what can be named")
     }
 }
 

@@ -63,9 +63,6 @@ pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
     row(["--target-rings", "--target keep-size or keep-shape"], without, |a| {
         a.target.target_rings.is_some() && !a.target.keeps()
     }),
-    row(["--free-first-layer", "--target keep-shape"], without, |a| {
-        a.target.free_first_layer && a.target.target != Target::KeepShape
-    }),
     row(["--target-of", "another --target"], without, |a| {
         a.target.target_of.is_some() && a.target.target == Target::Equilateral
     }),

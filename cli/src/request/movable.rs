@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::args::{FieldArgs, MoveArgs, SlideArgs};
+use gpu_smooth::layers::KeepLayers;
+
+use crate::args::{FieldArgs, KeptLayers, MoveArgs, SlideArgs};
 
 /// The selection of vertices that may move. By default, vertices on constraints and between regions are fixed.
 pub(crate) struct MovableRequest {
@@ -20,8 +22,8 @@ pub(crate) struct MovableRequest {
     pub(crate) only: Vec<String>,
     /// Only vertices near bad triangles may move; `None` for no such limit.
     pub(crate) near_bad: Option<NearBad>,
-    /// With `--target keep-shape`, whose first layer of vertices stays: the number of rings of the target.
-    pub(crate) first_layer: Option<u32>,
+    /// Boundary layers that stay; `None` for no layer.
+    pub(crate) keep_layers: Option<KeptLayers>,
 }
 
 /// The neighborhood of bad triangles.
@@ -35,10 +37,26 @@ pub(crate) struct NearBad {
 
 impl From<MoveArgs> for MovableRequest {
     fn from(args: MoveArgs) -> Self {
-        let MoveArgs { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, .. } = args;
         let near_bad = args.only_bad.map(|above| NearBad { above, rings: args.rings });
-        let first_layer = None;
-        Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad, first_layer }
+        let MoveArgs {
+            free_interfaces,
+            fix,
+            fix_vertices,
+            fix_array,
+            fix_box,
+            only,
+            keep_layers,
+            ..
+        } = args;
+        Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad, keep_layers }
+    }
+}
+
+impl MovableRequest {
+    /// Keeps boundary layers that are found, unless an option says otherwise.
+    pub(crate) fn keeping_layers(self) -> Self {
+        let found = || KeptLayers { keep: KeepLayers::Auto, groups: None };
+        Self { keep_layers: self.keep_layers.or_else(|| Some(found())), ..self }
     }
 }
 

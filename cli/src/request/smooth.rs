@@ -141,10 +141,7 @@ impl SmoothRequest {
             surface: (&args.target.surface).into(),
             z: ThirdCoordinate::of(&args.target.surface, &args.fields.interpolate),
             target: (&args.target).into(),
-            movable: MovableRequest {
-                first_layer: args.target.shape_rings(),
-                ..args.moving.into()
-            },
+            movable: MovableRequest::from(args.moving).keeping_layers(),
             slide: SlideRequest::of(args.sliding),
             fields: args.fields.into(),
             engine: EngineRequest::of(args.engine, args.adapter),

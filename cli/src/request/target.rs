@@ -173,13 +173,6 @@ impl TargetArgs {
         })
     }
 
-    /// Returns the number of rings of `--target keep-shape`, whose first layer of vertices is fixed. `None` for other
-    /// targets and with `--free-first-layer`.
-    pub(crate) fn shape_rings(&self) -> Option<u32> {
-        (self.target == Target::KeepShape && !self.free_first_layer)
-            .then(|| self.rings_of(ElementProperty::Shape))
-    }
-
     /// Returns whether the target has sizes but no shapes. A metric that sees no sizes would ignore such a
     /// target.
     pub(crate) fn is_of_sizes(&self) -> bool {

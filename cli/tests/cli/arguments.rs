@@ -182,10 +182,6 @@ fn options_without_effect_are_refused() {
             "--target size=s.sol --target-rings 3",
             "--target-rings has no effect without --target keep-size or keep-shape",
         ),
-        (
-            "--target keep-size --free-first-layer",
-            "--free-first-layer has no effect without --target keep-shape",
-        ),
         ("--target-of place", "--target-of has no effect without another --target"),
         ("--edge-norm fixed", "--edge-norm has no effect without edge in --scheme"),
         ("--scheme imr --target size=s.sol", "--target size=s.sol has no effect on imr"),

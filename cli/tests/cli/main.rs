@@ -19,6 +19,7 @@ mod html;
 mod interpolate;
 mod interrupt;
 mod killed;
+mod layers;
 mod long;
 mod many;
 mod moving;

@@ -104,41 +104,6 @@ fn sizes_weigh_more_on_a_stretched_mesh_and_the_weight_is_reported() {
 }
 
 #[test]
-fn keep_shape_fixes_the_first_layer_and_counts_it() {
-    let mesh = support::layered(24, 60.0);
-    let [node, ele] = node_ele(&mesh);
-    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
-    let run = folder.line("in out --engine cpu --target keep-shape --report r.json");
-    assert_eq!(run.code, Some(0), "{}", run.err);
-    let is_boundary = support::boundary(&mesh);
-    let after = folder.mesh("out.node").points;
-    let is_first = |v: u32| {
-        let touches = |t: &&[u32; 3]| {
-            t.contains(&v) && t.iter().filter(|&&w| is_boundary[w as usize]).count() == 2
-        };
-        !is_boundary[v as usize] && mesh.triangles.iter().any(|t| touches(&t))
-    };
-    let layer: Vec<u32> = (0..mesh.points.len() as u32).filter(|&v| is_first(v)).collect();
-    assert!(layer.iter().all(|&v| after[v as usize] == mesh.points[v as usize]));
-    assert!(after != mesh.points);
-    let note = format!("--target keep-shape: {} vertices stay fixed", layer.len());
-    assert_holds(&run.err, &[&note]);
-    let free = is_boundary.iter().filter(|on| !**on).count() - layer.len();
-    assert_eq!(number(&folder.json("r.json")["mesh"]["free"]) as usize, free);
-    let line = "in free --engine cpu --target keep-shape --free-first-layer --report r.json";
-    folder.line(line).clean();
-    assert_eq!(number(&folder.json("r.json")["mesh"]["free"]) as usize, free + layer.len());
-    let after = folder.mesh("free.node").points;
-    assert!(layer.iter().any(|&v| after[v as usize] != mesh.points[v as usize]));
-    // A mesh without further free vertices is smoothed all the same.
-    let [node, ele] = node_ele(&support::perturb_random(&support::lattice(3, 3), 0.5, 2));
-    let folder = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
-    let run = folder.line("in out --engine cpu --target keep-shape");
-    assert_eq!(run.code, Some(0), "{}", run.err);
-    assert!(!run.err.contains("stay fixed"), "{}", run.err);
-}
-
-#[test]
 fn a_target_of_sizes_is_not_given_to_a_metric_that_sees_none() {
     let folder = folder(&[]);
     let run = folder.line("in out --target keep-size --scheme imr");

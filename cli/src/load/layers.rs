@@ -1,0 +1,163 @@
+//! Boundary layers of a mesh that stay.
+
+use gpu_smooth::Topology;
+use gpu_smooth::layers::{Elements, KeepLayers, Layers};
+use mesh_io::Group;
+
+use crate::args::KeptLayers;
+use crate::error::CliError;
+use crate::load::named::{named, refusal};
+use crate::load::{LoadedMesh, explain};
+
+/// Number of vertices of a wall from which a group names the wall, and from which seeds without a layer are noted.
+const FEW: usize = 3;
+const MANY: usize = 8;
+
+/// Number of groups that a note names.
+const NAMED: usize = 4;
+
+/// The effect of `--keep-layers` on a mesh.
+#[derive(Default)]
+pub(super) struct KeptLayersEffect {
+    pub(super) notes: Vec<String>,
+    /// The reason if no vertex outside of the layers is free. The mesh is then unchanged.
+    pub(super) nothing_to_do: Option<String>,
+}
+
+/// Fixes the vertices of the layers that stay. If no other vertex is free, nothing is fixed and nothing is to do.
+pub(super) fn keep_layers(
+    file: &mut LoadedMesh,
+    kept: &KeptLayers,
+) -> Result<KeptLayersEffect, CliError> {
+    let mut effect = KeptLayersEffect::default();
+    if kept.keep == KeepLayers::None {
+        return Ok(effect);
+    }
+    // The preparation of the run reports errors of the mesh.
+    let Ok(topology) = Topology::new(file.mesh()) else { return Ok(effect) };
+    let layers = find(file, &topology, kept)?;
+    effect.notes = overlooked(file, &topology, kept, &layers)?;
+    if layers.vertices.is_empty() {
+        return Ok(effect);
+    }
+    effect.notes.push(note(file, kept, &layers)?);
+    if layers.have_all_free(&topology) {
+        let text = "every free vertex is in a boundary layer that stays (--keep-layers none lets them move)";
+        effect.nothing_to_do = Some(text.to_owned());
+        return Ok(effect);
+    }
+    drop(topology);
+    file.fix(&layers.vertices)?;
+    Ok(effect)
+}
+
+/// Finds the layers that an option keeps.
+fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result<Layers, CliError> {
+    const OPTION: &str = "--keep-layers";
+    let walls = match &kept.groups {
+        None => None,
+        Some(text) => {
+            let groups = file.source.groups()?;
+            let named = named(file, &groups, OPTION, text)?;
+            Some(named.iter().flat_map(|(_, group)| group.vertices()).copied().collect::<Vec<_>>())
+        }
+    };
+    let faces: Vec<Vec<u32>> = file.source.other_faces().map(<[u32]>::to_vec).collect();
+    let elements =
+        Elements { topology, points: &file.mesh().points, faces: &faces, lines: &file.lines() };
+    let layers = kept
+        .keep
+        .find(&elements, walls.as_deref())
+        .map_err(|error| explain::mesh_error(file, &error))?;
+    let is_asked = kept.groups.is_some() || kept.keep != KeepLayers::Auto;
+    match layers.vertices.is_empty() && is_asked {
+        true => {
+            let problem = match kept.groups {
+                Some(_) => "the groups have no wall with such a layer",
+                None => {
+                    "no wall has a layer: name the groups of walls behind a comma, as in rows=3,WALL"
+                }
+            };
+            Err(refusal(file, OPTION, problem))
+        }
+        false => Ok(layers),
+    }
+}
+
+/// Returns the line on the layers that stay.
+fn note(file: &LoadedMesh, kept: &KeptLayers, layers: &Layers) -> Result<String, CliError> {
+    let walls = &layers.walls;
+    let is_wall = |v: &u32| walls.binary_search(v).is_ok();
+    let inner = layers.vertices.iter().filter(|v| !is_wall(v)).count();
+    let mut names = Vec::new();
+    for group in file.source.groups()?.iter().filter(|group| is_of_lines(group)) {
+        let common = group.vertices().iter().filter(|v| is_wall(v)).count();
+        if common >= FEW {
+            names.push(name(group));
+        }
+    }
+    names.dedup();
+    let at = match names.len() {
+        0 => "the boundary".to_owned(),
+        n if n > NAMED => format!("{} and {} other groups", names[..NAMED].join(", "), n - NAMED),
+        _ => names.join(", "),
+    };
+    let size = match (kept.keep, layers.rows) {
+        (KeepLayers::Within(distance), _) => format!("within {distance} of"),
+        (_, 1) => "in 1 row at".to_owned(),
+        (_, rows) => format!("in {rows} rows at"),
+    };
+    let stay = if inner == 1 { "1 vertex" } else { &format!("{inner} vertices") };
+    let verb = if inner == 1 { "stays" } else { "stay" };
+    Ok(format!("layers: {stay} {size} {at} {verb} (--keep-layers none)"))
+}
+
+/// Returns notes on walls at which layers may begin at half of the vertices, and none was found.
+fn overlooked(
+    file: &LoadedMesh,
+    topology: &Topology<'_>,
+    kept: &KeptLayers,
+    layers: &Layers,
+) -> Result<Vec<String>, CliError> {
+    if kept.keep != KeepLayers::Auto || kept.groups.is_some() || layers.seeds.len() < MANY {
+        return Ok(Vec::new());
+    }
+    let count = |vertices: &[u32], of: &[u32]| {
+        vertices.iter().filter(|v| of.binary_search(v).is_ok()).count()
+    };
+    let is_overlooked = |vertices: &[u32]| {
+        let seeds = count(vertices, &layers.seeds);
+        seeds >= MANY && 2 * seeds >= vertices.len() && count(vertices, &layers.walls) < FEW
+    };
+    let note = |wall: &str, group: &str| {
+        format!(
+            "the triangles at {wall} are flat like those of a boundary layer, but no layer was found: \
+             --keep-layers rows=N{group} keeps the first N rows"
+        )
+    };
+    let groups = file.source.groups()?;
+    let lines: Vec<&Group> = groups.iter().filter(|group| is_of_lines(group)).collect();
+    if lines.is_empty() {
+        let loops = topology.boundary_loops();
+        let has_one = loops.iter().any(|wall| is_overlooked(wall));
+        return Ok(has_one.then(|| note("the boundary", "")).into_iter().collect());
+    }
+    let found = lines.into_iter().filter(|group| is_overlooked(group.vertices()));
+    let mut names: Vec<String> = found.map(name).collect();
+    names.dedup();
+    Ok(names.iter().take(NAMED).map(|name| note(name, &format!(",{name}"))).collect())
+}
+
+/// Returns whether a group consists of lines.
+fn is_of_lines(group: &Group) -> bool {
+    group.dimension == 1 && !group.vertices().is_empty()
+}
+
+/// Returns the name of a group, else its tag.
+fn name(group: &Group) -> String {
+    match (&group.name, group.tag) {
+        (Some(name), _) => name.clone(),
+        (None, Some(tag)) => tag.to_string(),
+        (None, None) => group.to_string(),
+    }
+}

@@ -1,0 +1,126 @@
+//! Boundary layers that stay, by `--keep-layers`.
+
+use crate::{Folder, assert_holds};
+use std::fmt::Write;
+
+const COLUMNS: usize = 24;
+const ROWS: usize = 10;
+
+/// Returns a mesh on a flat wall with a layer of ten rows, as an SU2 file with the markers `wall` and `far`, and its points.
+/// `beyond` is the number of rows above the layer.
+fn layer(beyond: usize) -> (String, Vec<[f64; 2]>) {
+    let mut heights = vec![0.0];
+    for row in 0..ROWS + beyond {
+        let step = if row < ROWS { 0.05 * 1.3_f64.powi(row as i32) } else { 1.1 };
+        heights.push(heights[row] + step);
+    }
+    let last = heights.len() - 1;
+    let mut points = Vec::new();
+    for (k, height) in heights.iter().enumerate() {
+        for i in 0..=COLUMNS {
+            let is_free = 0 < i && i < COLUMNS && ROWS < k && k < last;
+            let noise = if is_free { 0.2 * ((7 * i + 3 * k) as f64).sin() } else { 0.0 };
+            points.push([i as f64 + noise, height - noise]);
+        }
+    }
+    let at = |i: usize, k: usize| k * (COLUMNS + 1) + i;
+    let mut triangles = Vec::new();
+    for (k, i) in (0..last).flat_map(|k| (0..COLUMNS).map(move |i| (k, i))) {
+        let [p, q, r, s] = [at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)];
+        triangles.extend(match (i + k) % 2 == 0 {
+            true => [[p, q, r], [p, r, s]],
+            false => [[p, q, s], [q, r, s]],
+        });
+    }
+    let wall: Vec<_> = (0..COLUMNS).map(|i| [at(i, 0), at(i + 1, 0)]).collect();
+    let mut far: Vec<_> = (0..COLUMNS).map(|i| [at(i, last), at(i + 1, last)]).collect();
+    far.extend((0..last).flat_map(|k| [0, COLUMNS].map(|i| [at(i, k), at(i, k + 1)])));
+    let mut text = format!("NDIME= 2\nNELEM= {}\n", triangles.len());
+    triangles.iter().for_each(|[a, b, c]| writeln!(text, "5 {a} {b} {c}").unwrap());
+    writeln!(text, "NPOIN= {}", points.len()).unwrap();
+    points.iter().for_each(|[x, y]| writeln!(text, "{x} {y}").unwrap());
+    text += "NMARK= 2\n";
+    for (name, edges) in [("wall", wall), ("far", far)] {
+        writeln!(text, "MARKER_TAG= {name}\nMARKER_ELEMS= {}", edges.len()).unwrap();
+        edges.iter().for_each(|[a, b]| writeln!(text, "3 {a} {b}").unwrap());
+    }
+    (text, points)
+}
+
+/// Returns the numbers of the vertices that `is_in` holds for, a line each.
+fn numbers(points: &[[f64; 2]], is_in: impl Fn([f64; 2]) -> bool) -> String {
+    let found = points.iter().enumerate().filter(|(_, p)| is_in(**p));
+    found.map(|(v, _)| format!("{v}\n")).collect()
+}
+
+#[test]
+fn a_layer_stays_as_if_its_vertices_were_listed() {
+    let (mesh, points) = layer(8);
+    let height = points[ROWS * (COLUMNS + 1)][1];
+    let all = numbers(&points, |[x, y]| y <= height && 0.0 < x && x < 24.0);
+    let three = numbers(&points, |[_, y]| y <= points[3 * (COLUMNS + 1)][1]);
+    let near = numbers(&points, |[x, y]| y <= 0.4 && 0.0 < x && x < 24.0);
+    let files = [("in.su2", &*mesh), ("all", &*all), ("three", &*three), ("near", &*near)];
+    let folder = Folder::new(&files);
+    let out = |args: &str| {
+        let run = folder.line(&format!("in.su2 out.su2 --force --engine cpu {args}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        (run.err, folder.mesh("out.su2").points)
+    };
+    let kinds = [
+        ("", "all", ""),
+        ("", "all", "--target keep-shape"),
+        ("", "all", "--slide --improve-worst"),
+        ("--keep-layers auto,wall", "all", ""),
+        ("--keep-layers rows=3", "three", ""),
+        ("--keep-layers rows=3,wall", "three", "--only-bad 1.05"),
+        ("--keep-layers within=0.4,wall", "near", ""),
+    ];
+    let free = out("--keep-layers none").1;
+    for (keep, list, others) in kinds {
+        let (notes, kept) = out(&format!("{keep} {others}"));
+        let listed = out(&format!("--keep-layers none --fix-vertices {list} {others}")).1;
+        assert!(kept == listed, "{keep} {others}");
+        assert!(kept != points && kept != free);
+        assert_holds(&notes, &["layers: ", "wall stay (--keep-layers none)"]);
+    }
+    let count = 23 * ROWS;
+    assert_holds(&out("").0, &[&format!("layers: {count} vertices in {ROWS} rows at wall stay")]);
+}
+
+#[test]
+fn a_mesh_whose_free_vertices_are_all_in_layers_is_not_changed() {
+    let (mesh, points) = layer(1);
+    let folder = Folder::new(&[("in.su2", &*mesh)]);
+    for slide in ["", "--slide"] {
+        let run = folder.line(&format!("in.su2 out.su2 --force --engine cpu --strict {slide}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.out, &["every free vertex is in a boundary layer that stays"]);
+        assert_eq!(folder.mesh("out.su2").points, points);
+    }
+}
+
+#[test]
+fn walls_with_flat_triangles_and_no_layer_are_named() {
+    // Rows of equal height are no layer by themselves.
+    let (mesh, points) = layer(8);
+    let mut lines: Vec<String> = mesh.lines().map(str::to_owned).collect();
+    let first = lines.iter().position(|line| line.starts_with("NPOIN")).unwrap() + 1;
+    for (v, [x, _]) in points.iter().enumerate().take((ROWS + 1) * (COLUMNS + 1)) {
+        lines[first + v] = format!("{x} {}", (v / (COLUMNS + 1)) as f64 * 0.2);
+    }
+    let folder = Folder::new(&[("in.su2", &lines.join("\n"))]);
+    let run = folder.line("in.su2 out.su2 --engine cpu");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &["--keep-layers rows=N,wall keeps the first N rows"]);
+    folder.line("in.su2 out2.su2 --engine cpu --keep-layers rows=2,none").refused(&[
+        "--keep-layers",
+        "none",
+        "`gpu-smooth groups`",
+    ]);
+    for (value, part) in [("rows=0", "1 to 1000"), ("none,wall", "no groups"), ("x", "auto")] {
+        let run = folder.line(&format!("in.su2 out3.su2 --keep-layers {value}"));
+        assert_eq!(run.code, Some(2));
+        assert_holds(&run.err, &[part]);
+    }
+}

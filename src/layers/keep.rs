@@ -1,0 +1,97 @@
+//! The rows of a march that are a layer.
+
+use crate::layers::front::{SEED_ASPECT, close};
+use crate::layers::march::Rows;
+use crate::layers::sectors::{NONE, Sectors};
+use crate::layers::vector::median;
+
+/// Least aspect of a vertex that stays. Below, triangles gain more than they lose by moving.
+pub(super) const ASPECT: f64 = 1.5;
+
+/// Least number of columns of a layer, share of the wall's vertices that have columns, and rows of a column.
+const COLUMNS: usize = 8;
+const SHARE: f64 = 0.7;
+const ROWS: u32 = 3;
+
+/// Least growth of heights from the first row of a column to the last, in the median. It excludes structured meshes that
+/// are no layers, such as beams.
+const GROWTH: f64 = 1.2;
+
+/// Returns the nodes that stay, row 0 included.
+pub(super) fn kept(rows: &Rows) -> Vec<bool> {
+    let mut kept = vec![false; rows.row.len()];
+    rows.lists[0].iter().for_each(|&n| kept[n as usize] = true);
+    for row in &rows.lists[1..] {
+        let (high, flat): (Vec<u32>, Vec<u32>) = row
+            .iter()
+            .filter(|n| kept[rows.parent[**n as usize] as usize])
+            .partition(|n| rows.aspect[**n as usize] < ASPECT);
+        flat.iter().for_each(|&n| kept[n as usize] = true);
+        close(&mut kept, &high, &rows.height, 2.0, |n| rows.beside(n), |_| true);
+    }
+    kept
+}
+
+/// A column of kept rows above a node of a wall.
+#[derive(Clone, Copy, Default)]
+struct Column {
+    rows: u32,
+    first_height: f64,
+    first_aspect: f64,
+    last_height: f64,
+}
+
+/// Returns the nodes of the front whose connected runs have a layer.
+pub(super) fn judged(sectors: &Sectors, rows: &Rows, kept: &[bool]) -> Vec<bool> {
+    let mut column = vec![Column::default(); rows.row.len()];
+    let mut root = vec![NONE; rows.row.len()];
+    rows.lists[0].iter().for_each(|&n| root[n as usize] = n);
+    for (row, nodes) in (1..).zip(&rows.lists[1..]) {
+        for &node in nodes.iter().filter(|n| kept[**n as usize]) {
+            let (height, aspect) = (rows.height[node as usize], rows.aspect[node as usize]);
+            let of = root[rows.parent[node as usize] as usize];
+            root[node as usize] = of;
+            let own = &mut column[of as usize];
+            if own.rows == row {
+                continue;
+            }
+            if row == 1 {
+                (own.first_height, own.first_aspect) = (height, aspect);
+            }
+            (own.rows, own.last_height) = (row, height);
+        }
+    }
+    let mut front = vec![false; rows.row.len()];
+    rows.lists[0].iter().for_each(|&n| front[n as usize] = true);
+    let mut is_left = front.clone();
+    for &start in &rows.lists[0] {
+        if !std::mem::take(&mut is_left[start as usize]) {
+            continue;
+        }
+        let (mut run, mut at) = (vec![start], 0);
+        while let Some(&node) = run.get(at) {
+            at += 1;
+            for other in sectors.wall[node as usize].into_iter().filter(|n| *n != NONE) {
+                if std::mem::take(&mut is_left[other as usize]) {
+                    run.push(other);
+                }
+            }
+        }
+        let columns: Vec<Column> = run.iter().map(|&n| column[n as usize]).collect();
+        if !is_layer(&columns) {
+            run.iter().for_each(|&n| front[n as usize] = false);
+        }
+    }
+    front
+}
+
+/// Returns whether the columns above a run of a wall are a layer.
+fn is_layer(run: &[Column]) -> bool {
+    let high: Vec<&Column> = run.iter().filter(|c| c.rows >= ROWS).collect();
+    let aspects = high.iter().map(|c| c.first_aspect).collect();
+    let growths = high.iter().map(|c| c.last_height / c.first_height).collect();
+    high.len() >= COLUMNS
+        && high.len() as f64 >= SHARE * run.len() as f64
+        && median(aspects).is_some_and(|aspect| aspect >= SEED_ASPECT)
+        && median(growths).is_some_and(|growth| growth >= GROWTH)
+}

@@ -1,0 +1,52 @@
+//! Distances from many segments.
+
+use crate::layers::vector::{dot, length, minus};
+
+/// A tree of segments: each node has the box of its segments.
+pub(super) struct Segments {
+    segments: Vec<[[f64; 2]; 2]>,
+    /// The boxes of the tree: node `i` has the children `2 i` and `2 i + 1`, and leaves are the segments, by their order.
+    boxes: Vec<[[f64; 2]; 2]>,
+    leaves: usize,
+}
+
+impl Segments {
+    pub(super) fn new(segments: Vec<[[f64; 2]; 2]>) -> Self {
+        let leaves = segments.len().next_power_of_two();
+        let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        let mut boxes = vec![nothing; 2 * leaves];
+        for (i, [p, q]) in segments.iter().enumerate() {
+            boxes[leaves + i] = [[0, 1].map(|k| p[k].min(q[k])), [0, 1].map(|k| p[k].max(q[k]))];
+        }
+        for i in (1..leaves).rev() {
+            let [a, b] = [boxes[2 * i], boxes[2 * i + 1]];
+            boxes[i] = [[0, 1].map(|k| a[0][k].min(b[0][k])), [0, 1].map(|k| a[1][k].max(b[1][k]))];
+        }
+        Self { segments, boxes, leaves }
+    }
+
+    /// Returns whether a point is within a distance of a segment.
+    pub(super) fn are_within(&self, point: [f64; 2], distance: f64) -> bool {
+        let mut open = vec![1];
+        while let Some(node) = open.pop() {
+            let [low, high] = self.boxes[node];
+            let outside = [0, 1].map(|k| (low[k] - point[k]).max(point[k] - high[k]).max(0.0));
+            if length(outside) > distance {
+                continue;
+            }
+            if node < self.leaves {
+                open.extend([2 * node + 1, 2 * node]);
+            } else if distance_from(point, self.segments[node - self.leaves]) <= distance {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+fn distance_from(point: [f64; 2], [p, q]: [[f64; 2]; 2]) -> f64 {
+    let (edge, to) = (minus(q, p), minus(point, p));
+    let size = dot(edge, edge);
+    let share = if size > 0.0 { (dot(to, edge) / size).clamp(0.0, 1.0) } else { 0.0 };
+    length(minus(to, edge.map(|x| share * x)))
+}
