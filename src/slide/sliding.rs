@@ -36,9 +36,15 @@ impl Slide {
         {
             return moved;
         }
-        let size =
-            moved.iter().flat_map(|&v| before[v as usize]).fold(0.0, |m: f64, x| m.max(x.abs()));
-        Sliding::new(before, topology, self).misplaced(&moved, after, 8.0 * stored.error(size))
+        let size = |points: &[[f64; 2]]| {
+            moved.iter().flat_map(|&v| points[v as usize]).fold(0.0, |m: f64, x| m.max(x.abs()))
+        };
+        let sliding = Sliding::new(before, topology, self);
+        // The present coordinates are rounded to `stored`. The curve is evaluated in double precision, with errors that
+        // depend on the largest coordinates of the curve.
+        let rounding = stored.error(size(before).max(size(after)));
+        let evaluation = Precision::Double.error(sliding.size(before));
+        sliding.misplaced(&moved, after, 8.0 * rounding.max(evaluation))
     }
 }
 
@@ -83,6 +89,13 @@ impl Sliding {
     pub(crate) fn count(&self) -> usize {
         let sides = self.tracks.iter().flat_map(|track| &track.sides);
         sides.flat_map(|side| &side.fans).flatten().count()
+    }
+
+    /// Returns the largest absolute coordinate of the given vertices of all curves.
+    fn size(&self, points: &[[f64; 2]]) -> f64 {
+        let sides = self.tracks.iter().flat_map(|track| &track.sides);
+        let coordinates = sides.flat_map(|side| &side.vertices).flat_map(|&v| points[v as usize]);
+        coordinates.fold(0.0, |size: f64, x| size.max(x.abs()))
     }
 
     /// Returns the sliding vertices as indices in the problem, in ascending order.
@@ -356,5 +369,33 @@ impl Track {
     fn window(&self, params: &[f64], k: usize) -> Window {
         let neighbor = |to| self.neighbor(k, to, |i| Some(params[i])).unwrap_or(params[k]);
         Window { low: neighbor(-1), at: params[k], high: neighbor(1) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    #[test]
+    fn a_vertex_that_slides_far_along_a_straight_line_is_on_the_line() {
+        // The second vertex slides from a tiny coordinate to a large one, at which single precision is coarser.
+        let single = |x: f64| f64::from(x as f32);
+        let at = |x: f64| [single(x), single(x / 3.0)];
+        let mesh = Mesh {
+            points: vec![at(0.0), at(1e-4), at(1.0), [0.0, 1.0]],
+            triangles: vec![[0, 1, 3], [1, 2, 3]],
+            ..Mesh::default()
+        };
+        let topology = Topology::new(&mesh).unwrap();
+        let after = |point: [f64; 2]| {
+            let mut points = mesh.points.clone();
+            points[1] = point;
+            Slide::default().misplaced(&topology, &mesh.points, &points, Precision::Single)
+        };
+        for x in [0.13, 0.5, 0.77, 0.9] {
+            assert!(after(at(x)).is_empty(), "{x}");
+            assert_eq!(after([single(x), single(x / 3.0 + 1e-5)]), [1], "{x}");
+        }
     }
 }
