@@ -36,7 +36,7 @@ fn uses_of(source: &'static str) -> &'static Uses {
     let uses = &all[source];
     let count: usize = uses.values().map(BTreeSet::len).sum();
     let least = match source {
-        "job/src" => 8,
+        "job/src" => 5,
         "python/src" => 40,
         _ => 200,
     };

@@ -120,13 +120,13 @@ fn airfoil(thickness: f64, rows: usize, cut: Cut) -> (Mesh, Vec<bool>) {
         let [p, q] = [wall[i % count], wall[(i + 1) % count]];
         (p[0] - q[0]).atan2(q[1] - p[1])
     };
-    for i in 0..count {
+    for (i, &vertex) in wall.iter().enumerate() {
         let (before, after) = (normal(i + count - 1), normal(i));
         let turn = (after - before).rem_euclid(2.0 * PI);
         let fan = if turn > 2.0 { 8 } else { 0 };
         for k in 0..=fan {
             let share = if fan == 0 { 0.5 } else { f64::from(k) / f64::from(fan) };
-            add(wall[i], before + share * turn);
+            add(vertex, before + share * turn);
         }
     }
     columns.reverse();
@@ -201,7 +201,7 @@ fn rows_of_layers_are_found_on_flat_walls_airfoils_and_in_corners() {
 }
 
 #[test]
-fn layers_on_both_sides_of_an_inner_wall_and_of_a_channel_are_found() {
+fn layers_on_both_sides_of_an_inner_wall_are_found() {
     let (upper, truth) = flat(42.0, 1.25, 14, Cut::Random);
     let mirrored = upper.points.iter().map(|&[x, y]| [x, -y]);
     // The vertices of the wall, at height 0, are those of both halves.

@@ -23,7 +23,7 @@ pub(crate) use cli::{
 };
 pub(crate) use fields::FieldArgs;
 pub(crate) use movable::MoveArgs;
-pub(crate) use parse::{Desired, KeptLayers};
+pub(crate) use parse::Desired;
 pub(crate) use picture::PictureArgs;
 pub(crate) use quality::{QualityArgs, Threshold};
 pub(crate) use read::ReadArgs;

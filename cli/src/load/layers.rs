@@ -4,10 +4,10 @@ use gpu_smooth::Topology;
 use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use mesh_io::Group;
 
-use crate::args::KeptLayers;
 use crate::error::CliError;
 use crate::load::named::{named, refusal};
 use crate::load::{LoadedMesh, explain};
+use crate::request::KeptLayers;
 
 /// Number of vertices of a wall from which a group names the wall, and from which seeds without a layer are noted.
 const FEW: usize = 3;

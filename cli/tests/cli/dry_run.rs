@@ -66,7 +66,7 @@ fn a_dry_run_has_the_reason_of_each_fixed_vertex() {
     assert_eq!(counts[0], 99 - topology.free_count());
     assert_eq!(count(&plain, "vertices are not free:"), held);
     assert_holds(&plain, &[&format!("up to {} vertices would move\n", 99 - held)]);
-    assert_eq!(count(&fixed, "by options, such as --fix"), 2);
+    assert_eq!(count(&fixed, "by options such as --fix"), 2);
     assert!(!run("--free-interfaces").out.contains("between regions"));
 }
 

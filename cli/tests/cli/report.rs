@@ -43,6 +43,7 @@ fn report_holds_the_documented_keys() {
                 "closing_sweeps",
                 "held_back",
                 "lost",
+                "movable_f",
                 "remaining",
                 "levels_left_out",
                 "best_sweep",

@@ -145,7 +145,7 @@ fn measure(
     for place in places {
         let row = |first, mut runs: Vec<Timed>| {
             runs.sort_by_key(|run| run.outcome.smooth);
-            row(args, mesh, place, prepare, (first, runs.len()), &runs[runs.len() / 2])
+            row(args, mesh, place, prepare, first, runs.len(), &runs[runs.len() / 2])
         };
         let began = Instant::now();
         let more = |count: usize| {
@@ -202,7 +202,8 @@ fn row(
     mesh: &Mesh,
     place: &Place,
     prepare: Duration,
-    (first, runs): (bool, usize),
+    first: bool,
+    runs: usize,
     run: &Timed,
 ) -> Row {
     let base = args.scheme.base();
