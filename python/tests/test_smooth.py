@@ -64,6 +64,10 @@ def test_options_act_as_those_of_the_command_line(
     if "keep_altitude" in options:
         # A run would lower the least altitude of an even mesh.
         points, triangles = lattice(12, by=0.0)
+    if "keep_layers" in options:
+        # Rows at the lower side grow by 1.4.
+        points, triangles = lattice(12, by=0.0)
+        points[:, 1] = 12.0 * (1.4 ** points[:, 1] - 1.0) / (1.4**12 - 1.0)
     # The boundary is uneven, so that vertices have somewhere to slide to.
     points[:, 0] += 0.2 * np.sin(points[:, 0]) * (points[:, 0] % 12 > 0)
     source, destination = written(tmp_path / "in.vtk", points, triangles), tmp_path / "out.vtk"
