@@ -9,8 +9,10 @@ use crate::load::{LoadedMesh, lay_out};
 use crate::report::FileHash;
 use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest, ThirdCoordinate};
 use crate::run::proof::{self, MeshVersion, Proof};
+use crate::terminal::shell_words::quoted;
 use crate::terminal::tell;
 use gpu_smooth::targets::Surface;
+use std::ffi::OsStr;
 
 /// Largest number of listed vertices, and of listed triangles.
 const LISTED: usize = 10;
@@ -49,7 +51,15 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     )
     .map_err(told)?;
     if proof.difference.is_some() {
-        return Err(CliError::run(proof.problem().unwrap_or_default()));
+        let error = CliError::run(proof.problem().unwrap_or_default());
+        let missing = fields.missing(&before, &after);
+        return Err(match &missing[..] {
+            [] => error,
+            names => error.with_remedy(format!(
+                "If a run interpolated these data, give --interpolate {} here too",
+                quoted(OsStr::new(&names.join(",")))
+            )),
+        });
     }
     let Proof { moved, held, bad, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);

@@ -51,6 +51,41 @@ impl FieldsRequest {
         }
         Ok(InterpolatedFields { data: fields.len(), fields, asked: true, all })
     }
+
+    /// Returns the names of the vertex data, besides those that are requested, whose numbers explain why two files
+    /// differ in more than coordinates. Empty if the files differ in anything else.
+    pub(crate) fn missing(&self, before: &LoadedMesh, after: &LoadedMesh) -> Vec<String> {
+        let difference = |names: &[String]| {
+            let request = Self { names: names.to_vec() };
+            let fields = [before, after].map(|file| {
+                let mut fields = request.choose(file)?;
+                fields.add_dependents(file, &file.mesh().points)?;
+                Ok::<_, CliError>(fields)
+            });
+            match &fields {
+                [Ok(mine), Ok(theirs)] => {
+                    let fields = [mine.fields(), theirs.fields()];
+                    before.source.difference_ignoring(&after.source, fields).is_some()
+                }
+                _ => true,
+            }
+        };
+        let mut names = before.source.data_names().to_vec();
+        names.retain(|name| name != "z" || before.plane().is_none());
+        if difference(&names) {
+            return Vec::new();
+        }
+        let mut at = 0;
+        while let Some(name) = names.get(at).cloned() {
+            names.remove(at);
+            if difference(&names) {
+                names.insert(at, name);
+                at += 1;
+            }
+        }
+        names.retain(|name| !self.names.contains(name));
+        names
+    }
 }
 
 impl InterpolatedFields {

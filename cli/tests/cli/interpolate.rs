@@ -73,7 +73,21 @@ fn depths_stay_as_they_are_unless_they_are_to_come_along() {
     }
     let out = folder.line("compare in.gr3 out.gr3 --interpolate depth").clean().out;
     assert_holds(&out, &["depth differs only at vertices that have moved"]);
-    folder.line("compare in.gr3 out.gr3").refused(&["differ in more than coordinates"]);
+    let remedy = "give --interpolate depth here too";
+    let told = folder.line("compare in.gr3 out.gr3").refused(&[remedy]).err;
+    // The message shows both numbers that differ, though the lines are longer than a message quotes.
+    let (old, new) = (folder.text("in.gr3"), folder.text("out.gr3"));
+    let depths = [old, new].map(|text| {
+        let depth = |row: &str| row.rsplit(' ').next().unwrap_or_default().to_owned();
+        text.lines().map(depth).collect::<Vec<_>>()
+    });
+    let at = depths[0].iter().zip(&depths[1]).position(|(old, new)| old != new).unwrap();
+    let numbers = format!("`...{}` and `...{}`", depths[0][at], depths[1][at]);
+    assert_holds(&told, &[&format!("in.gr3:{}", at + 1), "more than coordinates", &numbers]);
+    // Without a remedy where other bytes differ, too.
+    fs::write(folder.path("named.gr3"), folder.text("out.gr3").replacen('\n', " \n", 1)).unwrap();
+    let told = folder.line("compare in.gr3 named.gr3").refused(&["differ in more than"]).err;
+    assert!(!told.contains("--interpolate"), "{told}");
     // Compressed output, and a run without sweeps, which leaves all data unchanged.
     fs::write(folder.path("empty"), "").unwrap();
     folder.run(["in.gr3", "again.gr3.gz", "--engine=cpu", "--interpolate=all", "--quiet"]).clean();

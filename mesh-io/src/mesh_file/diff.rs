@@ -103,9 +103,8 @@ impl MeshFile {
                     _ if at[side] >= bytes[side].len() => "the end of the file".to_owned(),
                     true => {
                         let start = memchr::memrchr(b'\n', &bytes[side][..at[side]]);
-                        let line = &bytes[side][start.map_or(0, |start| start + 1)..];
-                        let line = line.split(|&byte| byte == b'\n').next().unwrap_or_default();
-                        format!("`{}`", quoted(line.trim_ascii()))
+                        let start = start.map_or(0, |start| start + 1);
+                        format!("`{}`", excerpt(line_at(bytes[side], start), at[side] - start))
                     }
                     false => format!("the byte {}", bytes[side][at[side]]),
                 };
@@ -238,6 +237,25 @@ fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<us
             |range: &Range<usize>| range.start.min(bytes.len())..range.end.min(bytes.len());
         joined.iter().map(inside).collect()
     })
+}
+
+/// Returns the line from `start` on, without its line break.
+fn line_at(bytes: &[u8], start: usize) -> &[u8] {
+    bytes[start..].split(|&byte| byte == b'\n').next().unwrap_or_default()
+}
+
+/// Shortens a line for a message of one line. A long line begins with the token that has the byte `at`, or that ends
+/// there.
+fn excerpt(line: &[u8], at: usize) -> String {
+    const WHOLE: usize = 40;
+    let at = at.min(line.len());
+    let blank = line[..at].iter().rposition(u8::is_ascii_whitespace);
+    match blank.map(|blank| blank + 1) {
+        Some(token) if line.trim_ascii().len() > WHOLE => {
+            format!("...{}", quoted(line[token..].trim_ascii()))
+        }
+        _ => quoted(line.trim_ascii()),
+    }
 }
 
 fn is_beside_points(stored: &ArrayLocation) -> bool {
