@@ -108,6 +108,14 @@ def _which_error(which: str) -> Exception:
     return OptionError(f'which: the value is {which!r}, and must be "before" or "after" or "both"')
 
 
+def judged(result: Result) -> tuple[str, float, float]:
+    """Return the name of the objective that judges a run, and its values before and after the run."""
+    if result.has_target:
+        return "f of targets", float(result.history[0]), float(result.history[result.best_sweep])
+    metric = result.metric
+    return f"f {metric}", result.quality_before.f(metric), result.quality_after.f(metric)
+
+
 def html(result: Result) -> str:
     """Return a result as HTML: the mesh before and after the run, colored by shape, and a table."""
     pictures = ""
@@ -118,9 +126,9 @@ def html(result: Result) -> str:
             for name, points in flat_states(result).items()
         )
     before, after = result.quality_before, result.quality_after
-    metric = result.metric
+    name, f_before, f_after = judged(result)
     rows = [
-        (f"f {metric}", f"{before.f(metric):.6g}", f"{after.f(metric):.6g}"),
+        (name, f"{f_before:.6g}", f"{f_after:.6g}"),
         ("min angle", f"{before.min_angle:.2f}°", f"{after.min_angle:.2f}°"),
         ("max angle", f"{before.max_angle:.2f}°", f"{after.max_angle:.2f}°"),
         ("worst imr", f"{before.worst_imr:.6g}", f"{after.worst_imr:.6g}"),

@@ -21,7 +21,7 @@ _METHODS = (
     "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
 )
 _PROPERTIES = (
-    "axes", "metric", "engine", "stop", "fault", "sweeps", "corrections", "best_sweep", "movable_f", "remaining",
+    "axes", "metric", "has_target", "engine", "stop", "fault", "sweeps", "corrections", "best_sweep", "movable_f", "remaining",
     "held_back", "slid", "prepare_seconds", "seconds",
 )
 
@@ -69,7 +69,12 @@ class Result:
 
     @functools.cached_property
     def histories(self) -> dict[str, Doubles]:
-        """f before the first sweep and after each sweep, by each metric of the history; see the option `history`."""
+        """f before the first sweep and after each sweep, by each metric of the history; see the option `history`.
+
+        With targets, f is measured relative to the targets. The run evaluates f in its own coordinates, on a GPU in single
+        precision, and before it rounds points to the precision of the points that were passed. On slivers and far from the
+        origin, f of `quality_before` and `quality_after`, which are evaluated at the points as passed and returned, differs.
+        """
         return self._outcome.history()
 
     @property
@@ -91,6 +96,11 @@ class Result:
     def metric(self) -> str:
         """Name of the first metric of the scheme, which judges the run."""
         return self._outcome.metric
+
+    @property
+    def has_target(self) -> bool:
+        """Whether f of the history is measured relative to targets of size or shape."""
+        return self._outcome.has_target
 
     @property
     def engine(self) -> str:
@@ -229,9 +239,8 @@ class Result:
         return _picture.html(self)
 
     def __repr__(self) -> str:
-        history = self.history
-        before, after = history[0], history[self.best_sweep]
+        name, before, after = _picture.judged(self)
         return (
             f"Result({self.stop} after {self.sweeps} sweeps on {self.engine}, "
-            f"f {self.metric} {before:.6g} -> {after:.6g}, inverted {self.quality_after.inverted})"
+            f"{name} {before:.6g} -> {after:.6g}, inverted {self.quality_after.inverted})"
         )

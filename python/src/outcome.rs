@@ -11,6 +11,7 @@ use pyo3::types::PyDict;
 use crate::arrays;
 use crate::error;
 use crate::measures::Quality;
+use crate::mesh_options::Target;
 use crate::prepared::Prepared;
 use crate::threads;
 
@@ -108,6 +109,12 @@ impl Outcome {
     #[getter]
     fn metric(&self) -> &'static str {
         self.base.name()
+    }
+
+    /// Whether f of the history is measured relative to targets.
+    #[getter]
+    fn has_target(&self) -> bool {
+        !matches!(self.prepared.options.target, Target::Equilateral)
     }
 
     /// `"cpu"`, or the name of the adapter.

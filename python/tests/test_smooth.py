@@ -202,6 +202,18 @@ def test_a_result_reports_the_run(mesh: Mesh) -> None:
     worst = gpu_smooth.quality(result.points, triangles, "imr").max()
     assert abs(result.quality_after.worst_imr - worst) < 1e-12
     assert "converged" in repr(result)
+    # The text names one objective, with the values of the quality.
+    before, after = result.quality_before.f("rms"), result.quality_after.f("rms")
+    assert f"f rms {before:.6g} -> {after:.6g}" in repr(result)
+
+
+def test_f_relative_to_targets_has_another_name(mesh: Mesh) -> None:
+    points, triangles = mesh
+    result = gpu_smooth.run(points * [1.0, 9.0], triangles, target="keep-shape")
+    assert result.has_target
+    before, after = result.history[0], result.history[result.best_sweep]
+    assert f"f of targets {before:.6g} -> {after:.6g}" in repr(result)
+    assert "f of targets" in result._repr_html_() and "f imr" not in result._repr_html_()
 
 
 def test_a_smoother_runs_many_times(mesh: Mesh) -> None:
