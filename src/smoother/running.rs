@@ -314,8 +314,7 @@ impl Smoother<'_> {
     /// divides areas by the mean area at its start, and sliding vertices change the mean area. Areas that are errors of
     /// rounding depend on the unit of positions too. With targets, sizes are absolute, and the result is true.
     async fn is_lower(&self, metric: Metric, points: &[[f64; 2]]) -> Result<bool, MeshError> {
-        let is_exact =
-            metric.properties().barrier && (self.sliding.is_none() || metric.is_scale_invariant());
+        let is_exact = metric.properties().barrier && metric.is_scale_invariant();
         if is_exact || self.problem.targets().is_some() || self.field.is_some() {
             return Ok(true);
         }

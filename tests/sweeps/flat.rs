@@ -104,6 +104,74 @@ fn a_triangle_as_flat_as_coordinates_allow_is_opened() {
     }
 }
 
+/// Makes three parts, each a fan of triangles around a vertex that is one unit in the last place away from all edges of
+/// its ring.
+fn fans_without_height() -> Mesh {
+    let (below, above) = (1_f64.next_down(), 1_f64.next_up());
+    let rings: [&[[f64; 2]]; 3] = [
+        &[
+            [0.241_891_695_173_640_15, below],
+            [0.355_455_404_662_935_1, below],
+            [0.565_613_710_682_388_4, below],
+            [0.567_018_959_403_448_7, above],
+            [0.414_917_337_239_915_3, above],
+            [0.389_021_369_912_465_8, above],
+            [0.447_069_353_635_819_23, 1.0],
+        ],
+        &[
+            [0.689_375_381_525_542, 77.062_519_334_937_12],
+            [1.951_604_264_620_521_8, 78.084_567_677_636_71],
+            [2.209_355_478_203_946, 78.293_273_249_343_97],
+            [2.942_696_736_965_688, 78.887_072_225_257_81],
+            [3.346_648_576_191_921, 79.214_158_947_278_7],
+            [1.838_495_786_932_757_4, 77.992_981_806_235_5],
+            [1.636_297_480_200_990_6, 77.829_258_374_566_65],
+            [0.740_348_483_500_142_5, 77.103_793_128_536_01],
+            [0.736_813_871_296_101_9, 77.100_931_092_503_09],
+            [0.082_082_331_139_145_26, 76.570_783_751_959_13],
+            [0.580_364_318_410_379, 76.974_251_210_284_82],
+        ],
+        &[
+            [0.493_363_788_749_434_76, below],
+            [1.579_426_068_036_165, below],
+            [3.724_888_188_189_661_6, below],
+            [3.894_627_466_198_428_6, below],
+            [3.871_378_650_693_663_4, above],
+            [1.491_028_917_033_021, above],
+            [0.699_189_499_883_610_2, above],
+            [0.380_638_103_091_997_47, above],
+            [2.947_839_693_459_279_4, 1.0],
+        ],
+    ];
+    let mut mesh = Mesh::default();
+    for ring in rings {
+        let (first, count) = (mesh.points.len() as u32, ring.len() as u32 - 1);
+        mesh.points.extend(ring);
+        let triangle = |k| [first + k, first + (k + 1) % count, first + count];
+        mesh.triangles.extend((0..count).map(triangle));
+    }
+    mesh
+}
+
+/// A former defect: areas that are errors of rounding differ between the coordinates of a run and the coordinates of the
+/// mesh, and f by SHAPE-SIZE rose in the coordinates of the mesh.
+#[test]
+fn no_metric_rises_on_fans_without_height() {
+    let mesh = fans_without_height();
+    assert!(support::is_ccw(&mesh));
+    let smoother = Smoother::new(&mesh).unwrap();
+    let f =
+        |metric, points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(metric);
+    for metric in [Metric::ShapeSize, Metric::Imr] {
+        let options = Options { scheme: metric.into(), ..Options::default() };
+        for backend in backends() {
+            let outcome = run(&smoother, &options, backend);
+            let [before, after] = [&mesh.points, &outcome.points].map(|points| f(metric, points));
+            assert!(after <= before, "{metric} on the {}: {before:e} to {after:e}", name(backend));
+        }
+    }
+}
+
 /// Makes a lattice whose triangles grow to the right and upward.
 pub(crate) fn bent(columns: usize, rows: usize) -> Mesh {
     let mut mesh = support::lattice(columns, rows);
