@@ -42,16 +42,18 @@ pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
 
 /// Returns the adapters that can compute like [`ranked_adapters`], without blocking.
 pub(crate) async fn ranked_adapters_async() -> Vec<wgpu::Adapter> {
-    let native = usable_adapters(wgpu::Backends::PRIMARY).await;
+    let compiled = wgpu::Instance::enabled_backend_features();
+    let native = usable_adapters(wgpu::Backends::PRIMARY, compiled).await;
     match native.is_empty() {
-        true => usable_adapters(wgpu::Backends::SECONDARY).await,
+        true => usable_adapters(wgpu::Backends::SECONDARY, compiled).await,
         false => native,
     }
 }
 
-async fn usable_adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+/// Returns the adapters of `backends` that can compute. `compiled` are the backends that the build has on this platform.
+async fn usable_adapters(backends: wgpu::Backends, compiled: wgpu::Backends) -> Vec<wgpu::Adapter> {
     // wgpu panics if the build has no backend of the platform, as with the feature `metal` on Linux.
-    if wgpu::Instance::enabled_backend_features().is_empty() {
+    if compiled.is_empty() {
         return Vec::new();
     }
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
@@ -81,12 +83,23 @@ mod tests {
     use super::*;
     use crate::gpu::device::Gpu;
 
-    /// Tests something only in a build such as `--no-default-features --features gpu`, whose other tests need a backend.
     #[test]
-    fn a_build_without_a_backend_of_the_platform_has_no_adapter() {
-        if !wgpu::Instance::enabled_backend_features().is_empty() {
-            return;
+    fn without_a_backend_of_the_platform_there_is_no_adapter() {
+        let none = wgpu::Backends::empty();
+        for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
+            let adapters = pollster::block_on(usable_adapters(backends, none));
+            assert!(adapters.is_empty());
         }
+        let compiled = wgpu::Instance::enabled_backend_features();
+        let all = pollster::block_on(usable_adapters(wgpu::Backends::all(), compiled));
+        assert!(!all.is_empty(), "the tests need an adapter");
+    }
+
+    /// A build with the features `--no-default-features --features gpu` has this test alone. The other tests of this
+    /// module need an adapter.
+    #[cfg(not(any(feature = "vulkan", feature = "gles", feature = "metal", feature = "dx12")))]
+    #[test]
+    fn a_build_without_a_backend_has_no_adapter() {
         assert!(adapters().is_empty() && crate::gpu::checked_adapters().is_empty());
         assert!(matches!(Gpu::open(None), Err(GpuError::NoAdapter { .. })));
         let size = crate::MeshSize { vertices: 3_000_000, triangles: 6_000_000 };
