@@ -124,6 +124,7 @@ small=''
 for n in ${sizes//,/ }; do if [ "$n" -le 1000000 ]; then small="$small $n"; fi; done
 step frames 90 "./frames $small"
 step kernels-edge 120 "\$g bench --engine gpu \$on --seconds 1 --scheme edge --markdown --vertices 100000"
+export GPU_SMOOTH_MESHES=$here/meshes
 # Tests take the best adapter. Those of counts need Mesa's software driver.
 for t in metrics sweeps embed; do
     step "tests-$t" 240 "./$t --test-threads $(nproc) --skip counts::"

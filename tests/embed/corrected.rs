@@ -1,7 +1,5 @@
 //! Encoded sweeps with corrections from coarser levels, whose line search runs on the device.
 
-use std::path::Path;
-
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, OptionError, Options, SmoothError, Smoother, Stopping, Targets,
     gpu::{DeviceMesh, ObjectiveValues, Sweeps},
@@ -322,7 +320,7 @@ fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
 /// Levels built for the triangles of a rough mesh never fit the mesh that sweeps make of it: a former defect.
 #[test]
 fn a_rough_mesh_is_near_the_limit_after_a_dozen_corrected_sweeps() {
-    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../meshes");
+    let meshes = support::meshes();
     let fish = read_mesh(&meshes.join("fish.node"));
     let cases = [
         ("plate", read_mesh(&meshes.join("plate.node"))),

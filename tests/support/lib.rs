@@ -17,6 +17,12 @@ pub mod tangle;
 pub mod trig;
 pub mod write;
 
+/// Returns the folder of the project's meshes. Where tests run outside of a checkout, `GPU_SMOOTH_MESHES` names it.
+pub fn meshes() -> std::path::PathBuf {
+    let checkout = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes");
+    std::env::var_os("GPU_SMOOTH_MESHES").map_or_else(|| checkout.into(), Into::into)
+}
+
 /// The mesh type of the library under test.
 #[cfg(feature = "smoother")]
 pub use gpu_smooth::Mesh;

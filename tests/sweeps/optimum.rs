@@ -109,8 +109,7 @@ const BEST_BY_EDGE: [(&str, f64); 7] = [
 #[test]
 fn edge_ends_within_1e_4_of_the_best_known_after_some_eighty_sweeps() {
     for (mesh, best) in BEST_BY_EDGE {
-        let file = format!("{}/../meshes/{mesh}.node", env!("CARGO_MANIFEST_DIR"));
-        let read = support::read_mesh(file.as_ref());
+        let read = support::read_mesh(&support::meshes().join(mesh).with_extension("node"));
         let smoother = Smoother::new(&read).unwrap();
         let worst =
             |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().worst_imr;
