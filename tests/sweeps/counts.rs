@@ -1,7 +1,7 @@
 //! The work that a whole run gives to a device: dispatches, submissions, waits, late kernels and bytes.
 //!
-//! Each of these costs time on a graphics card that a software driver does not show. A change that lowers a number lowers
-//! it here too; a change that raises a number gives the reason.
+//! On a graphics card each of these quantities costs time that measurements on a software driver do not show. A commit
+//! that changes a number also changes the number in this test, and a commit that raises a number states the reason.
 
 use std::time::Duration;
 

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
 
-/// The quantities that are counted. Each passes through one place of the code.
+/// The quantities that are counted. Exactly one place of the code counts each quantity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Count {
     /// Dispatches of kernels.

@@ -36,7 +36,7 @@ struct Row {
     engine: String,
     driver: String,
     software: bool,
-    /// Seconds to open the device, once for all rows of an engine: zero for the CPU.
+    /// Seconds to open the device; zero for the CPU. An engine opens its device once, so all its rows have one value.
     open_seconds: f64,
     scheme: String,
     vertices: usize,
@@ -48,7 +48,8 @@ struct Row {
     prepare_seconds: f64,
     /// Seconds from the start of a run to its result.
     smooth_seconds: f64,
-    /// Parts of `smooth_seconds`; the first two overlap with the third. The host has the rest.
+    /// Seconds of a run in which the host builds levels, compiles kernels, and waits for the device. Compilation and
+    /// levels may overlap with waits. The host takes the rest of `smooth_seconds` for other work.
     levels_seconds: f64,
     compiling_seconds: f64,
     waiting_seconds: f64,
