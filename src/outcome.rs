@@ -79,7 +79,8 @@ pub struct Outcome {
     /// The way toward the goal; `None` for a run without a goal.
     pub goal: Option<GoalOutcome>,
     /// Number of vertices set back to their positions before the run because rounding had inverted a triangle, or had left
-    /// an altitude below the bound of [`Options::keep_altitude`](crate::Options::keep_altitude).
+    /// an altitude below the bound of [`Options::keep_altitude`](crate::Options::keep_altitude), or because a vertex that
+    /// slides would otherwise be [misplaced](crate::Slide::misplaced).
     pub returned: usize,
     /// The result of sliding; `None` if no vertex could slide; see
     /// [`Smoother::set_slide`](crate::Smoother::set_slide).

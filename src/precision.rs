@@ -50,7 +50,7 @@ impl Precision {
 
     /// Returns a bound on the rounding error of numbers up to the absolute value `size`. The bound does not hold for
     /// the smallest and the largest numbers of the precision.
-    pub(crate) fn error(self, size: f64) -> f64 {
+    pub fn error(self, size: f64) -> f64 {
         match self {
             Precision::Single => f64::from(f32::EPSILON) * size,
             Precision::Double => f64::EPSILON * size,

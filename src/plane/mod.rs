@@ -113,6 +113,14 @@ impl Plane {
         if self.is_tilted() { Precision::Double } else { self.stored }
     }
 
+    /// Returns a bound on the errors of coordinates in this plane that come from the rounding of coordinates in space. In
+    /// the plane of two axes, coordinates have the errors of the file ([`Precision::error`]).
+    pub fn rounding(&self) -> f64 {
+        let largest = self.space.as_flattened().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+        // A coordinate in the plane is the product of a direction of length 1 with three rounded coordinates.
+        2.0 * self.stored.error(largest)
+    }
+
     /// Returns x, y and z of the vertices at `points` of the plane. A vertex that has not moved keeps its bits, and so
     /// does the coordinate that is at a right angle to the plane of two axes.
     pub fn in_space(&self, points: &[[f64; 2]]) -> Vec<[f64; 3]> {

@@ -185,6 +185,20 @@ impl Curve {
         })
     }
 
+    /// Returns whether the line that joins two points of the curve passes near all given vertices between the parameters
+    /// `low` and `high` of the points: within the largest allowed distance, plus `tolerance`. See [`at`](Self::at) for
+    /// `near`.
+    pub(crate) fn is_line_near(
+        &self,
+        ends: [DVec2; 2],
+        [low, high]: [f64; 2],
+        near: usize,
+        tolerance: f64,
+    ) -> bool {
+        self.knots_between(low, high, near)
+            .all(|(knot, _)| distance(self.knots[knot], ends) <= self.bounds[knot] + tolerance)
+    }
+
     /// Returns the larger of two distances, in the unit of the mesh. One is the largest distance of the given vertices
     /// between `low` and `high` from the line that joins the points at both parameters. The other is the distance of
     /// the line's start from the line between the two given vertices around `low`. See [`at`](Self::at) for `near`.

@@ -8,9 +8,11 @@ mod options;
 mod pairing;
 mod params;
 mod partners;
+mod proof;
 mod rigid;
 mod side;
 mod sliding;
+mod track;
 
 pub use crate::periodic::{Motion, Periodic};
 pub(crate) use acceleration::Acceleration;

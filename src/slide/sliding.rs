@@ -4,67 +4,23 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::patch::Fan;
-use crate::precision::Precision;
 use crate::slide::chains::chains;
-use crate::slide::newton::{self, Reach, Rule, Visited, Window};
+use crate::slide::newton::{self, Rule, Visited, Window};
 use crate::slide::options::Slide;
 use crate::slide::params::Params;
 use crate::slide::side::BoundaryCurve;
+use crate::slide::track::Track;
 use crate::topology::Topology;
-
-impl Slide {
-    /// Returns the fixed vertices whose move sliding does not allow, in ascending order. An allowed move follows the
-    /// curve, passes no neighbor, and matches the move of the partner. `before` has the given positions and `after` the
-    /// present ones, rounded to `stored`. Vertices missing in a list are not returned. If a list is incomplete, every
-    /// fixed vertex that moved is returned.
-    pub fn misplaced(
-        &self,
-        topology: &Topology<'_>,
-        before: &[[f64; 2]],
-        after: &[[f64; 2]],
-        stored: Precision,
-    ) -> Vec<u32> {
-        let differ = |&(v, is_free): &(usize, &bool)| {
-            let [was, is] = [before.get(v), after.get(v)].map(|p| p.map(|p| p.map(f64::to_bits)));
-            !is_free && was.is_some() && is.is_some() && was != is
-        };
-        let moved = topology.free().iter().enumerate().filter(differ);
-        let moved: Vec<u32> = moved.map(|(v, _)| v as u32).collect();
-        let is_listed = |&v: &u32| (v as usize) < before.len() && (v as usize) < after.len();
-        let all = topology.free().len() as u32;
-        if moved.is_empty() || !(0..all).all(|v| is_listed(&v)) || self.check(all as usize).is_err()
-        {
-            return moved;
-        }
-        let size = |points: &[[f64; 2]]| {
-            moved.iter().flat_map(|&v| points[v as usize]).fold(0.0, |m: f64, x| m.max(x.abs()))
-        };
-        let sliding = Sliding::new(before, topology, self);
-        // The present coordinates are rounded to `stored`. The curve is evaluated in double precision, with errors that
-        // depend on the largest coordinates of the curve.
-        let rounding = stored.error(size(before).max(size(after)));
-        let evaluation = Precision::Double.error(sliding.size(before));
-        sliding.misplaced(&moved, after, 8.0 * rounding.max(evaluation))
-    }
-}
 
 /// Largest number of rounds that reset vertices of a curve, as each reset may put a neighbor out of order.
 const RESET_PASSES: u32 = 5;
-/// Largest difference between the curve parameters of partners, in units of the rounding error of a coordinate.
-const PARTNER_TOLERANCE: f64 = 4.0;
 
 /// All curves of a mesh on which vertices slide, alone or in pairs.
 #[derive(Clone, Debug)]
 pub(crate) struct Sliding {
-    tracks: Vec<Track>,
+    pub(super) tracks: Vec<Track>,
     /// Number of pairs that stay because the motion of the other pairs does not fit them.
     unlike: usize,
-}
-
-/// A curve on which vertices slide. If the vertices have partners, the second side is the curve of the partners.
-#[derive(Clone, Debug)]
-struct Track {
-    sides: Vec<BoundaryCurve>,
 }
 
 impl Sliding {
@@ -89,13 +45,6 @@ impl Sliding {
     pub(crate) fn count(&self) -> usize {
         let sides = self.tracks.iter().flat_map(|track| &track.sides);
         sides.flat_map(|side| &side.fans).flatten().count()
-    }
-
-    /// Returns the largest absolute coordinate of the given vertices of all curves.
-    fn size(&self, points: &[[f64; 2]]) -> f64 {
-        let sides = self.tracks.iter().flat_map(|track| &track.sides);
-        let coordinates = sides.flat_map(|side| &side.vertices).flat_map(|&v| points[v as usize]);
-        coordinates.fold(0.0, |size: f64, x| size.max(x.abs()))
     }
 
     /// Returns the sliding vertices as indices in the problem, in ascending order.
@@ -248,154 +197,6 @@ impl Sliding {
                     track.follow(problem, k, param, positions);
                 }
             }
-        }
-    }
-
-    /// Returns the vertices of the list that left their curve, passed a neighbor, or left their partner's parameter.
-    /// `vertices` are ascending indices in the mesh, `points` the positions of all vertices of the mesh. `rounding`
-    /// bounds the error of a coordinate.
-    pub(crate) fn misplaced(
-        &self,
-        vertices: &[u32],
-        points: &[[f64; 2]],
-        rounding: f64,
-    ) -> Vec<u32> {
-        let mut misplaced = vertices.to_vec();
-        for track in &self.tracks {
-            let found_on = |side: &BoundaryCurve| {
-                let own = |(k, &v): (usize, &u32)| {
-                    let at = DVec2::from(points[v as usize]);
-                    let has_moved = vertices.binary_search(&v).is_ok();
-                    match has_moved {
-                        true => side.curve.find(at, k, rounding),
-                        false => Some(side.curve.params()[k]),
-                    }
-                };
-                side.vertices.iter().enumerate().map(own).collect::<Vec<Option<f64>>>()
-            };
-            let found: Vec<Vec<Option<f64>>> = track.sides.iter().map(found_on).collect();
-            let is_between = |found: &[Option<f64>], k: usize| {
-                let neighbor = |to: isize| track.neighbor(k, to, |i| found[i]);
-                found[k].is_some_and(|at| {
-                    neighbor(-1).is_none_or(|before| before < at)
-                        && neighbor(1).is_none_or(|after| at < after)
-                })
-            };
-            let together = |k: usize| {
-                let [first, second] = match &found[..] {
-                    [first, second] => [first[k], second[k]],
-                    _ => return true,
-                };
-                let apart = |(a, b): (f64, f64)| (a - b).abs();
-                first
-                    .zip(second)
-                    .map(apart)
-                    .is_some_and(|apart| apart <= PARTNER_TOLERANCE * rounding)
-            };
-            let good = |k: &usize| {
-                track.slides(*k) && found.iter().all(|found| is_between(found, *k)) && together(*k)
-            };
-            let good = (0..track.count()).filter(good);
-            let own = |k: usize| track.sides.iter().map(move |side| side.vertices[k]);
-            let mut good: Vec<u32> = good.flat_map(own).collect();
-            good.sort_unstable();
-            misplaced.retain(|v| good.binary_search(v).is_err());
-        }
-        misplaced
-    }
-
-    /// Moves vertices back to their given positions if their partner has its given position. `before` and `points` are
-    /// in the order of the mesh. Returns the number of vertices moved back.
-    pub(crate) fn return_partners(&self, before: &[[f64; 2]], points: &mut [[f64; 2]]) -> usize {
-        let mut returned = 0;
-        for track in &self.tracks {
-            let [first, second] = match &track.sides[..] {
-                [first, second] => [&first.vertices, &second.vertices],
-                _ => continue,
-            };
-            for (&a, &b) in first.iter().zip(second) {
-                let [a, b] = [a, b].map(|v| v as usize);
-                let has_moved = [a, b].map(|v| points[v] != before[v]);
-                if has_moved[0] != has_moved[1] {
-                    let v = if has_moved[0] { a } else { b };
-                    points[v] = before[v];
-                    returned += 1;
-                }
-            }
-        }
-        returned
-    }
-}
-
-impl Track {
-    /// Returns the parameters of the given positions, common to both sides.
-    fn start(&self) -> &[f64] {
-        self.sides[0].curve.params()
-    }
-
-    /// Returns the number of vertices on each side.
-    fn count(&self) -> usize {
-        self.sides[0].vertices.len()
-    }
-
-    fn slides(&self, k: usize) -> bool {
-        self.sides[0].slides(k)
-    }
-
-    /// Moves the vertices of index `k` on all sides to a parameter, if they slide.
-    fn follow(&self, problem: &Problem, k: usize, param: f64, positions: &mut [DVec2]) {
-        for side in &self.sides {
-            if let Some(fan) = &side.fans[k] {
-                positions[fan.own() as usize] = side.at(problem, param, k).point;
-            }
-        }
-    }
-
-    /// Returns `known` for the vertex before (`to` = -1) or after (1) vertex `k`. On a closed curve, parameters
-    /// continue past the first vertex: by one period for each turn.
-    fn neighbor(&self, k: usize, to: isize, known: impl Fn(usize) -> Option<f64>) -> Option<f64> {
-        let (at, count) = (k as isize + to, self.count() as isize);
-        let turns = at.div_euclid(count);
-        let param = known(at.rem_euclid(count) as usize)?;
-        Some(param + turns as f64 * self.sides[0].curve.period())
-    }
-
-    /// Returns the bound on the distance of vertex `k` from its given position.
-    fn reach(&self, reach: &[f64], k: usize) -> Reach {
-        Reach { vertex: k, start: self.start()[k], most: reach[k] }
-    }
-
-    /// Returns the parameters of vertex `k` and of its two neighbors.
-    fn window(&self, params: &[f64], k: usize) -> Window {
-        let neighbor = |to| self.neighbor(k, to, |i| Some(params[i])).unwrap_or(params[k]);
-        Window { low: neighbor(-1), at: params[k], high: neighbor(1) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::Mesh;
-
-    #[test]
-    fn a_vertex_that_slides_far_along_a_straight_line_is_on_the_line() {
-        // The second vertex slides from a tiny coordinate to a large one, at which single precision is coarser.
-        let single = |x: f64| f64::from(x as f32);
-        let at = |x: f64| [single(x), single(x / 3.0)];
-        let mesh = Mesh {
-            points: vec![at(0.0), at(1e-4), at(1.0), [0.0, 1.0]],
-            triangles: vec![[0, 1, 3], [1, 2, 3]],
-            ..Mesh::default()
-        };
-        let topology = Topology::new(&mesh).unwrap();
-        let after = |point: [f64; 2]| {
-            let mut points = mesh.points.clone();
-            points[1] = point;
-            Slide::default().misplaced(&topology, &mesh.points, &points, Precision::Single)
-        };
-        for x in [0.13, 0.5, 0.77, 0.9] {
-            assert!(after(at(x)).is_empty(), "{x}");
-            assert_eq!(after([single(x), single(x / 3.0 + 1e-5)]), [1], "{x}");
         }
     }
 }

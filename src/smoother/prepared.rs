@@ -14,6 +14,7 @@ use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::options::{Guard, Options};
 use crate::parallel::pace::now;
+use crate::precision::Precision;
 use crate::slide::{Slide, Sliding};
 use crate::targets::{OutsideReport, Surface, TargetField, Targets};
 use crate::topology::{Topology, certified};
@@ -284,18 +285,23 @@ impl<'a> Smoother<'a> {
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex; no vertex is then moved.
     pub fn certify(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
-        now(self.certified(points))
+        now(self.certified(points, None))
     }
 
-    /// Does the work of [`Self::certify`], with pauses.
-    pub(super) async fn certified(&self, points: &mut [[f64; 2]]) -> Result<usize, MeshError> {
-        let before = &self.mesh.points;
-        let mut returned = certified(&self.topology, before, points).await?;
+    /// Does the work of [`Self::certify`], with pauses. If the precision of `points` is known, also sets sliding vertices
+    /// back whose move [`Slide::misplaced`] would not allow, such as those that passed a neighbor that was set back.
+    pub(super) async fn certified(
+        &self,
+        points: &mut [[f64; 2]],
+        stored: Option<Precision>,
+    ) -> Result<usize, MeshError> {
+        let (before, topology) = (&self.mesh.points, &self.topology);
+        let mut returned = certified(topology, before, points).await?;
         let Some(sliding) = &self.sliding else { return Ok(returned) };
         loop {
-            match sliding.return_partners(before, points) {
+            match sliding.return_misplaced(before, points, stored) {
                 0 => return Ok(returned),
-                more => returned += more + certified(&self.topology, before, points).await?,
+                more => returned += more + certified(topology, before, points).await?,
             }
         }
     }

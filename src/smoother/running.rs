@@ -218,13 +218,14 @@ impl Smoother<'_> {
             })
             .await;
         }
-        let mut returned = self.certified(&mut points).await?;
+        let stored = Some(options.stored);
+        let mut returned = self.certified(&mut points, stored).await?;
         // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
         let mut low = usize::from(options.keep_altitude);
         let guard = if low > 0 { self.final_guard(options).await } else { f64::INFINITY };
         while low > 0 {
             low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
-            returned += low + self.certified(&mut points).await?;
+            returned += low + self.certified(&mut points, stored).await?;
         }
         // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
         let is_as_swept =

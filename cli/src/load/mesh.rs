@@ -78,6 +78,15 @@ impl LoadedMesh {
             .map_or_else(|| smoother_precision(self.source.precision()), Plane::run_precision)
     }
 
+    /// Returns a bound on the rounding errors of coordinates, up to an absolute value, as the file stores them. In a tilted
+    /// plane, the errors are those of the coordinates in space.
+    pub(crate) fn rounding(&self, size: f64) -> f64 {
+        match self.plane().filter(|plane| plane.is_tilted()) {
+            Some(plane) => plane.rounding(),
+            None => self.precision().error(size),
+        }
+    }
+
     /// Returns the vertices of the file by which options select vertices: x and y, or positions in the plane of the
     /// mesh.
     pub(crate) fn positions(&self) -> &[[f64; 2]] {

@@ -57,7 +57,8 @@ impl Proof {
             };
             held = moved.iter().copied().filter(|&v| !topology.free()[v as usize]).collect();
             if let Some(slide) = slide {
-                let misplaced = slide.misplaced(&topology, old, new, after.precision());
+                let rounding = |size: f64| before.rounding(size).max(after.rounding(size));
+                let misplaced = slide.misplaced_within(&topology, old, new, &rounding);
                 slid = held.len() - misplaced.len();
                 held.retain(|v| misplaced.binary_search(v).is_err());
                 pairs = pairs_among(slide, &held);
