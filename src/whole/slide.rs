@@ -98,6 +98,10 @@ impl Stage for SlideStage<'_> {
         SWEEPS
     }
 
+    fn moves_without_sweeps(&self) -> bool {
+        true
+    }
+
     /// Sweeps along the curves, then extrapolates the last periods. The extrapolated positions are taken if f is lower
     /// there and all bounds hold.
     fn work(

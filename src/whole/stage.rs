@@ -15,6 +15,11 @@ pub(crate) trait Stage: Send + Sync {
     /// Returns the largest number of sweeps before the stage works again.
     fn period(&self) -> u32;
 
+    /// Returns whether the stage also moves vertices that no sweep has moved.
+    fn moves_without_sweeps(&self) -> bool {
+        false
+    }
+
     /// Works on the state after some sweeps. A stage that moves free vertices otherwise than the sweeps did first asks
     /// `allows`, which applies the bounds of earlier stages.
     ///

@@ -110,6 +110,21 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     }
 }
 
+/// A former defect: vertices slid in a run without a sweep, and f of the history was not f of the result.
+#[test]
+fn a_run_that_has_reached_its_goal_at_the_start_slides_no_vertex() {
+    let (mesh, lines) = halves();
+    let (smoother, _) = sliding(&mesh, &Slide { lines, ..Slide::default() });
+    let stopping = Stopping::Goal(Goal { fraction: 0.5, desired: Some(1e6) });
+    let options = Options { stopping, ..Options::default() };
+    for backend in backends() {
+        let outcome = run(&smoother, &options, backend);
+        assert_eq!((outcome.stop, outcome.sweeps), (Stop::Reached, 0), "{}", name(backend));
+        assert_eq!(outcome.points, mesh.points);
+        assert_eq!(outcome.slid.unwrap().moved, 0);
+    }
+}
+
 #[test]
 fn fixed_vertices_of_the_boundary_slide_along_given_lines_only() {
     let (mut mesh, middle) = halves();

@@ -237,6 +237,8 @@ impl Report {
             1 => "1 vertex".to_owned(),
             n => format!("{n} vertices"),
         };
+        // The worst triangles may be improved without a sweep.
+        let is_unchanged = self.change.moved.most == 0.0;
         let mut text = match (self.stop, &self.goal) {
             (stop, Some(goal)) => {
                 let desired = sig6(goal.desired);
@@ -246,7 +248,9 @@ impl Report {
                 };
                 match (goal.reached, stop) {
                     (true, _) if self.sweeps == 0 => {
-                        format!("nothing to do: f is as low as the desired {desired} already")
+                        let low = format!("f is as low as the desired {desired} already");
+                        let what = if is_unchanged { "nothing to do" } else { "no sweep" };
+                        format!("{what}: {low}")
                     }
                     (true, _) => format!("reached after {sweeps}: {went}"),
                     (false, "stalled") => {
@@ -292,7 +296,7 @@ impl Report {
                 }
             }
         };
-        if self.sweeps > 0 && self.best_sweep == 0 {
+        if self.sweeps > 0 && self.best_sweep == 0 && is_unchanged {
             text.push_str("; no gain, so the mesh is written unchanged");
         } else if self.best_sweep != self.sweeps {
             let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);

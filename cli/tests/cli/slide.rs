@@ -110,6 +110,24 @@ fn vertices_slide_in_a_tilted_plane_of_a_file_of_floats() {
     folder.line("compare in.vtk out.vtk --slide -q").clean();
 }
 
+/// A former defect: two vertices slid in a run that had nothing to do.
+#[test]
+fn a_run_that_has_reached_its_goal_at_the_start_slides_no_vertex() {
+    let folder = Folder::new(&[("in.mesh", &medit())]);
+    let options = "--engine cpu --slide --desired 1e6 --fraction 0.5";
+    let run = folder.line(&format!("in.mesh out.mesh {options} --report r.json"));
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.out, &["nothing to do", "no vertex moved", "0 of 21 vertices on lines slid"]);
+    assert_eq!(folder.mesh("in.mesh"), folder.mesh("out.mesh"));
+    let report = folder.json("r.json");
+    assert_eq!((&report["sweeps"], &report["slid"]["moved"]), (&0.into(), &0.into()));
+    let [f, after] = [&report["history"][0]["f"], &report["after"]["f"]["imr"]].map(number);
+    assert!((f - after).abs() <= 1e-12 * f, "{f} {after}");
+    // The worst triangles improve without a sweep.
+    let run = folder.line(&format!("in.mesh out.mesh {options} --improve-worst"));
+    assert_holds(&run.out, &["no sweep: f is as low as the desired"]);
+}
+
 #[test]
 fn vertices_that_slid_are_shown_in_the_page_and_in_pictures() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
