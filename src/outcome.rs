@@ -121,8 +121,11 @@ pub struct Slid {
     pub pairs: usize,
     /// Number of periods. A period consists of sweeps over free vertices, then of sweeps along the curves.
     pub rounds: u32,
-    /// Largest distance between the curves' edges before and after the run, in the unit of the mesh.
+    /// Largest distance between the edges of the lines before and after the run, in the unit of the mesh: of a given vertex
+    /// from the new edges, or of a moved vertex from the given edges. Moved vertices themselves are on the curves.
     pub off: f64,
+    /// The largest of these distances as a share of the local edge length.
+    pub off_share: f64,
     /// Relative change of the area of the mesh.
     pub area: f64,
 }

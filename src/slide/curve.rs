@@ -199,17 +199,26 @@ impl Curve {
             .all(|(knot, _)| distance(self.knots[knot], ends) <= self.bounds[knot] + tolerance)
     }
 
-    /// Returns the larger of two distances, in the unit of the mesh. One is the largest distance of the given vertices
-    /// between `low` and `high` from the line that joins the points at both parameters. The other is the distance of
-    /// the line's start from the line between the two given vertices around `low`. See [`at`](Self::at) for `near`.
-    pub(crate) fn off(&self, low: f64, high: f64, near: usize) -> f64 {
+    /// Returns the larger of two distances, in the unit of the mesh and as a share of the local edge length. One is the
+    /// largest distance of the given vertices between `low` and `high` from the line that joins the points at both
+    /// parameters. The other is the distance of the line's start from the line between the two given vertices around
+    /// `low`. See [`at`](Self::at) for `near`.
+    pub(crate) fn off(&self, low: f64, high: f64, near: usize) -> [f64; 2] {
+        let pieces = self.slopes.len();
+        let length = |piece: usize| match piece < pieces {
+            true => self.params[piece + 1] - self.params[piece],
+            false => 0.0,
+        };
+        // The local edge length of a given vertex is the longer of its two edges, as in the bounds.
+        let longer =
+            |knot: usize| length(knot.checked_sub(1).unwrap_or(pieces - 1)).max(length(knot));
         let ends = [low, high].map(|param| self.at(param, near).point);
-        let far =
-            self.knots_between(low, high, near).map(|(knot, _)| distance(self.knots[knot], ends));
-        let param = self.wrapped(low);
-        let piece = self.count_up_to(param, near).saturating_sub(1);
-        let piece = piece.min(self.slopes.len() - 1);
-        far.fold(distance(ends[0], [self.knots[piece], self.knots[piece + 1]]), f64::max)
+        let of_knot = |(knot, _)| (distance(self.knots[knot], ends), longer(knot));
+        let piece = self.count_up_to(self.wrapped(low), near).saturating_sub(1).min(pieces - 1);
+        let of_start =
+            (distance(ends[0], [self.knots[piece], self.knots[piece + 1]]), length(piece));
+        let all = self.knots_between(low, high, near).map(of_knot).chain([of_start]);
+        all.fold([0.0; 2], |[far, share], (off, edge)| [off.max(far), share.max(off / edge)])
     }
 
     /// Returns the parameter of a point on the curve, searching outward from a given vertex. `None` if the point is
@@ -302,7 +311,10 @@ mod tests {
         assert!(
             !curve.is_near([at(4), at(6), at(8)], 4) && !curve.is_near([at(3), at(4), at(9)], 4)
         );
-        assert!(curve.off(at(0), at(3), 0) == 0.0 && curve.off(at(3), at(9), 3) > 0.2);
+        assert_eq!(curve.off(at(0), at(3), 0), [0.0; 2]);
+        let [off, share] = curve.off(at(3), at(9), 3);
+        let edge = at(9) - at(8);
+        assert!(off > 0.2 && (share * edge - off).abs() < 1e-9, "{off} {share}");
     }
 
     #[test]

@@ -68,6 +68,25 @@ impl Sliding {
         self.tracks.iter().map(|track| track.start().to_vec()).collect()
     }
 
+    /// Replaces the parameters of vertices that have their given positions. `before` has the given positions and `points`
+    /// the present ones, in the order of the mesh.
+    pub(crate) fn with_returned(
+        &self,
+        params: &Params,
+        before: &[[f64; 2]],
+        points: &[[f64; 2]],
+    ) -> Params {
+        let of_track = |(track, params): (&Track, &Vec<f64>)| {
+            let is_back = |k: usize| {
+                let v = track.sides[0].vertices[k] as usize;
+                points[v] == before[v]
+            };
+            let param = |k: usize| if is_back(k) { track.start()[k] } else { params[k] };
+            (0..params.len()).map(param).collect()
+        };
+        self.tracks.iter().zip(params).map(of_track).collect()
+    }
+
     /// Returns the vertices whose parameter differs from the given one: index in the mesh, and position in the unit of
     /// the mesh.
     pub(crate) fn moved(&self, params: &Params) -> Vec<(u32, [f64; 2])> {
@@ -163,17 +182,19 @@ impl Sliding {
     }
 
     /// Returns the largest distance between the lines through the vertices at `params` and the lines through the given
-    /// positions, in the unit of the mesh.
-    pub(crate) fn off(&self, params: &Params) -> f64 {
+    /// positions, in the unit of the mesh and as a share of the local edge length.
+    pub(crate) fn off(&self, params: &Params) -> [f64; 2] {
+        let larger = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.max(c), b.max(d)];
         let of_track = |(track, params): (&Track, &Vec<f64>)| {
             let edges = (0..params.len()).filter(|&k| track.slides(k) || k == 0);
             let next = |k| track.neighbor(k, 1, |i| params.get(i).copied());
             let off = |low: f64, high: f64, k: usize| {
-                track.sides.iter().map(|side| side.curve.off(low, high, k)).fold(0.0, f64::max)
+                track.sides.iter().map(|side| side.curve.off(low, high, k)).fold([0.0; 2], larger)
             };
-            edges.filter_map(|k| next(k).map(|next| off(params[k], next, k))).fold(0.0, f64::max)
+            let offs = edges.filter_map(|k| next(k).map(|next| off(params[k], next, k)));
+            offs.fold([0.0; 2], larger)
         };
-        self.tracks.iter().zip(params).map(of_track).fold(0.0, f64::max)
+        self.tracks.iter().zip(params).map(of_track).fold([0.0; 2], larger)
     }
 
     /// Visits every sliding vertex, curve by curve, forward and then back, with one safeguarded Newton step along the

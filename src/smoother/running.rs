@@ -260,7 +260,7 @@ impl Smoother<'_> {
             Some(_) => 0.0,
         };
         let projection_error = self.projection_error(&points).await;
-        let slid = stages.slid(gains, &points);
+        let slid = stages.slid(&points);
         let best = if gains { written } else { initial };
         let least = base.least_objective(problem.targets().is_some());
         let possible = (best - least).max(0.0) / best.max(MIN_SCALE);

@@ -87,10 +87,9 @@ impl<'s> Stages<'s> {
         self.field.map_or(Ok(()), set)
     }
 
-    /// Returns the result of sliding with the vertices at `points`, `None` if no vertex may slide. If the run gained
-    /// nothing, no vertex has slid.
-    pub(super) fn slid(&self, gains: bool, points: &[[f64; 2]]) -> Option<Slid> {
+    /// Returns the result of sliding with the vertices at `points`, `None` if no vertex may slide.
+    pub(super) fn slid(&self, points: &[[f64; 2]]) -> Option<Slid> {
         let slide = self.slide.as_ref()?;
-        Some(slide.slid(self.mesh, self.topology, gains, points))
+        Some(slide.slid(self.mesh, self.topology, points))
     }
 }

@@ -63,27 +63,23 @@ impl<'s> SlideStage<'s> {
         self.sliding.moved(&self.params)
     }
 
-    /// Returns the result of sliding in a run that ended at `points`. If the run `gains` nothing, the mesh is
-    /// unchanged.
-    pub(crate) fn slid(
-        &self,
-        mesh: &Mesh,
-        topology: &Topology<'_>,
-        gains: bool,
-        points: &[[f64; 2]],
-    ) -> Slid {
+    /// Returns the result of sliding in a run that ended at `points`.
+    pub(crate) fn slid(&self, mesh: &Mesh, topology: &Topology<'_>, points: &[[f64; 2]]) -> Slid {
         let (before, free) = (&mesh.points, topology.free());
         let moved = (0..free.len()).filter(|&v| !free[v] && points[v] != before[v]).count();
         let area = |points: &[[f64; 2]]| {
             let of = |t: &[u32; 3]| orientation(points, t);
             topology.triangles().iter().map(of).sum::<f64>()
         };
+        let [off, off_share] =
+            self.sliding.off(&self.sliding.with_returned(&self.params, before, points));
         Slid {
             vertices: self.sliding.count(),
             moved,
             pairs: self.sliding.pairs()[0],
             rounds: self.count,
-            off: if gains { self.sliding.off(&self.params) } else { 0.0 },
+            off,
+            off_share,
             area: area(points) / area(before) - 1.0,
         }
     }

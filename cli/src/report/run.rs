@@ -172,13 +172,16 @@ pub(crate) struct SlideReport {
     pub(crate) rounds: u32,
     /// Largest distance between the lines of output and input, in units of the mesh.
     pub(crate) off: f64,
+    /// Largest of these distances, as a share of the local edge length.
+    pub(crate) off_share: f64,
     /// Change of the mesh's area as a fraction of the area.
     pub(crate) area_change: f64,
 }
 
 impl From<Slid> for SlideReport {
-    fn from(Slid { vertices, moved, pairs, rounds, off, area }: Slid) -> Self {
-        Self { vertices, moved, pairs, rounds, off, area_change: area }
+    fn from(slid: Slid) -> Self {
+        let Slid { vertices, moved, pairs, rounds, off, off_share, area } = slid;
+        Self { vertices, moved, pairs, rounds, off, off_share, area_change: area }
     }
 }
 

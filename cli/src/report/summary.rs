@@ -8,7 +8,7 @@ use crate::report::{
     ChangeReport, FaultReport, MeshReport, Report, Seconds, SlideReport, TargetReport,
     UntangleReport,
 };
-use crate::terminal::numbers::{percent, sig6};
+use crate::terminal::numbers::{percent, rough, sig6};
 
 /// The message of a run ended by a sweep whose objective was infinite or NaN.
 const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a defect of this program or of the GPU driver; the mesh has the positions of the last finite state";
@@ -181,7 +181,8 @@ impl Report {
     /// Describes in one sentence how many vertices slid, and how lines and area changed; `None` without
     /// `--slide`.
     pub(crate) fn slides(&self) -> Option<String> {
-        let SlideReport { vertices, moved, pairs, off, area_change, .. } = self.slid.as_ref()?;
+        let slid = self.slid.as_ref()?;
+        let SlideReport { vertices, moved, pairs, off, off_share, area_change, .. } = slid;
         let pairs = match pairs {
             0 => "",
             1 => ", a periodic pair together",
@@ -190,10 +191,20 @@ impl Report {
         let area = match 100.0 * area_change {
             change if change.abs() < 1e-9 => "stayed the same".to_owned(),
             change if change.abs() >= 0.005 => format!("changed by {change:+.2} %"),
-            change => format!("changed by {change:+.2e} %"),
+            change if change.abs() >= 0.0005 => format!("changed by {change:+.3} %"),
+            _ => "changed by less than 0.001 %".to_owned(),
+        };
+        let lines = match 100.0 * off_share {
+            share if share < 1e-7 => "the lines stayed the same".to_owned(),
+            share => format!(
+                "the vertices stay on curves through the vertices of IN, and the edges between them are at most {} from \
+                 the edges of IN ({} % of the length of an edge)",
+                rough(*off),
+                rough(share),
+            ),
         };
         Some(format!(
-            "{moved} of {vertices} vertices on lines slid along them{pairs}; the lines are within {off:.1e} of what they were, and the area of the mesh {area}"
+            "{moved} of {vertices} vertices on lines slid along them{pairs}; {lines}; the area of the mesh {area}"
         ))
     }
 

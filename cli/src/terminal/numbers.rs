@@ -13,6 +13,17 @@ pub(crate) fn sig6(x: f64) -> String {
     }
 }
 
+/// Formats a number with two significant digits or as an integer, without an exponent from 1e-4 to 1e6.
+pub(crate) fn rough(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".into(),
+        a if (1e-4..1e6).contains(&a) => {
+            format!("{x:.*}", (1 - a.log10().floor() as i32).max(0) as usize)
+        }
+        _ => format!("{x:.1e}"),
+    }
+}
+
 /// Formats a coordinate with digits down to a thousandth of `length`, a length of the mesh at that point.
 pub(crate) fn coordinate(x: f64, length: f64) -> String {
     // The power of ten of the last digit. Digits of an infinite or zero length would have no end.
@@ -71,6 +82,22 @@ mod tests {
         ];
         for (x, length, text) in cases {
             assert_eq!(coordinate(x, length), text, "{x} {length}");
+        }
+    }
+
+    #[test]
+    fn rough_numbers_have_two_digits() {
+        let cases = [
+            (0.1174, "0.12"),
+            (0.000_117, "0.00012"),
+            (3.04, "3.0"),
+            (804.6, "805"),
+            (0.0, "0"),
+            (2e-7, "2.0e-7"),
+            (1e7, "1.0e7"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(rough(x), text);
         }
     }
 

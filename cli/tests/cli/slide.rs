@@ -77,8 +77,16 @@ fn a_comparison_without_the_run_s_options_of_sliding_says_which_options_to_give(
     }
     let folder = Folder::new(&[("in.mesh", &medit_of(&mesh, &materials))]);
     let options = "--slide --corner-angle 80 --hausdorff 0.02";
-    let run = folder.line(&format!("in.mesh out.mesh --engine cpu {options}"));
+    let run = folder.line(&format!("in.mesh out.mesh --engine cpu {options} --report r.json"));
     assert_eq!(run.code, Some(0), "{}", run.err);
+    let slid = &folder.json("r.json")["slid"];
+    let [off, share] = ["off", "off_share"].map(|name| number(&slid[name]));
+    assert!((1e-4..=0.02).contains(&off) && (0.5..2.0).contains(&(off / share)), "{off} {share}");
+    let told = format!(
+        "at most 0.020 from the edges of IN ({:.1} % of the length of an edge)",
+        100.0 * share
+    );
+    assert_holds(&run.out, &["stay on curves through the vertices of IN", &told]);
     folder.line(&format!("compare in.mesh out.mesh {options}")).clean();
     folder.line("compare in.mesh out.mesh --slide --corner-angle 80").refused(&[
         "moved that must not",
