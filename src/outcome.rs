@@ -119,6 +119,8 @@ pub struct Slid {
     pub moved: usize,
     /// Number of pairs of vertices that slide together; see [`Slide::periodic`](crate::Slide::periodic).
     pub pairs: usize,
+    /// Number of pairs of vertices with equal coordinates that slide together, as on both sides of a crack.
+    pub coincident: usize,
     /// Number of periods. A period consists of sweeps over free vertices, then of sweeps along the curves.
     pub rounds: u32,
     /// Largest distance between the edges of the lines before and after the run, in the unit of the mesh: of a given vertex

@@ -137,7 +137,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     regions : array_like of int, shape (m,), optional
         Region of each triangle. Vertices between regions stay, or slide along the lines between regions.
     slide : bool, default False
-        Let vertices of the boundary, of `lines` and between regions slide along them, from corner to corner.
+        Let vertices of the boundary, of `lines` and between regions slide along them, from corner to corner. Two vertices
+        with equal coordinates, as on both sides of a crack, slide together.
     corner_angle : float, default 40
         With `slide`: a vertex where a line turns by more degrees is a corner, and stays.
     hausdorff : float, optional

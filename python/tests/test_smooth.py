@@ -162,6 +162,21 @@ def test_vertices_slide_along_lines_inside_and_fixed_vertices_do_not() -> None:
     assert np.array_equal(held.points[middle], points[middle])
 
 
+def test_coincident_vertices_of_two_parts_slide_together() -> None:
+    points, triangles = lattice(8, by=0.0)
+    points[:, 1] += 0.3 * np.sin(points[:, 1] * np.pi / 8) ** 2 * (points[:, 1] % 8 > 0)
+    middle = np.flatnonzero(np.arange(len(points)) % 9 == 4)
+    copies = len(points) + np.arange(len(middle))
+    of_right = points[triangles].mean(axis=1)[:, 0] > 4
+    number = np.arange(len(points))
+    number[middle] = copies
+    triangles[of_right] = number[triangles[of_right]]
+    both = np.concatenate([points, points[middle]])
+    result = gpu_smooth.run(both, triangles, slide=True)
+    assert np.array_equal(result.points[middle], result.points[copies])
+    assert np.abs(result.points[middle] - points[middle]).max() > 0.01
+
+
 def test_targets_may_be_sizes_tensors_and_values_of_another_mesh(mesh: Mesh) -> None:
     points, triangles = mesh
     sizes = 1.0 + points[:, 0]

@@ -2,7 +2,10 @@
 
 mod acceleration;
 mod chains;
+mod coincident;
+mod corners;
 mod curve;
+mod edges;
 mod newton;
 mod options;
 mod pairing;

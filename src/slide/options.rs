@@ -12,6 +12,10 @@ use crate::periodic::Periodic;
 /// [`Mesh::fixed`](crate::Mesh::fixed) with a boundary edge that `lines` lacks, and vertices where a curve turns by more
 /// than [`corner_angle`](Self::corner_angle), or by any angle between two straight runs. Straight runs stay straight.
 /// Elsewhere, vertices move along a piecewise cubic through the given positions of the vertices.
+///
+/// Two vertices of curves with equal coordinates, as on both sides of a crack or of two parts that touch, slide together
+/// and keep equal coordinates. They stay where three or more vertices have one place, and at the ends of the crack or
+/// contact; see [`Smoother::coincident`](crate::Smoother::coincident).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
     /// Turn of a curve, in degrees from 0 to 180, above which a vertex is a corner.

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec2;
 
 use crate::periodic::Periodic;
+use crate::slide::coincident::Coincident;
 use crate::slide::rigid::Rigid;
 
 /// The partner of a vertex, and the motion that maps the vertex to its partner.
@@ -12,6 +13,8 @@ use crate::slide::rigid::Rigid;
 pub(crate) struct Partner {
     pub(crate) vertex: u32,
     pub(crate) motion: Rigid,
+    /// Whether both vertices have the same position, as on the sides of a crack. The motion is then the identity.
+    pub(crate) is_coincident: bool,
 }
 
 /// The pairs of a mesh, checked for a common motion.
@@ -28,14 +31,21 @@ impl Partners {
     /// Largest distance of a vertex from the image of its partner, as a share of the shorter local edge.
     pub(crate) const AGREE: f64 = 1e-4;
 
-    /// Checks the given pairs of vertices at `points`. `edge` returns the length of the shortest curve edge at a
-    /// vertex, and 0 for a vertex on no curve.
+    /// Checks the given pairs of vertices at `points`, and adds the coincident ones. `edge` returns the length of the
+    /// shortest curve edge at a vertex, and 0 for a vertex on no curve.
     pub(crate) fn new(
         periodic: &[Periodic],
+        coincident: &Coincident,
         points: &[[f64; 2]],
         edge: impl Fn(u32) -> f64,
     ) -> Self {
         let mut partners = Self::default();
+        for &[a, b] in &coincident.pairs {
+            let to = |vertex| Partner { vertex, motion: Rigid::IDENTITY, is_coincident: true };
+            partners.link(a, to(b));
+            partners.link(b, to(a));
+        }
+        partners.stay.extend(&coincident.crowded);
         for Periodic { pairs, motion } in periodic {
             let placed = |&[a, b]: &[u32; 2]| {
                 let ends = [a, b].map(|v| DVec2::from(points[v as usize]));
@@ -46,8 +56,9 @@ impl Partners {
             for (&[a, b], place) in pairs.iter().zip(&places) {
                 match motion.filter(|motion| motion.takes(place.0, place.1)) {
                     Some(motion) => {
-                        partners.link(a, Partner { vertex: b, motion });
-                        partners.link(b, Partner { vertex: a, motion: motion.inverse() });
+                        let to = |vertex, motion| Partner { vertex, motion, is_coincident: false };
+                        partners.link(a, to(b, motion));
+                        partners.link(b, to(a, motion.inverse()));
                     }
                     None => {
                         // A vertex on no curve does not slide, so it does not affect other pairs.

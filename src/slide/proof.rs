@@ -91,6 +91,7 @@ impl Sliding {
             let found: Vec<Found<'_>> =
                 sides.map(|side| Found::of(track, side, vertices, points, tolerance)).collect();
             let together = |k: usize| match &found[..] {
+                [first, second] if track.is_coincident => first.positions[k] == second.positions[k],
                 [first, second] => {
                     let params = first.params[k].zip(second.params[k]);
                     params.is_some_and(|(a, b)| (a - b).abs() <= PARTNER_TOLERANCE * tolerance)

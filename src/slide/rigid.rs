@@ -20,6 +20,9 @@ pub(crate) struct Rigid {
 }
 
 impl Rigid {
+    /// The motion that leaves every point at its place, to the last bit.
+    pub(crate) const IDENTITY: Self = Self { turn: DVec2::X, from: DVec2::ZERO, to: DVec2::ZERO };
+
     fn translation([from, to]: [DVec2; 2]) -> Self {
         Self { turn: DVec2::X, from, to }
     }

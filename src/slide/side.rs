@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::patch::Fan;
-use crate::slide::chains::Chain;
+use crate::slide::chains::{Chain, Image};
 use crate::slide::curve::{Curve, Place};
 use crate::slide::options::Slide;
 use crate::topology::Topology;
@@ -21,7 +21,7 @@ pub(crate) struct BoundaryCurve {
 
 impl BoundaryCurve {
     /// Returns the curve of a chain. If the chain has partners, a second side follows: the curve of the partners, with
-    /// equal parameters.
+    /// equal parameters. Partners at equal positions share the curve, and so have equal bits wherever they slide.
     pub(crate) fn of(
         points: &[[f64; 2]],
         topology: &Topology<'_>,
@@ -36,8 +36,13 @@ impl BoundaryCurve {
             Self { curve, vertices, fans }
         };
         let curve = Curve::new(points, &chain, slide);
-        let of_partners =
-            |image: &Vec<u32>| side(curve.of_partners(points, &chain, image, slide), image.clone());
+        let of_partners = |Image { vertices, is_coincident }: &Image| {
+            let curve = match is_coincident {
+                true => curve.clone(),
+                false => curve.of_partners(points, &chain, vertices, slide),
+            };
+            side(curve, vertices.clone())
+        };
         let image = chain.image.as_ref().map(of_partners);
         let own = side(curve, chain.vertices.clone());
         std::iter::once(own).chain(image).collect()

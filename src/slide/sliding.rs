@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::patch::Fan;
-use crate::slide::chains::chains;
+use crate::slide::chains::{Chain, Chains};
 use crate::slide::newton::{self, Rule, Visited, Window};
 use crate::slide::options::Slide;
 use crate::slide::params::Params;
@@ -21,14 +21,19 @@ pub(crate) struct Sliding {
     pub(super) tracks: Vec<Track>,
     /// Number of pairs that stay because the motion of the other pairs does not fit them.
     unlike: usize,
+    /// Number of vertices of curves that have the position of another vertex.
+    coincident: usize,
 }
 
 impl Sliding {
     /// Finds the curves of a mesh with its vertices at `points`.
     pub(crate) fn new(points: &[[f64; 2]], topology: &Topology<'_>, slide: &Slide) -> Self {
-        let (chains, unlike) = chains(points, topology, slide);
-        let track = |chain| Track { sides: BoundaryCurve::of(points, topology, slide, chain) };
-        Self { tracks: chains.into_iter().map(track).collect(), unlike }
+        let Chains { all, unlike, coincident } = Chains::of(points, topology, slide);
+        let track = |chain: Chain| Track {
+            is_coincident: chain.image.as_ref().is_some_and(|image| image.is_coincident),
+            sides: BoundaryCurve::of(points, topology, slide, chain),
+        };
+        Self { tracks: all.into_iter().map(track).collect(), unlike, coincident }
     }
 
     /// Replaces vertex indices in the mesh by indices in the problem. The mesh has `vertices` vertices.
@@ -56,11 +61,23 @@ impl Sliding {
         vertices
     }
 
-    /// Returns the number of sliding pairs, and the number of pairs that stay because the common motion does not fit
-    /// them.
+    /// Returns the number of periodic pairs that slide, and the number of pairs that stay because the common motion does not
+    /// fit them.
     pub(crate) fn pairs(&self) -> [usize; 2] {
-        let second = self.tracks.iter().flat_map(|track| track.sides.get(1));
-        [second.flat_map(|side| &side.fans).flatten().count(), self.unlike]
+        [self.sliding_pairs(false), self.unlike]
+    }
+
+    /// Returns the number of pairs of vertices at the same place that slide together, and the number of other vertices of
+    /// curves at the place of another vertex, which stay.
+    pub(crate) fn coincident(&self) -> [usize; 2] {
+        let pairs = self.sliding_pairs(true);
+        [pairs, self.coincident - 2 * pairs]
+    }
+
+    fn sliding_pairs(&self, are_coincident: bool) -> usize {
+        let tracks = self.tracks.iter().filter(|track| track.is_coincident == are_coincident);
+        let second = tracks.flat_map(|track| track.sides.get(1));
+        second.flat_map(|side| &side.fans).flatten().count()
     }
 
     /// Returns the curve parameters of the given positions.

@@ -10,6 +10,8 @@ use crate::slide::side::BoundaryCurve;
 #[derive(Clone, Debug)]
 pub(crate) struct Track {
     pub(super) sides: Vec<BoundaryCurve>,
+    /// Whether partners have equal positions, as on the sides of a crack.
+    pub(super) is_coincident: bool,
 }
 
 impl Track {

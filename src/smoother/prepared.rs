@@ -32,6 +32,9 @@ pub struct Smoother<'a> {
     pub(super) sliding: Option<Sliding>,
     /// Number of periodic pairs that slide, and number of pairs that stay because the common motion does not fit them.
     pairs: [usize; 2],
+    /// Number of pairs of vertices at one place that slide, and number of further vertices of curves at the place of
+    /// another, which stay.
+    coincident: [usize; 2],
     /// Field of targets that belong to points of the plane; `None` if targets belong to vertices or are not set.
     pub(super) field: Option<TargetField>,
     /// Smoother of the mesh with opened [slivers], in the projection of the sphere. Serves the runs for which
@@ -84,8 +87,8 @@ impl<'a> Smoother<'a> {
         // Runs need only the problem. The stars are computed again when a vertex has to be set back.
         topology.forget_stars();
         let (slide, sliding, field, opened) = (None, None, None, None);
-        let (pairs, prepare) = ([0; 2], start.elapsed());
-        Self { mesh, topology, problem, slide, sliding, pairs, field, opened, prepare }
+        let (pairs, coincident, prepare) = ([0; 2], [0; 2], start.elapsed());
+        Self { mesh, topology, problem, slide, sliding, pairs, coincident, field, opened, prepare }
     }
 
     /// Fails with [`MeshError::NothingFree`] if no vertex is free and no vertex slides.
@@ -111,6 +114,7 @@ impl<'a> Smoother<'a> {
             slide: self.slide,
             sliding: self.sliding,
             pairs: self.pairs,
+            coincident: self.coincident,
             field: self.field,
             opened: self.opened,
             prepare: self.prepare,
@@ -135,14 +139,16 @@ impl<'a> Smoother<'a> {
         Surface::Sphere.check(&self.mesh.points, self.topology.triangles())?;
         if let Some((projection, projected)) = Mercator::of(&self.mesh, &self.topology) {
             self.problem = laid_out(&projected, &self.topology).with_projection(projection);
-            (self.slide, self.sliding, self.pairs, self.field) = (None, None, [0; 2], None);
+            self.stop_sliding();
+            self.field = None;
             return Ok(true);
         }
         let Some(opened) = slivers::opened(&self.mesh, &self.topology) else { return Ok(false) };
         let mut opened = Smoother::from_mesh(opened)?;
         opened.project_from_sphere()?;
         self.problem = laid_out(&self.mesh, &self.topology);
-        (self.slide, self.sliding, self.pairs, self.field) = (None, None, [0; 2], None);
+        self.stop_sliding();
+        self.field = None;
         self.opened = Some(Box::new(opened));
         Ok(true)
     }
@@ -202,7 +208,7 @@ impl<'a> Smoother<'a> {
     /// [`SmoothError::Option`] if a number is outside its range, [`MeshError::IndexOutOfRange`] if a listed vertex does
     /// not exist.
     pub fn set_slide(&mut self, slide: Option<&Slide>) -> Result<usize, SmoothError> {
-        (self.slide, self.sliding, self.pairs) = (None, None, [0; 2]);
+        self.stop_sliding();
         if let Some(opened) = &mut self.opened {
             opened.set_slide(slide)?;
         }
@@ -213,10 +219,15 @@ impl<'a> Smoother<'a> {
         let sliding = sliding.numbered(&self.problem, vertices);
         self.topology.forget_stars();
         let count = sliding.count();
-        self.pairs = sliding.pairs();
+        (self.pairs, self.coincident) = (sliding.pairs(), sliding.coincident());
         self.sliding = (count > 0).then_some(sliding);
         self.slide = self.sliding.is_some().then(|| slide.clone());
         Ok(count)
+    }
+
+    fn stop_sliding(&mut self) {
+        (self.slide, self.sliding) = (None, None);
+        (self.pairs, self.coincident) = ([0; 2], [0; 2]);
     }
 
     /// Returns the number of vertex pairs ([`Slide::periodic`]) that slide, and the number of pairs that stay. A pair
@@ -246,6 +257,13 @@ impl<'a> Smoother<'a> {
         let mut problem = self.problem.clone();
         set_targets_of(field, &self.mesh, &mut problem, &positions)?;
         Ok(metric.ideal_squared() + now(mean_excess(metric, &problem, &positions)))
+    }
+
+    /// Returns the number of pairs of vertices with equal coordinates that slide together, as on both sides of a crack, and
+    /// the number of further vertices of curves with the coordinates of another vertex. Those stay: three or more are at
+    /// their place, or one of them is a corner or an end of the crack.
+    pub fn coincident(&self) -> [usize; 2] {
+        self.coincident
     }
 
     /// Returns the topology of the mesh: windings, boundary and free vertices.

@@ -77,6 +77,7 @@ impl<'s> SlideStage<'s> {
             vertices: self.sliding.count(),
             moved,
             pairs: self.sliding.pairs()[0],
+            coincident: self.sliding.coincident()[0],
             rounds: self.count,
             off,
             off_share,

@@ -3,6 +3,7 @@
 mod adapted;
 mod agreement;
 mod altitude;
+mod coincident;
 mod coloring;
 mod counts;
 mod fields;

@@ -105,7 +105,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
 
 /// Returns two or three lines on the moved vertices.
 fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
-    let Proof { moved, slid, pairs, .. } = proof;
+    let Proof { moved, slid, pairs, coincident, .. } = proof;
     let (old, new) = (&before.mesh().points, &after.mesh().points);
     let distance = |&vertex: &u32| {
         let ([a, b], [c, d]) = (old[vertex as usize], new[vertex as usize]);
@@ -115,11 +115,16 @@ fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
         0 => String::new(),
         1 => "1 vertex slid along its line; ".to_owned(),
         n => format!(
-            "{n} vertices slid along their lines{}; ",
+            "{n} vertices slid along their lines{}{}; ",
             match pairs {
                 0 => String::new(),
                 1 => ", two of them as a periodic pair together".to_owned(),
                 n => format!(", {n} periodic pairs of them together"),
+            },
+            match coincident {
+                0 => String::new(),
+                1 => ", two of them at the same place together".to_owned(),
+                n => format!(", {n} pairs at the same place together"),
             }
         ),
     };

@@ -92,6 +92,22 @@ impl SlideRequest {
             1 => text += ", 2 of them as a periodic pair",
             n => text += &format!(", {} of them in {n} periodic pairs", 2 * n),
         }
+        let [together, alone] = smoother.coincident();
+        match together {
+            0 => {}
+            1 => text += ", 2 of them as a pair at the same place",
+            n => text += &format!(", {} of them in {n} pairs at the same place", 2 * n),
+        }
+        match alone {
+            0 => {}
+            1 => text += "; 1 vertex at the place of another stays, as that one does not slide",
+            n => {
+                text += &format!(
+                    "; {n} vertices at the place of others stay, at corners, where a crack or a contact ends, or where three \
+                     or more meet"
+                );
+            }
+        }
         if has_lost_pairs(file, &slide) {
             text += "; the boundary stays fixed, as the model is periodic and the pairs of vertices are unknown: \
                      --periodic MARKER,MARKER names them";

@@ -168,6 +168,8 @@ pub(crate) struct SlideReport {
     pub(crate) moved: usize,
     /// Number of periodic pairs among the sliding vertices. Both vertices of a pair slide together.
     pub(crate) pairs: usize,
+    /// Number of pairs of vertices with equal coordinates among the sliding vertices, which keep equal coordinates.
+    pub(crate) coincident: usize,
     /// Number of rounds of sweeps, each followed by sweeps along the lines.
     pub(crate) rounds: u32,
     /// Largest distance between the lines of output and input, in units of the mesh.
@@ -180,8 +182,8 @@ pub(crate) struct SlideReport {
 
 impl From<Slid> for SlideReport {
     fn from(slid: Slid) -> Self {
-        let Slid { vertices, moved, pairs, rounds, off, off_share, area } = slid;
-        Self { vertices, moved, pairs, rounds, off, off_share, area_change: area }
+        let Slid { vertices, moved, pairs, coincident, rounds, off, off_share, area } = slid;
+        Self { vertices, moved, pairs, coincident, rounds, off, off_share, area_change: area }
     }
 }
 

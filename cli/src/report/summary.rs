@@ -182,11 +182,17 @@ impl Report {
     /// `--slide`.
     pub(crate) fn slides(&self) -> Option<String> {
         let slid = self.slid.as_ref()?;
-        let SlideReport { vertices, moved, pairs, off, off_share, area_change, .. } = slid;
+        let SlideReport { vertices, moved, pairs, coincident, off, off_share, area_change, .. } =
+            slid;
         let pairs = match pairs {
             0 => "",
             1 => ", a periodic pair together",
             n => &format!(", {n} periodic pairs together"),
+        };
+        let coincident = match coincident {
+            0 => "",
+            1 => ", a pair at the same place together",
+            n => &format!(", {n} pairs at the same place together"),
         };
         let area = match 100.0 * area_change {
             change if change.abs() < 1e-9 => "stayed the same".to_owned(),
@@ -204,7 +210,7 @@ impl Report {
             ),
         };
         Some(format!(
-            "{moved} of {vertices} vertices on lines slid along them{pairs}; {lines}; the area of the mesh {area}"
+            "{moved} of {vertices} vertices on lines slid along them{pairs}{coincident}; {lines}; the area of the mesh {area}"
         ))
     }
 

@@ -22,6 +22,8 @@ pub(crate) struct Proof {
     pub(crate) slid: usize,
     /// Number of periodic pairs whose vertices slid together.
     pub(crate) pairs: usize,
+    /// Number of pairs of vertices at the same place that slid together.
+    pub(crate) coincident: usize,
     /// Inverted or flat triangles of the second file, by exact predicates.
     pub(crate) bad: Vec<BadTriangle>,
 }
@@ -43,7 +45,7 @@ impl Proof {
         let fields = [before.fields, after.fields].map(InterpolatedFields::fields);
         let (before, after) = (before.file, after.file);
         let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut slid, mut pairs) = (0, 0);
+        let (mut slid, mut pairs, mut coincident) = (0, 0, 0);
         let difference = before.source.difference_ignoring(&after.source, fields);
         if difference.is_none() {
             let topology = Topology::new(before.mesh())?;
@@ -62,6 +64,7 @@ impl Proof {
                 slid = held.len() - misplaced.len();
                 held.retain(|v| misplaced.binary_search(v).is_err());
                 pairs = pairs_among(slide, &held);
+                coincident = coincident_among(old, &held);
                 held = misplaced;
             }
             held.extend(strays);
@@ -74,7 +77,7 @@ impl Proof {
                 bad = Topology::new(after.mesh())?.bad_triangles(new)?;
             }
         }
-        Ok(Self { difference, moved, held, slid, pairs, bad })
+        Ok(Self { difference, moved, held, slid, pairs, coincident, bad })
     }
 
     /// Returns a sentence on the problems found; `None` if the proof succeeds.
@@ -105,6 +108,13 @@ fn pairs_among(slide: &Slide, vertices: &[u32]) -> usize {
     let all = slide.periodic.iter().flat_map(|periodic| &periodic.pairs);
     let among = all.filter(|pair| pair.iter().all(has));
     among.map(|&[a, b]| [a.min(b), a.max(b)]).collect::<BTreeSet<_>>().len()
+}
+
+/// Counts the vertices with the position of an earlier vertex of the list.
+fn coincident_among(points: &[[f64; 2]], vertices: &[u32]) -> usize {
+    // A sum with zero turns -0 into 0.
+    let place = |&v: &u32| points[v as usize].map(|x| (x + 0.0).to_bits());
+    vertices.len() - vertices.iter().map(place).collect::<BTreeSet<_>>().len()
 }
 
 /// Returns the hash of each file of a mesh, computed from the bytes that were read.

@@ -118,6 +118,40 @@ fn vertices_slide_in_a_tilted_plane_of_a_file_of_floats() {
     folder.line("compare in.vtk out.vtk --slide -q").clean();
 }
 
+/// Both sides of the interface have vertices of their own, as in a model of two parts that touch.
+#[test]
+fn coincident_vertices_slide_together_and_are_counted() {
+    let (mut mesh, materials) = square();
+    // Vertices on the line between the materials are in column 4. The line is curved.
+    for row in 0..5 {
+        let (v, y) = (9 * row + 4, row as f64);
+        mesh.points[v][0] += 0.05 * y * (4.0 - y);
+        let copy = mesh.points.len() as u32;
+        mesh.points.push(mesh.points[v]);
+        let second = mesh.triangles.iter_mut().zip(&materials).filter(|(_, m)| **m == 2);
+        second.flat_map(|(t, _)| t).filter(|w| **w == v as u32).for_each(|w| *w = copy);
+    }
+    let side = "14\n23\n32\n".to_owned();
+    let folder = Folder::new(&[("in.mesh", &medit_of(&mesh, &materials)), ("side.txt", &side)]);
+    let run = folder.line("in.mesh out.mesh --engine cpu --slide --report r.json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(
+        &run.err,
+        &["6 of them in 3 pairs at the same place; 4 vertices at the place of others stay"],
+    );
+    assert_holds(&run.out, &["slid along them, 3 pairs at the same place together; "]);
+    assert_eq!(folder.json("r.json")["slid"]["coincident"], 3);
+    let compared = folder.line("compare in.mesh out.mesh --slide").clean();
+    assert_holds(&compared.out, &["along their lines, 3 pairs at the same place together"]);
+    for file in ["in.mesh", "out.mesh"] {
+        let told = format!("{:<22}{:>12}", "duplicate vertices", 5);
+        assert_holds(&folder.line(&format!("quality {file}")).out, &[&told]);
+    }
+    // If one side must stay, so must the other.
+    let run = folder.line("in.mesh out.mesh --engine cpu --slide --fix-vertices side.txt");
+    assert_holds(&run.err, &["10 vertices at the place of others stay"]);
+}
+
 /// A former defect: two vertices slid in a run that had nothing to do.
 #[test]
 fn a_run_that_has_reached_its_goal_at_the_start_slides_no_vertex() {
