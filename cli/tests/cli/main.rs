@@ -39,6 +39,7 @@ mod report;
 mod schemes;
 mod shell;
 mod slide;
+mod slide_agreement;
 mod sphere;
 mod streams;
 mod targets;
