@@ -30,6 +30,8 @@ class Cells(NamedTuple):
     """Vertices of all other cells, of shape (k,)."""
     regions: npt.NDArray[Any] | None
     """Region of each triangle, of shape (m,); None without regions."""
+    ends: Integers = np.empty(0, np.int64)
+    """Vertices at which groups of lines or vertices end, of shape (k,). They stay where others slide."""
 
     def options(self, given: dict[str, Any], vertices: int) -> dict[str, Any]:
         """Return options with the constraints of the cells, beside those that were given."""
@@ -44,6 +46,8 @@ class Cells(NamedTuple):
             )
         fixed = np.zeros(vertices, dtype=bool)
         fixed[self.anchored] = True
+        if given.get("slide"):
+            fixed[self.ends] = True
         if "fixed" in given:
             fixed[_native.vertex_set("fixed", given["fixed"], vertices)] = True
         lines = self.lines

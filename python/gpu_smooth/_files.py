@@ -93,7 +93,10 @@ class MeshFile:
 
     @property
     def anchored(self) -> Integers:
-        """Vertices of points and of elements other than triangles and lines, for the option `fixed`."""
+        """Vertices of points and of elements other than triangles and lines, and ends of groups of lines or vertices.
+
+        With the option `fixed`, these vertices stay where others slide, so that each group keeps its extent.
+        """
         return self._native.anchored
 
     @property

@@ -11,6 +11,7 @@ import numpy as np
 
 from gpu_smooth import _native
 from gpu_smooth._cells import REGIONS, Cells, named, whole
+from gpu_smooth._ends import ends_of_lines, ends_of_numbers, ends_of_vertices
 from gpu_smooth._errors import MeshError
 
 
@@ -75,12 +76,36 @@ def groups_of(mesh: Any) -> dict[str, Callable[[], Any]]:
     return groups
 
 
+def ends_of(mesh: Any, cells: Cells) -> Any:
+    """Return the vertices at which groups of a `meshio.Mesh` end: numbers of lines, sets of cells and sets of points."""
+    blocks = [(k, _vertices(block)) for k, block in enumerate(mesh.cells) if block.type == "line"]
+    found = [np.empty(0, np.int64)]
+    for name in REGIONS:
+        if blocks and name in mesh.cell_data:
+            numbers = whole(np.concatenate([np.asarray(mesh.cell_data[name][k]) for k, _ in blocks]))
+            if numbers is not None:
+                # gmsh writes 0 for lines without a group.
+                is_in = (numbers != 0) | (not name.startswith("gmsh:"))
+                found.append(ends_of_numbers(cells.lines[is_in], numbers[is_in]))
+    for name, chosen in mesh.cell_sets.items():
+        # Such sets have tags of the model of gmsh in place of cells.
+        if name.startswith("gmsh:"):
+            continue
+        own = [lines[np.asarray(chosen[k], np.int64)] for k, lines in blocks if chosen[k] is not None]
+        found.append(ends_of_lines(np.concatenate([np.empty((0, 2), np.int64), *own])))
+    for points in mesh.point_sets.values():
+        found.append(ends_of_vertices(np.asarray(points, np.int64), cells.triangles, cells.lines))
+    return np.concatenate(found)
+
+
 def smooth(mesh: Any, options: dict[str, Any]) -> Any:
     """Return a copy of a `meshio.Mesh` with moved vertices. The copy shares cells and data with the mesh."""
     cells = cells_of(mesh)
     points = np.asarray(mesh.points)
     if "fixed" in options:
         options = {**options, "fixed": named(options["fixed"], groups_of(mesh))}
+    if options.get("slide"):
+        cells = cells._replace(ends=ends_of(mesh, cells))
     smoothed = copy.copy(mesh)
     smoothed.points = _native.smooth(points, cells.triangles, **cells.options(options, len(points)))
     return smoothed

@@ -8,6 +8,7 @@ import numpy as np
 
 from gpu_smooth import _native
 from gpu_smooth._cells import REGIONS, Cells, whole
+from gpu_smooth._ends import ends_of_numbers
 from gpu_smooth._errors import MeshError
 
 # Types of VTK's cells.
@@ -59,21 +60,24 @@ def cells_of(mesh: Any) -> Cells:
         is_line = np.isin(types, (LINE, POLY_LINE))
         is_triangle = types == TRIANGLE
         lines = part.segments(is_line) if len(types) else np.empty((0, 2), np.int64)
+        is_line_cell, line_sizes = is_line, part.sizes
         anchored = part.vertices(~(is_line | is_triangle))
         triangles = part.rows(is_triangle, 3)
     elif isinstance(mesh, pyvista.PolyData):
         # Cell data are of vertices, lines, polygons and strips, in this order.
         parts = [_part(own()) for own in (mesh.GetVerts, mesh.GetLines, mesh.GetPolys, mesh.GetStrips)]
-        vertices, of_lines, polygons, strips = parts
+        vertices, polylines, polygons, strips = parts
         is_polygon = polygons.sizes == 3
         triangles = polygons.rows(is_polygon, 3)
-        lines = of_lines.segments(np.ones(len(of_lines.sizes), bool))
+        lines = polylines.segments(np.ones(len(polylines.sizes), bool))
         anchored = np.concatenate(
             [vertices.connectivity, strips.connectivity, polygons.vertices(~is_polygon)]
         )
         is_triangle = np.concatenate(
             [is_polygon if own is polygons else np.zeros(len(own.sizes), bool) for own in parts]
         )
+        is_line_cell = np.concatenate([np.full(len(own.sizes), own is polylines) for own in parts])
+        line_sizes = np.concatenate([own.sizes for own in parts])
     else:
         raise MeshError(
             f"mesh: {type(mesh).__name__} is not accepted. Pass an UnstructuredGrid or PolyData, such as mesh.cast_to_"
@@ -81,7 +85,12 @@ def cells_of(mesh: Any) -> Cells:
         )
     regions = next((mesh.cell_data[name] for name in REGIONS if name in mesh.cell_data), None)
     of_triangles = None if regions is None else whole(np.asarray(regions)[is_triangle])
-    return Cells(triangles, lines, anchored.astype(np.int64), of_triangles)
+    of_lines = None if regions is None else whole(np.asarray(regions)[is_line_cell])
+    ends = np.empty(0, np.int64)
+    if of_lines is not None:
+        # Lines of fewer than two vertices have no edges.
+        ends = ends_of_numbers(lines, np.repeat(of_lines, np.maximum(line_sizes[is_line_cell] - 1, 0)))
+    return Cells(triangles, lines, anchored.astype(np.int64), of_triangles, ends)
 
 
 def smooth(mesh: Any, options: dict[str, Any]) -> Any:

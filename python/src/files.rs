@@ -82,11 +82,13 @@ impl MeshFile {
     }
 
     #[getter]
-    fn anchored<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        let mut anchored = self.0.constraints().anchored.clone();
+    fn anchored<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let ends = threads::detached(py, || self.0.group_ends())?;
+        let mut anchored = ends.map_err(|error| error::of_reading(py, &error))?;
+        anchored.extend(&self.0.constraints().anchored);
         anchored.sort_unstable();
         anchored.dedup();
-        PyArray1::from_vec(py, anchored.into_iter().map(i64::from).collect())
+        Ok(PyArray1::from_vec(py, anchored.into_iter().map(i64::from).collect()))
     }
 
     #[getter]

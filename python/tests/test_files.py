@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 from conftest import command_line
@@ -69,6 +70,44 @@ def test_a_file_is_read_and_written_with_moved_vertices_alone(tmp_path: Path) ->
         file.write(tmp_path / "missing" / "out.msh", smoothed)
     with pytest.raises(FileError, match="none.msh"):
         gpu_smooth.MeshFile(tmp_path / "none.msh")
+
+
+def test_the_ends_of_groups_stay_where_vertices_slide(tmp_path: Path) -> None:
+    # The bottom of a square: an inlet up to x = 0.62, then a wall.
+    x = [0, 0.15, 0.3, 0.45, 0.62, 0.7, 0.8, 0.9, 1]
+    points = [(a, b) for b in (0, 0.25, 0.5, 0.75, 1) for a in x]
+    cells = [9 * row + column for row in range(4) for column in range(8)]
+    triangles = [t for a in cells for t in ((a, a + 1, a + 10), (a, a + 10, a + 9))]
+    markers = [
+        f"MARKER_TAG= {name}\nMARKER_ELEMS= 4\n" + "".join(f"3 {a} {a + 1}\n" for a in edges)
+        for name, edges in (("inlet", range(4)), ("wall", range(4, 8)))
+    ]
+    path = tmp_path / "in.su2"
+    path.write_text(
+        "NDIME= 2\nNELEM= 64\n" + "".join(f"5 {a} {b} {c}\n" for a, b, c in triangles)
+        + "NPOIN= 45\n" + "".join(f"{a} {b}\n" for a, b in points) + "NMARK= 2\n" + "".join(markers)
+    )
+    file = gpu_smooth.MeshFile(path)
+    assert file.anchored.tolist() == [0, 4, 8]
+    own = gpu_smooth.smooth(file.points, file.triangles, lines=file.lines, fixed=file.anchored, slide=True)
+    assert own[4].tolist() == [0.62, 0] and own[3, 0] != 0.45
+    lines = np.array([[a, a + 1] for a in range(8)])
+    of_lines = np.array([1] * 4 + [2] * 4)
+    given = meshio.Mesh(
+        np.array(points), [("line", lines), ("triangle", np.array(triangles))],
+        cell_data={"gmsh:physical": [of_lines, np.full(64, 3)]},
+    )
+    smoothed = gpu_smooth.smooth(given, slide=True)
+    assert np.array_equal(smoothed.points[:9], own[:9])
+    without = meshio.Mesh(given.points, given.cells)
+    assert gpu_smooth.smooth(without, slide=True).points[4, 0] != 0.62
+    without.cell_sets = {"inlet": [np.arange(4), np.array([], int)]}
+    assert gpu_smooth.smooth(without, slide=True).points[4].tolist() == [0.62, 0]
+    without.cell_sets, without.point_sets = {}, {"inlet": np.arange(5)}
+    assert gpu_smooth.smooth(without, slide=True).points[4].tolist() == [0.62, 0]
+    # A number for each line is no group.
+    given.cell_data["gmsh:physical"][0] = np.arange(1, 9)
+    assert gpu_smooth.smooth(given, slide=True).points[4, 0] != 0.62
 
 
 def test_a_file_is_smoothed_as_by_the_command_line(tmp_path: Path) -> None:

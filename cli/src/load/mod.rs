@@ -20,5 +20,6 @@ pub(crate) use fixed::FixedBy;
 pub(crate) use mesh::LoadedMesh;
 pub(crate) use movable::MovableSelection;
 pub(crate) use plane::axes_legend;
+pub(crate) use slide::{SlidingVertices, stay_as_ends};
 pub(crate) use surface::{as_in_file, lay_out};
 pub(crate) use targets::TargetFacts;

@@ -8,8 +8,15 @@ use crate::load::explain;
 use crate::request::SlideRequest;
 
 impl SlideRequest {
-    /// Returns the lines, held vertices and periodic pairs of a mesh for sliding.
+    /// Returns the lines, held vertices and periodic pairs of a mesh for sliding. Ends of groups are held.
     pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Slide, CliError> {
+        let mut slide = self.without_ends(file)?;
+        slide.held.extend(file.source.group_ends()?);
+        Ok(slide)
+    }
+
+    /// Returns the result of [`slide`](Self::slide) without the ends of groups.
+    fn without_ends(&self, file: &LoadedMesh) -> Result<Slide, CliError> {
         let Self { corner_angle, hausdorff, .. } = *self;
         let (held, periodic) = (file.held_vertices().to_vec(), file.periodic().to_vec());
         let topology =
@@ -79,11 +86,21 @@ impl SlideRequest {
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
     ) -> Result<SlidingVertices, CliError> {
-        let slide = self.slide(file)?;
-        let count = smoother.set_slide(Some(&slide))?;
+        let mut slide = self.without_ends(file)?;
+        let mut count = smoother.set_slide(Some(&slide))?;
+        let all = count;
+        let ends = file.source.group_ends()?;
+        if !ends.is_empty() {
+            slide.held.extend(ends);
+            count = smoother.set_slide(Some(&slide))?;
+        }
+        let ends = all.saturating_sub(count);
         let [pairs, unlike] = smoother.pairs();
         let mut text = match count {
-            0 => "--slide: no vertex can slide, as all on lines are corners or fixed".to_owned(),
+            0 => {
+                "--slide: no vertex can slide, as all on lines are corners, ends of groups or fixed"
+                    .to_owned()
+            }
             1 => "--slide: 1 vertex on the boundary or another line may slide".to_owned(),
             n => format!("--slide: {n} vertices on the boundary and other lines may slide"),
         };
@@ -108,6 +125,9 @@ impl SlideRequest {
                 );
             }
         }
+        if let Some(clause) = stay_as_ends(ends) {
+            text += &format!("; {clause}");
+        }
         if has_lost_pairs(file, &slide) {
             text += "; the boundary stays fixed, as the model is periodic and the pairs of vertices are unknown: \
                      --periodic MARKER,MARKER names them";
@@ -121,13 +141,24 @@ impl SlideRequest {
                 );
             }
         }
-        Ok(SlidingVertices { count, remark: text })
+        Ok(SlidingVertices { count, ends, remark: text })
+    }
+}
+
+/// Returns a clause on vertices that stay because groups end there; `None` for 0.
+pub(crate) fn stay_as_ends(ends: usize) -> Option<String> {
+    match ends {
+        0 => None,
+        1 => Some("1 vertex stays as an end of groups".to_owned()),
+        n => Some(format!("{n} vertices stay as ends of groups")),
     }
 }
 
 /// The sliding vertices of a mesh.
 pub(crate) struct SlidingVertices {
     pub(crate) count: usize,
+    /// Number of vertices that would slide if no group ended at them or at their partners.
+    pub(crate) ends: usize,
     /// A sentence with the numbers of sliding vertices and periodic pairs.
     pub(crate) remark: String,
 }

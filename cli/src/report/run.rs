@@ -166,6 +166,8 @@ pub(crate) struct SlideReport {
     pub(crate) vertices: usize,
     /// Number of vertices that slid.
     pub(crate) moved: usize,
+    /// Number of vertices that would have been allowed to slide if no group ended at them.
+    pub(crate) ends: usize,
     /// Number of periodic pairs among the sliding vertices. Both vertices of a pair slide together.
     pub(crate) pairs: usize,
     /// Number of pairs of vertices with equal coordinates among the sliding vertices, which keep equal coordinates.
@@ -183,7 +185,8 @@ pub(crate) struct SlideReport {
 impl From<Slid> for SlideReport {
     fn from(slid: Slid) -> Self {
         let Slid { vertices, moved, pairs, coincident, rounds, off, off_share, area } = slid;
-        Self { vertices, moved, pairs, coincident, rounds, off, off_share, area_change: area }
+        let ends = 0;
+        Self { vertices, moved, ends, pairs, coincident, rounds, off, off_share, area_change: area }
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use gpu_smooth::Metric;
 
+use crate::load::stay_as_ends;
 use crate::report::{
     ChangeReport, FaultReport, MeshReport, Report, Seconds, SlideReport, TargetReport,
     UntangleReport,
@@ -184,6 +185,8 @@ impl Report {
         let slid = self.slid.as_ref()?;
         let SlideReport { vertices, moved, pairs, coincident, off, off_share, area_change, .. } =
             slid;
+        let ends = stay_as_ends(slid.ends);
+        let ends = ends.map(|clause| format!("; {clause}")).unwrap_or_default();
         let pairs = match pairs {
             0 => "",
             1 => ", a periodic pair together",
@@ -210,7 +213,7 @@ impl Report {
             ),
         };
         Some(format!(
-            "{moved} of {vertices} vertices on lines slid along them{pairs}{coincident}; {lines}; the area of the mesh {area}"
+            "{moved} of {vertices} vertices on lines slid along them{pairs}{coincident}{ends}; {lines}; the area of the mesh {area}"
         ))
     }
 

@@ -6,7 +6,7 @@ use gpu_smooth::targets::{Adaptation, Surface};
 use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
 
 use crate::error::CliError;
-use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, TargetFacts};
+use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, SlidingVertices, TargetFacts};
 use crate::load::{explain, remarks};
 use crate::report::Failure;
 use crate::request::{SmoothRequest, TargetRequest};
@@ -43,8 +43,8 @@ pub(super) struct Ready<'a> {
     pub(super) before: Quality,
     /// The weight of sizes; see [`TargetFacts`].
     pub(super) size_weight: Option<f64>,
-    /// Number of sliding vertices; `None` without `--slide`.
-    pub(super) sliding: Option<usize>,
+    /// The sliding vertices; `None` without `--slide`.
+    pub(super) sliding: Option<SlidingVertices>,
     /// Time at the end of the preparation.
     pub(super) at: Instant,
 }
@@ -144,7 +144,7 @@ pub(super) fn set_up<'a>(
     if let Some(slide) = &request.slide {
         let vertices = slide.set(file, &mut smoother)?;
         follow.remark(&vertices.remark);
-        sliding = Some(vertices.count);
+        sliding = Some(vertices);
     }
     let before = Quality::on(surface, &mesh.points, smoother.topology())?;
     Ok(Ready { smoother, mended, taken, before, size_weight, sliding, at: Instant::now() })

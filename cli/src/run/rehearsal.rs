@@ -62,6 +62,7 @@ pub(crate) fn rehearse(
     let subject = Subject { smoother, mended: None };
     let Ready { smoother, taken, sliding, .. } =
         prepare::set_up(&input, subject, engine(size)?, follow)?;
+    let sliding = sliding.map(|sliding| sliding.count);
     Ok(Rehearsal { sliding, ..of_topology(&input, smoother.topology(), &taken) })
 }
 

@@ -7,7 +7,7 @@ use gpu_smooth::{Backend, Checkpoint, Metric, Outcome, Smoother, Stop};
 use crate::load::LoadedMesh;
 use crate::report::{
     self, Certificate, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds,
-    UntangleReport,
+    SlideReport, UntangleReport,
 };
 use crate::run::engine::OpenEngine;
 use crate::run::input::Input;
@@ -74,7 +74,10 @@ pub(super) fn report(
         lost: outcome.lost,
         goal: goal_report(outcome),
         returned: outcome.returned,
-        slid: outcome.slid.map(Into::into),
+        slid: outcome.slid.map(|slid| {
+            let ends = ready.sliding.as_ref().map_or(0, |sliding| sliding.ends);
+            SlideReport { ends, ..slid.into() }
+        }),
         improved: outcome.improved.map(Into::into),
         max_move: request.max_move(),
         change: measured.change.into(),

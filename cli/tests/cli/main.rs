@@ -12,6 +12,7 @@ mod documented;
 #[cfg(target_os = "linux")]
 mod drivers;
 mod dry_run;
+mod ends;
 mod files;
 mod formats;
 mod groups;

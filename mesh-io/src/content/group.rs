@@ -19,9 +19,9 @@ pub struct Group {
     pub name: Option<String>,
     /// Number in the file; `None` for a group identified by its name alone.
     pub tag: Option<i64>,
-    /// Number of point elements, plus one for each vertex of a polyline. Single vertices that the file assigns to the
-    /// group, and polygons of more than four corners, are not counted. Their vertices are among
-    /// [`vertices`](Self::vertices).
+    /// Number of point elements, plus one for each vertex of a polyline. A vertex at which a polyline closes or
+    /// goes on is counted once. Single vertices that the file assigns to the group, and polygons of more than four corners, are not
+    /// counted. Their vertices are among [`vertices`](Self::vertices).
     pub points: usize,
     /// Number of line elements, without the segments of polylines.
     pub lines: usize,
@@ -29,6 +29,8 @@ pub struct Group {
     pub quadrilaterals: usize,
     pub(crate) triangles: Vec<u32>,
     pub(crate) vertices: Vec<u32>,
+    /// Edges of line elements and polylines, each once: the smaller vertex first, ascending.
+    pub(crate) edges: Vec<[u32; 2]>,
 }
 
 impl Group {
@@ -41,6 +43,11 @@ impl Group {
     /// [`MeshFile::points`](crate::MeshFile::points), ascending.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
+    }
+
+    /// Returns whether the group has vertices or points, and neither edges nor faces.
+    pub(crate) fn is_of_vertices(&self) -> bool {
+        self.dimension == 0 && self.edges.is_empty() && !self.vertices.is_empty()
     }
 
     /// Returns whether both groups consist of the same elements. False for groups without vertices.
@@ -203,7 +210,7 @@ mod tests {
     fn group(kind: &str, dimension: u8, name: Option<&str>, tag: Option<i64>) -> Group {
         let name = name.map(str::to_owned);
         let (points, lines, quadrilaterals) = (0, 0, 0);
-        let (triangles, vertices) = (Vec::new(), Vec::new());
+        let (triangles, vertices, edges) = (Vec::new(), Vec::new(), Vec::new());
         Group {
             kind: kind.into(),
             dimension,
@@ -214,6 +221,7 @@ mod tests {
             quadrilaterals,
             triangles,
             vertices,
+            edges,
         }
     }
 

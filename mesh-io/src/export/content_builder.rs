@@ -40,8 +40,6 @@ struct ContentBuilder {
     announced: Option<PendingArray>,
     /// Number of time steps so far, for each array name with several time steps.
     steps: HashMap<String, usize>,
-    /// Last vertex of the preceding polyline, and its group scopes. A polyline in the same groups continues it.
-    open_end: Option<(u32, Vec<Scope>)>,
     /// Cell data, with the element id of each tuple; `None` for the ids 0, 1, 2 and so on.
     by_tag: Vec<(DataArray, Option<Vec<u64>>)>,
 }
@@ -183,7 +181,6 @@ impl MeshVisitor for ContentBuilder {
 
     fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { id, kind, region, nodes } = element;
-        self.open_end = None;
         if kind == CellKind::Polygon {
             // Elements of this kind are corners of required triangles, which the file lists a second time.
             self.unsupported("the list of required triangles");
@@ -230,15 +227,9 @@ impl MeshVisitor for ContentBuilder {
         nodes: &[u64],
     ) -> Result<(), ReadError> {
         let set = self.set(1, region);
-        let vertices = self.vertices(nodes);
-        let goes_on = self.within.iter().any(|(_, _, dimension)| *dimension == Some(1));
-        let before = self.open_end.take().filter(|(_, within)| goes_on && *within == self.within);
-        let before = before.map(|(end, _)| end);
-        let all: Vec<u32> = before.into_iter().chain(vertices).collect();
-        for ends in all.windows(2) {
+        for ends in self.vertices(nodes).windows(2) {
             self.content.cells.push(CellKind::Line, ends, set, id);
         }
-        self.open_end = all.last().map(|&end| (end, self.within.clone()));
         Ok(())
     }
 

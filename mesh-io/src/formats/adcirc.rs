@@ -93,6 +93,10 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
                     None => return,
                 }
             }
+            if word == "island" && !visitor.asks_for_data() {
+                // Islands are closed, and need not list their first node a second time.
+                nodes.extend(nodes.first().copied());
+            }
             let label = GroupLabel::Name(format!("{word}{index}"));
             visitor.group_scopes(&[GroupScope { kind: "boundary", label, dimension: Some(1) }]);
             // A node that does not exist is no reason to refuse the mesh.

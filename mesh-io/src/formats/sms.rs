@@ -64,6 +64,8 @@ impl FormatReader for Sms {
         let cursor = &mut Cursor::new(source);
         let mut strings: Vec<u64> = Vec::new();
         let mut string = 1;
+        // The last node of a row whose string goes on.
+        let mut before: Option<u64> = None;
         let materials = || {
             let label = |material| (material != NO_MATERIAL).then_some(GroupLabel::Tag(material));
             vec![RegionAttribute { kind: "material".into(), from_dimension: 1, label }]
@@ -82,10 +84,13 @@ impl FormatReader for Sms {
                     }]);
                     // Node strings belong to no material.
                     visitor.region_attributes(Vec::new());
-                    visitor.polyline(cursor, 0, [0; 2], &nodes)?;
+                    let joined: Vec<u64> = before.into_iter().chain(nodes).collect();
+                    visitor.polyline(cursor, 0, [0; 2], &joined)?;
                     visitor.region_attributes(materials());
                     visitor.group_scopes(&[]);
-                    strings.extend(nodes);
+                    let is_open = matches!(end, NodestringEnd::Open);
+                    before = joined.last().copied().filter(|_| is_open);
+                    strings.extend(joined);
                     if let NodestringEnd::Last(name) = end {
                         if !name.is_empty() {
                             visitor.group_name("nodestring", Some(1), string, &name);

@@ -1,6 +1,8 @@
 //! Groups of elements and single vertices that a user can name in a mesh file.
 
+use crate::content::curve_edges::{CurveEdges, MeshEdges};
 use crate::content::group::Groups;
+use crate::content::group_ends::group_ends;
 use crate::content::id_index::IdIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -43,6 +45,28 @@ impl MeshFile {
     pub fn groups(&self) -> Result<Groups, ReadError> {
         let table = group_visitor::groups(self.reader(), self.source())?;
         Ok(table.finish(self.triangles(), self.points().len()))
+    }
+
+    /// Parses the bytes of the file again, and returns the vertices at which groups of lines and groups of vertices end,
+    /// on the boundary or inside the mesh, ascending. Programs that move vertices along lines keep these vertices, so
+    /// that each group keeps its extent.
+    ///
+    /// A group of lines ends where other than two of its edges meet. A group of vertices, such as the codes of MIKE and
+    /// node sets, ends where an edge of the boundary or of a line leads to a vertex outside the group. Numbers that
+    /// differ for nearly every line or vertex are no groups.
+    ///
+    /// # Errors
+    /// As for [`groups`](Self::groups).
+    pub fn group_ends(&self) -> Result<Vec<u32>, ReadError> {
+        let mesh = MeshEdges {
+            vertices: self.points().len(),
+            triangles: self.triangles(),
+            other_faces: self.faces(),
+            lines: &self.constraints().lines,
+            interfaces: self.interface_edges(),
+        };
+        let groups = self.groups()?;
+        Ok(group_ends(&groups, &CurveEdges::new(&groups, &mesh)))
     }
 
     /// Reads a text file with the ids of vertices in the mesh file, as in

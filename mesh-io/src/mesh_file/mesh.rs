@@ -1,6 +1,7 @@
 //! Mesh with the bytes of its file, which is read once and rewritten with new coordinates alone.
 
 use crate::content::constraints::{Constraints, edges_between_regions};
+use crate::content::faces::Faces;
 use crate::content::regions::interface_vertices;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
@@ -97,6 +98,11 @@ impl MeshFile {
     /// [`constraints`](Self::constraints) contain them.
     pub fn other_faces(&self) -> impl Iterator<Item = &[u32]> {
         self.parsed.other_faces.iter()
+    }
+
+    /// Returns the quadrilaterals and polygons.
+    pub(crate) fn faces(&self) -> &Faces {
+        &self.parsed.other_faces
     }
 
     /// Returns the [region](Self#regions) of each triangle, in the order of [`triangles`](Self::triangles). Regions are

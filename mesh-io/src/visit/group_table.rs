@@ -39,6 +39,7 @@ impl GroupTable {
                 quadrilaterals: 0,
                 triangles: Vec::new(),
                 vertices: Vec::new(),
+                edges: Vec::new(),
             };
             self.groups.push(GroupMembers { group, others: Vec::new() });
         }
@@ -55,10 +56,24 @@ impl GroupTable {
         let GroupMembers { group, others } = &mut self.groups[group];
         match kind {
             CellKind::Point => group.points += 1,
-            CellKind::Line => group.lines += 1,
+            CellKind::Line => {
+                group.lines += 1;
+                group.edges.extend(vertices.windows(2).map(|ends| [ends[0], ends[1]]));
+            }
             CellKind::Triangle | CellKind::Polygon => {}
             CellKind::Quadrilateral => group.quadrilaterals += 1,
         }
+        others.extend_from_slice(vertices);
+    }
+
+    /// Adds a polyline to a group, and counts its vertices as points. A polyline may go on at the last vertex of the
+    /// preceding polyline, and may end at its first vertex.
+    pub(crate) fn add_polyline(&mut self, group: usize, vertices: &[u32]) {
+        let GroupMembers { group, others } = &mut self.groups[group];
+        let goes_on = group.edges.last().is_some_and(|[_, end]| vertices.first() == Some(end));
+        let is_closed = vertices.len() > 2 && vertices.first() == vertices.last();
+        group.points += vertices.len() - usize::from(goes_on) - usize::from(is_closed);
+        group.edges.extend(vertices.windows(2).map(|ends| [ends[0], ends[1]]));
         others.extend_from_slice(vertices);
     }
 
@@ -95,6 +110,10 @@ impl GroupTable {
                 }
             }
             group.vertices.sort_unstable();
+            group.edges.iter_mut().for_each(|edge| edge.sort_unstable());
+            group.edges.retain(|[a, b]| a != b);
+            group.edges.sort_unstable();
+            group.edges.dedup();
         }
         for GroupMembers { group, .. } in &mut self.groups {
             let Some(tag) = group.tag else { continue };

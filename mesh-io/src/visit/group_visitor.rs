@@ -109,6 +109,23 @@ impl MeshVisitor for GroupVisitor {
         }
     }
 
+    fn polyline(
+        &mut self,
+        _: &Cursor<'_>,
+        _: u64,
+        region: [i64; 2],
+        nodes: &[u64],
+    ) -> Result<(), ReadError> {
+        self.vertices.clear();
+        self.vertices.extend(nodes.iter().filter_map(|&node| self.ids.index(node)));
+        // A polyline without a scope of its own belongs to the groups of points.
+        self.find(CellKind::Point.dimension(), region);
+        for &group in &self.of_element {
+            self.table.add_polyline(group, &self.vertices);
+        }
+        Ok(())
+    }
+
     fn asks_for_groups(&self) -> bool {
         true
     }

@@ -8,6 +8,7 @@ mod content;
 mod convert;
 mod damage;
 mod data;
+mod ends;
 mod errors;
 mod exodus;
 mod facts;
