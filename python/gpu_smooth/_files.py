@@ -101,7 +101,7 @@ class MeshFile:
 
     @property
     def periodic(self) -> Integers:
-        """Periodic pairs of vertices, of shape (k, 2), for the option `periodic`."""
+        """Periodic pairs of vertices, and pairs across weirs of ADCIRC, of shape (k, 2), for the option `periodic`."""
         return self._native.periodic
 
     @property

@@ -93,7 +93,8 @@ impl MeshFile {
 
     #[getter]
     fn periodic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let pairs = self.0.constraints().periodic.iter().flat_map(|list| &list.pairs);
+        let mesh_io::Constraints { periodic, weirs, .. } = self.0.constraints();
+        let pairs = periodic.iter().map(|list| &list.pairs).chain(weirs).flatten();
         let numbers: Vec<i64> = pairs.flatten().map(|&v| i64::from(v)).collect();
         let rows = numbers.len() / 2;
         arrays::matrix(py, numbers, [rows, 2])

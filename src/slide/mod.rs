@@ -1,11 +1,13 @@
 //! Sliding vertices: vertices of the boundary and of lines inside the domain move along curves, from corner to corner.
 
 mod acceleration;
+mod banks;
 mod chains;
 mod coincident;
 mod corners;
 mod curve;
 mod edges;
+mod movers;
 mod newton;
 mod options;
 mod pairing;

@@ -77,7 +77,7 @@ impl Slide {
 }
 
 /// Positions and order of the boundary vertices of a mesh.
-struct Boundary<'p> {
+pub(super) struct Boundary<'p> {
     points: &'p [[f64; 2]],
     /// For each vertex, the next vertex along the boundary, with the mesh on the left, and the length of the shorter
     /// edge at the vertex. Where several boundaries meet, the next vertex is on any of them.
@@ -85,7 +85,7 @@ struct Boundary<'p> {
 }
 
 impl<'p> Boundary<'p> {
-    fn of(topology: &Topology<'_>, points: &'p [[f64; 2]]) -> Self {
+    pub(super) fn of(topology: &Topology<'_>, points: &'p [[f64; 2]]) -> Self {
         let mut boundary = Self { points, next: BTreeMap::new() };
         let mut edges = topology.boundary_edges();
         edges.sort_unstable();
@@ -102,12 +102,12 @@ impl<'p> Boundary<'p> {
         boundary
     }
 
-    fn at(&self, vertex: u32) -> DVec2 {
+    pub(super) fn at(&self, vertex: u32) -> DVec2 {
         self.points[vertex as usize].into()
     }
 
     /// Returns the length of the shorter boundary edge at a vertex, 0 for vertices inside.
-    fn edge(&self, vertex: u32) -> f64 {
+    pub(super) fn edge(&self, vertex: u32) -> f64 {
         self.next.get(&vertex).map_or(0.0, |&(_, edge)| edge)
     }
 

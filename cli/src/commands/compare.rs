@@ -30,7 +30,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     let laid_out = lay_out(&mut before, surface, z)?;
     before.lay_out_likewise(&mut after)?;
     let after = after;
-    let choice = movable.apply(&mut before)?;
+    let choice = movable.apply(&mut before, slide.as_ref())?;
     if choice.nothing_to_do.is_some() {
         before.fix_all_but(&[])?;
     }
@@ -116,10 +116,12 @@ fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
         1 => "1 vertex slid along its line; ".to_owned(),
         n => format!(
             "{n} vertices slid along their lines{}{}; ",
-            match pairs {
-                0 => String::new(),
-                1 => ", two of them as a periodic pair together".to_owned(),
-                n => format!(", {n} periodic pairs of them together"),
+            match (pairs, before.source.constraints().weirs.is_empty()) {
+                (0, _) => String::new(),
+                (1, true) => ", two of them as a periodic pair together".to_owned(),
+                (n, true) => format!(", {n} periodic pairs of them together"),
+                (1, false) => ", two of them as a pair across a weir together".to_owned(),
+                (n, false) => format!(", {n} pairs across weirs of them together"),
             },
             match coincident {
                 0 => String::new(),

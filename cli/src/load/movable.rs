@@ -8,7 +8,7 @@ use mesh_io::Groups;
 use crate::load::explain;
 use crate::load::layers::keep_layers;
 use crate::load::named::{named, refusal};
-use crate::request::{MovableRequest, NearBad};
+use crate::request::{MovableRequest, NearBad, SlideRequest};
 use crate::terminal::numbers::sig6;
 
 /// The effect on a mesh of the options that select movable vertices.
@@ -35,15 +35,19 @@ impl MovableRequest {
             || near_bad.is_some()
     }
 
-    /// Frees and fixes the vertices of a mesh as requested.
-    pub(crate) fn apply(&self, file: &mut LoadedMesh) -> Result<MovableSelection, CliError> {
+    /// Frees and fixes the vertices of a mesh as requested. `slide` is the request for vertices that slide.
+    pub(crate) fn apply(
+        &self,
+        file: &mut LoadedMesh,
+        slide: Option<&SlideRequest>,
+    ) -> Result<MovableSelection, CliError> {
         if self.free_interfaces {
             file.free_interfaces();
         }
         let mut choice = MovableSelection::default();
         choice.notes.extend(self.free_interfaces.then(|| held_interfaces(file)).flatten());
         if self.restricts() {
-            self.restrict(file, &mut choice)?;
+            self.restrict(file, slide, &mut choice)?;
         }
         if let Some(kept) = self.keep_layers.as_ref().filter(|_| choice.nothing_to_do.is_none()) {
             let layers = keep_layers(file, kept)?;
@@ -57,9 +61,10 @@ impl MovableRequest {
     fn restrict(
         &self,
         file: &mut LoadedMesh,
+        slide: Option<&SlideRequest>,
         choice: &mut MovableSelection,
     ) -> Result<(), CliError> {
-        let resolver = SelectionResolver::new(file)?;
+        let resolver = SelectionResolver::new(file, slide)?;
         choice.free_without = resolver.topology.free_count();
         let fixed = resolver.fixed(self, choice)?;
         let movers = resolver.movers(self, choice)?;
@@ -100,13 +105,19 @@ fn held_interfaces(file: &LoadedMesh) -> Option<String> {
 struct SelectionResolver<'f> {
     file: &'f LoadedMesh,
     topology: Topology<'f>,
+    /// Vertices that would slide without the options, ascending.
+    sliding: Vec<u32>,
 }
 
 impl<'f> SelectionResolver<'f> {
-    fn new(file: &'f LoadedMesh) -> Result<Self, CliError> {
+    fn new(file: &'f LoadedMesh, slide: Option<&SlideRequest>) -> Result<Self, CliError> {
         let topology =
             Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
-        Ok(Self { file, topology })
+        let sliding = match slide {
+            Some(slide) => slide.slide(file)?.vertices(&topology, &file.mesh().points)?,
+            None => Vec::new(),
+        };
+        Ok(Self { file, topology, sliding })
     }
 
     /// Counts the vertices that would be free without the options.
@@ -126,7 +137,9 @@ impl<'f> SelectionResolver<'f> {
             vertices.sort_unstable();
             vertices.dedup();
             let (count, free) = (vertices.len(), self.free_among(&vertices));
-            choice.notes.push(format!("{option}: {}", held(count, free)));
+            let slides = |vertex: &&u32| self.sliding.binary_search(vertex).is_ok();
+            let sliding = vertices.iter().filter(slides).count();
+            choice.notes.push(format!("{option}: {}", held(count, free, sliding)));
             fixed.append(&mut vertices);
         };
         if !request.fix.is_empty() {
@@ -219,14 +232,21 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Describes the effect of an option: `count` fixed vertices, of which `free` would otherwise be free.
-fn held(count: usize, free: usize) -> String {
-    match (count, free) {
+/// Describes the effect of an option: `count` fixed vertices, of which `free` would otherwise be free and `sliding` would
+/// otherwise slide.
+fn held(count: usize, free: usize, sliding: usize) -> String {
+    let would = match (free, sliding) {
+        (free, 0) => format!("{free} of them would be free"),
+        (0, sliding) => format!("{sliding} of them would slide"),
+        (free, sliding) => format!("{free} of them would be free, and {sliding} would slide"),
+    };
+    match (count, free + sliding) {
         (0, _) => "it names no vertex".into(),
         (1, 0) => "1 vertex stays fixed; it was not free before".into(),
+        (1, _) if sliding > 0 => "1 vertex stays fixed; it would slide".into(),
         (1, _) => "1 vertex stays fixed; it would be free".into(),
         (_, 0) => format!("{count} vertices stay fixed; none of them was free before"),
-        _ => format!("{count} vertices stay fixed; {free} of them would be free"),
+        _ => format!("{count} vertices stay fixed; {would}"),
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{Slide, Smoother, Topology};
+use mesh_io::Constraints;
 
 use crate::load::explain;
 use crate::request::SlideRequest;
@@ -25,7 +26,8 @@ impl SlideRequest {
         // Files list the vertices of line elements on the boundary, which are fixed but slide along the boundary.
         lines.extend(topology.boundary_edges());
         let mut slide = Slide { corner_angle, hausdorff, lines, held, periodic };
-        let motions = &file.source.constraints().motions;
+        let Constraints { motions, weirs, .. } = file.source.constraints();
+        slide.pair_banks(&topology, &file.mesh().points, weirs);
         if self.periodic.is_empty()
             && motions.is_empty()
             && !file.source.constraints().has_unread_pairs
@@ -96,6 +98,7 @@ impl SlideRequest {
         }
         let ends = all.saturating_sub(count);
         let [pairs, unlike] = smoother.pairs();
+        let weirs = Weirs::of(file, &slide)?;
         let mut text = match count {
             0 => {
                 "--slide: no vertex can slide, as all on lines are corners, ends of groups or fixed"
@@ -104,11 +107,12 @@ impl SlideRequest {
             1 => "--slide: 1 vertex on the boundary or another line may slide".to_owned(),
             n => format!("--slide: {n} vertices on the boundary and other lines may slide"),
         };
-        match pairs {
-            0 => {}
-            1 => text += ", 2 of them as a periodic pair",
-            n => text += &format!(", {} of them in {n} periodic pairs", 2 * n),
-        }
+        text += &match pairs.saturating_sub(weirs.sliding) {
+            0 => String::new(),
+            1 => ", 2 of them as a periodic pair".to_owned(),
+            n => format!(", {} of them in {n} periodic pairs", 2 * n),
+        };
+        text += &weirs.slide();
         let [together, alone] = smoother.coincident();
         match together {
             0 => {}
@@ -125,6 +129,7 @@ impl SlideRequest {
                 );
             }
         }
+        text += &weirs.stay();
         if let Some(clause) = stay_as_ends(ends) {
             text += &format!("; {clause}");
         }
@@ -141,7 +146,7 @@ impl SlideRequest {
                 );
             }
         }
-        Ok(SlidingVertices { count, ends, remark: text })
+        Ok(SlidingVertices { count, ends, has_weirs: weirs.sliding > 0, remark: text })
     }
 }
 
@@ -154,11 +159,54 @@ pub(crate) fn stay_as_ends(ends: usize) -> Option<String> {
     }
 }
 
+/// Numbers of pairs of vertices that face each other across weirs.
+struct Weirs {
+    sliding: usize,
+    staying: usize,
+}
+
+impl Weirs {
+    fn of(file: &LoadedMesh, slide: &Slide) -> Result<Self, CliError> {
+        let weirs = &file.source.constraints().weirs;
+        if weirs.is_empty() {
+            return Ok(Self { sliding: 0, staying: 0 });
+        }
+        let topology =
+            Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
+        let sliding = slide.vertices(&topology, &file.mesh().points)?;
+        let slides = |[a, b]: &&[u32; 2]| [a, b].iter().all(|v| sliding.binary_search(v).is_ok());
+        let (all, sliding) =
+            (weirs.iter().flatten().count(), weirs.iter().flatten().filter(slides).count());
+        Ok(Self { sliding, staying: all - sliding })
+    }
+
+    /// Returns a clause on the pairs that slide.
+    fn slide(&self) -> String {
+        match self.sliding {
+            0 => String::new(),
+            1 => ", 2 of them as a pair across a weir".to_owned(),
+            n => format!(", {} of them in {n} pairs across weirs", 2 * n),
+        }
+    }
+
+    /// Returns a clause on the pairs that stay.
+    fn stay(&self) -> String {
+        let why = "at corners, at fixed vertices or between banks that are not parallel";
+        match self.staying {
+            0 => String::new(),
+            1 => format!("; 1 pair across a weir stays, as pairs do {why}"),
+            n => format!("; {n} pairs across weirs stay, {why}"),
+        }
+    }
+}
+
 /// The sliding vertices of a mesh.
 pub(crate) struct SlidingVertices {
     pub(crate) count: usize,
     /// Number of vertices that would slide if no group ended at them or at their partners.
     pub(crate) ends: usize,
+    /// Whether pairs are across weirs.
+    pub(crate) has_weirs: bool,
     /// A sentence with the numbers of sliding vertices and periodic pairs.
     pub(crate) remark: String,
 }

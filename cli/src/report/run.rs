@@ -168,10 +168,14 @@ pub(crate) struct SlideReport {
     pub(crate) moved: usize,
     /// Number of vertices that would have been allowed to slide if no group ended at them.
     pub(crate) ends: usize,
-    /// Number of periodic pairs among the sliding vertices. Both vertices of a pair slide together.
+    /// Number of periodic pairs, or pairs across weirs, among the sliding vertices. Both vertices of a pair slide
+    /// together.
     pub(crate) pairs: usize,
     /// Number of pairs of vertices with equal coordinates among the sliding vertices, which keep equal coordinates.
     pub(crate) coincident: usize,
+    /// Whether pairs are across weirs and not periodic.
+    #[serde(skip)]
+    pub(crate) has_weirs: bool,
     /// Number of rounds of sweeps, each followed by sweeps along the lines.
     pub(crate) rounds: u32,
     /// Largest distance between the lines of output and input, in units of the mesh.
@@ -185,8 +189,19 @@ pub(crate) struct SlideReport {
 impl From<Slid> for SlideReport {
     fn from(slid: Slid) -> Self {
         let Slid { vertices, moved, pairs, coincident, rounds, off, off_share, area } = slid;
-        let ends = 0;
-        Self { vertices, moved, ends, pairs, coincident, rounds, off, off_share, area_change: area }
+        let (ends, has_weirs, area_change) = (0, false, area);
+        Self {
+            vertices,
+            moved,
+            ends,
+            pairs,
+            has_weirs,
+            coincident,
+            rounds,
+            off,
+            off_share,
+            area_change,
+        }
     }
 }
 

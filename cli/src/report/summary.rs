@@ -187,10 +187,12 @@ impl Report {
             slid;
         let ends = stay_as_ends(slid.ends);
         let ends = ends.map(|clause| format!("; {clause}")).unwrap_or_default();
-        let pairs = match pairs {
-            0 => "",
-            1 => ", a periodic pair together",
-            n => &format!(", {n} periodic pairs together"),
+        let pairs = match (pairs, slid.has_weirs) {
+            (0, _) => "",
+            (1, false) => ", a periodic pair together",
+            (n, false) => &format!(", {n} periodic pairs together"),
+            (1, true) => ", a pair across a weir together",
+            (n, true) => &format!(", {n} pairs across weirs together"),
         };
         let coincident = match coincident {
             0 => "",

@@ -88,7 +88,7 @@ pub(super) fn read(
     follow.stage(Stage::Reading { bytes });
     let mut file = streams::read(task.input, &request.reading)?;
     let laid_out = lay_out(&mut file, request.surface, request.z)?;
-    let choice = request.movable.apply(&mut file)?;
+    let choice = request.movable.apply(&mut file, request.slide.as_ref())?;
     let fields = request.fields.choose(&file)?;
     let at = Instant::now();
     follow.has_read(&file)?;

@@ -75,8 +75,9 @@ pub(super) fn report(
         goal: goal_report(outcome),
         returned: outcome.returned,
         slid: outcome.slid.map(|slid| {
-            let ends = ready.sliding.as_ref().map_or(0, |sliding| sliding.ends);
-            SlideReport { ends, ..slid.into() }
+            let (ends, has_weirs) =
+                ready.sliding.as_ref().map_or((0, false), |own| (own.ends, own.has_weirs));
+            SlideReport { ends, has_weirs, ..slid.into() }
         }),
         improved: outcome.improved.map(Into::into),
         max_move: request.max_move(),

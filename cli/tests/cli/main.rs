@@ -46,6 +46,7 @@ mod streams;
 mod targets;
 mod trial;
 mod untangle;
+mod weirs;
 mod worst;
 
 use gpu_smooth::Mesh;

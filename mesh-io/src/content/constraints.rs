@@ -30,6 +30,9 @@ pub struct Constraints {
     /// Periodic pairs from gmsh's `$Periodic` and from a CGNS zone that is connected to itself, in lists of pairs with a
     /// common motion.
     pub periodic: Vec<PeriodicPairs>,
+    /// Pairs of vertices that face each other on the two banks of a weir of ADCIRC, in order along each weir. Models
+    /// compute the flow over the weir between the vertices of a pair.
+    pub weirs: Vec<Vec<[u32; 2]>>,
     /// Motions that map boundary vertices to their periodic partners where the file lists no pairs, from SU2's
     /// `NPERIODIC`, or from CGNS connectivities of faces.
     pub motions: Vec<Affine>,

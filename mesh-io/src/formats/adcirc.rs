@@ -2,8 +2,8 @@
 //!
 //! The format: <https://adcirc.org/home/documentation/users-manual-v53/input-file-descriptions/adcirc-grid-and-boundary-information-file-fort-14/>.
 //! Programs read the grid by Fortran's list-directed input: commas may separate numbers, and an item may continue on
-//! the next line. The number after x and y is a node's depth. Lists of boundaries at the end of the file are read only
-//! for groups. Their nodes, weirs included, are on the boundary of the mesh and stay fixed anyway.
+//! the next line. The number after x and y is a node's depth. Lists of boundaries at the end of the file are read for
+//! groups and for the pairs of nodes of weirs. Their nodes are on the boundary of the mesh and stay fixed anyway.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -57,7 +57,7 @@ impl FormatReader for Adcirc {
             },
             |cursor, visitor, _, element| visitor.element(cursor, &element),
         )?;
-        if visitor.asks_for_groups() {
+        if visitor.asks_for_groups() || visitor.asks_for_periodic_pairs() {
             boundaries(cursor, visitor);
         }
         Ok(CoordinateStorage::in_place(Format::Adcirc, CoordinateEncoding::TEXT))
@@ -65,8 +65,8 @@ impl FormatReader for Adcirc {
 }
 
 /// Visits the boundaries as lines: open boundaries (`open1`), then land boundaries (`land1`), which are named `island1`
-/// if their type is that of an island. A damaged list ends the reading without an error, as the mesh does not depend on
-/// boundaries.
+/// if their type is that of an island. A weir has the lines of both banks, and its pairs of nodes are visited. A damaged
+/// list ends the reading without an error, as the mesh does not depend on boundaries.
 fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     for is_open in [true, false] {
         let Some(count) = number(cursor) else { return };
@@ -86,26 +86,61 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
             if kind > 1 {
                 visitor.unsupported("types of boundaries, and the data of weirs");
             }
-            let mut nodes = Vec::new();
-            for _ in 0..length {
-                match number(cursor) {
-                    Some(node) => nodes.push(node),
-                    None => return,
-                }
-            }
+            // Types of weirs, pipes and vertical walls inside of the mesh (NBVV with IBCONN).
+            let is_weir = matches!(kind, 4 | 24 | 5 | 25 | 64);
+            let Some(Bank { mut nodes, pairs }) = bank(cursor, length, is_weir) else { return };
             if word == "island" && !visitor.asks_for_data() {
                 // Islands are closed, and need not list their first node a second time.
                 nodes.extend(nodes.first().copied());
             }
-            let label = GroupLabel::Name(format!("{word}{index}"));
-            visitor.group_scopes(&[GroupScope { kind: "boundary", label, dimension: Some(1) }]);
-            // A node that does not exist is no reason to refuse the mesh.
-            if visitor.polyline(cursor, 0, [0; 2], &nodes).is_err() {
+            visitor.weir(&pairs);
+            let name = format!("{word}{index}");
+            if visitor.asks_for_groups() && lines(cursor, visitor, name, &nodes, &pairs).is_err() {
                 return;
             }
-            visitor.group_scopes(&[]);
         }
     }
+}
+
+/// The nodes of a boundary. For a weir, `pairs` has each node with the node that faces it on the other bank.
+struct Bank {
+    nodes: Vec<u64>,
+    pairs: Vec<[u64; 2]>,
+}
+
+/// Reads the nodes of a boundary, one in each row; `None` for a damaged list.
+fn bank(cursor: &mut Cursor<'_>, length: u64, is_weir: bool) -> Option<Bank> {
+    let mut bank = Bank { nodes: Vec::new(), pairs: Vec::new() };
+    for _ in 0..length {
+        let node = number(cursor)?;
+        bank.nodes.push(node);
+        if is_weir {
+            bank.pairs.push([node, cursor.integer("a node").ok()?]);
+        }
+    }
+    Some(bank)
+}
+
+/// Visits the lines of a boundary: its nodes, and for a weir the nodes on the other bank.
+///
+/// # Errors
+/// If a node does not exist, which is no reason to refuse the mesh.
+fn lines(
+    cursor: &Cursor<'_>,
+    visitor: &mut dyn MeshVisitor,
+    name: String,
+    nodes: &[u64],
+    pairs: &[[u64; 2]],
+) -> Result<(), ReadError> {
+    let label = GroupLabel::Name(name);
+    visitor.group_scopes(&[GroupScope { kind: "boundary", label, dimension: Some(1) }]);
+    visitor.polyline(cursor, 0, [0; 2], nodes)?;
+    let other: Vec<u64> = pairs.iter().map(|&[_, other]| other).collect();
+    if !other.is_empty() {
+        visitor.polyline(cursor, 0, [0; 2], &other)?;
+    }
+    visitor.group_scopes(&[]);
+    Ok(())
 }
 
 /// Reads the whole number at the start of the next row; `None` for other rows, or at the end of the file.

@@ -21,7 +21,7 @@ impl MeshFile {
     /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, RequiredVertices and RequiredTriangles |
     /// | FreeFem | `label` of vertices, triangles and edges |
     /// | SMS 2dm | `material`, with the names of MAT rows, and `nodestring`, numbered in their order |
-    /// | ADCIRC, SCHISM | `boundary`: `open1`, `land1`, `island2` and so on, as the file lists them |
+    /// | ADCIRC, SCHISM | `boundary`: `open1`, `land1`, `island2` and so on, as the file lists them; a weir has both banks |
     /// | OBJ | `material`, `object` and `group` |
     /// | Exodus II | `block`, `sideset` and `nodeset`, with their names |
     /// | CGNS | `section`, `boundary` and its `family`, by name |

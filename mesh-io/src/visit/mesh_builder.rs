@@ -249,6 +249,14 @@ impl MeshVisitor for MeshBuilder {
         }
     }
 
+    fn weir(&mut self, pairs: &[[u64; 2]]) {
+        let index = |&[a, b]: &[u64; 2]| Some([self.ids.index(a)?, self.ids.index(b)?]);
+        let pairs: Vec<[u32; 2]> = pairs.iter().filter_map(index).collect();
+        if !pairs.is_empty() {
+            self.constraints.weirs.push(pairs);
+        }
+    }
+
     fn asks_for_ghosts(&self) -> bool {
         true
     }

@@ -77,13 +77,16 @@ pub(crate) trait MeshVisitor {
             self.element(cursor, &Element { id, kind: CellKind::Point, region, nodes })
         })
     }
-    /// Returns whether the visitor uses pairs of periodic nodes. For `false`, readers may skip calls of
-    /// [`periodic_pairs`](Self::periodic_pairs).
+    /// Returns whether the visitor uses pairs of periodic nodes and of weirs. For `false`, readers may skip calls of
+    /// [`periodic_pairs`](Self::periodic_pairs) and [`weir`](Self::weir).
     fn asks_for_periodic_pairs(&self) -> bool {
         false
     }
     /// Visits the pairs of periodic nodes in the file; `None` if a reader could not parse the pairs.
     fn periodic_pairs(&mut self, _pairs: Option<Vec<PeriodicNodes>>) {}
+    /// Visits the pairs of nodes that face each other on the two banks of a weir, in order along the weir. The list is
+    /// empty for other boundaries.
+    fn weir(&mut self, _pairs: &[[u64; 2]]) {}
     /// Returns whether the visitor uses ghosts. For `false`, readers may skip calls of [`ghosts`](Self::ghosts) and
     /// [`pieces`](Self::pieces).
     fn asks_for_ghosts(&self) -> bool {

@@ -141,6 +141,34 @@ fn medit_and_freefem_have_references_of_each_kind() {
     assert_groups("in.msh", FREEFEM.as_bytes(), &labels.each_ref().map(String::as_str));
 }
 
+/// Each row of a weir names the node that faces its node on the other bank.
+#[test]
+fn both_banks_of_a_weir_of_adcirc_are_one_group_and_pairs() {
+    let nodes = "1 0 0 1\n2 1 0 1\n3 2 0 1\n4 0 1 1\n5 1 1 1\n6 2 1 1\n7 1 -1 1\n8 1 2 1\n";
+    let elements = "1 3 1 7 2\n2 3 2 7 3\n3 3 4 5 8\n4 3 5 6 8\n";
+    let rows = "1 4 1.5 1.0 1.0\n2, 5, 1.5, 1.0, 1.0\n3 6 1.5 1.0 1.0\n";
+    for kind in [4, 24, 5, 25, 64, 0, 21] {
+        let text = format!("weir\n4 8\n{nodes}{elements}0\n0\n2\n5\n3 {kind}\n{rows}2 20\n1\n7\n");
+        let file = MeshFile::from_bytes("fort.14".as_ref(), text.into_bytes()).unwrap();
+        let groups = file.groups().unwrap();
+        let group = groups.iter().find(|group| group.name.as_deref() == Some("land1"));
+        let is_weir = kind != 0 && kind != 21;
+        assert_eq!(file.constraints().weirs.len(), usize::from(is_weir), "{kind}");
+        assert!(file.constraints().periodic.is_empty() && !file.constraints().has_unread_pairs);
+        if is_weir {
+            assert_eq!(file.constraints().weirs, [[[0, 3], [1, 4], [2, 5]]]);
+            let group = group.unwrap();
+            assert_eq!((group.vertices(), group.points), (&[0, 1, 2, 3, 4, 5][..], 6));
+            assert_eq!(groups.find("land2").unwrap().vertices(), [0, 6]);
+            assert_eq!(file.group_ends().unwrap(), [0, 2, 3, 5, 6]);
+        }
+    }
+    // A list that ends too early has the pairs of the weirs before.
+    let text = format!("weir\n4 8\n{nodes}{elements}0\n0\n2\n5\n3 4\n{rows}3 24\n1 4\n2\n");
+    let file = MeshFile::from_bytes("fort.14".as_ref(), text.into_bytes()).unwrap();
+    assert_eq!(file.constraints().weirs.len(), 1);
+}
+
 /// Vertices of required triangles stay fixed, as mmg does not change such triangles.
 #[test]
 fn vertices_of_required_triangles_stay() {
