@@ -79,3 +79,30 @@ fn both_banks_of_a_weir_are_fixed_by_the_name_of_its_boundary() {
     let without = folder.line("in.14 without.14 --engine cpu --fix land1");
     assert_holds(&without.err, &["18 vertices stay fixed; none of them was free before"]);
 }
+
+#[test]
+fn required_edges_of_medit_stay_where_others_slide() {
+    let x = [0.0, 0.15, 0.3, 0.45, 0.62, 0.7, 0.8, 0.9, 1.0];
+    let points: String = (0..27).map(|v| format!("{} {} 0\n", x[v % 9], v / 9)).collect();
+    let triangles: String = (0..16)
+        .map(|cell| {
+            let a = cell / 8 * 9 + cell % 8 + 1;
+            format!("{a} {} {} 1\n{a} {} {} 1\n", a + 1, a + 10, a + 10, a + 9)
+        })
+        .collect();
+    let edges: String = (1..9).map(|v| format!("{v} {} 1\n", v + 1)).collect();
+    for list in ["RequiredEdges", "Ridges"] {
+        let text = format!(
+            "MeshVersionFormatted 2\nDimension 2\nVertices\n27\n{points}Edges\n8\n{edges}\
+             Triangles\n32\n{triangles}{list}\n1\n5\nEnd\n"
+        );
+        let folder = Folder::new(&[("in.mesh", &text)]);
+        let run = folder.line("in.mesh out.mesh --engine cpu --slide");
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let [before, after] = ["in.mesh", "out.mesh"].map(|name| folder.mesh(name).points);
+        for v in 1..8 {
+            assert_eq!(before[v] == after[v], v == 4 || v == 5, "{list} {v}");
+        }
+        folder.line("compare in.mesh out.mesh --slide -q").clean();
+    }
+}

@@ -126,6 +126,15 @@ impl MeshVisitor for GroupVisitor {
         Ok(())
     }
 
+    fn held_line(&mut self, _: &Cursor<'_>, _: u64, nodes: [u64; 2]) -> Result<(), ReadError> {
+        self.vertices.clear();
+        self.vertices.extend(nodes.iter().filter_map(|&node| self.ids.index(node)));
+        // The region is that of the line, which has been visited before.
+        self.columns.clear();
+        self.further_region(CellKind::Line, [0; 2]);
+        Ok(())
+    }
+
     fn asks_for_groups(&self) -> bool {
         true
     }

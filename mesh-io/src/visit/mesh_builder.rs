@@ -217,6 +217,19 @@ impl MeshVisitor for MeshBuilder {
         Ok(())
     }
 
+    fn held_line(
+        &mut self,
+        cursor: &Cursor<'_>,
+        id: u64,
+        nodes: [u64; 2],
+    ) -> Result<(), ReadError> {
+        for node in nodes {
+            let vertex = self.index(cursor, CellKind::Line, id, node)?;
+            self.constraints.anchored.push(vertex);
+        }
+        Ok(())
+    }
+
     fn asks_for_periodic_pairs(&self) -> bool {
         true
     }

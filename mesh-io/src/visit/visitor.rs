@@ -77,6 +77,11 @@ pub(crate) trait MeshVisitor {
             self.element(cursor, &Element { id, kind: CellKind::Point, region, nodes })
         })
     }
+    /// Visits an edge whose vertices neither move nor slide, and which is one of the visited lines too. The edge belongs
+    /// to the current group scopes alone. By default, such edges are ignored.
+    fn held_line(&mut self, _: &Cursor<'_>, _id: u64, _nodes: [u64; 2]) -> Result<(), ReadError> {
+        Ok(())
+    }
     /// Returns whether the visitor uses pairs of periodic nodes and of weirs. For `false`, readers may skip calls of
     /// [`periodic_pairs`](Self::periodic_pairs) and [`weir`](Self::weir).
     fn asks_for_periodic_pairs(&self) -> bool {

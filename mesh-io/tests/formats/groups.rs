@@ -141,6 +141,25 @@ fn medit_and_freefem_have_references_of_each_kind() {
     assert_groups("in.msh", FREEFEM.as_bytes(), &labels.each_ref().map(String::as_str));
 }
 
+/// Vertices of required edges and ridges do not slide.
+#[test]
+fn required_edges_and_ridges_are_groups_whose_vertices_are_anchored() {
+    for (name, keyword) in [("RequiredEdges", 16), ("Ridges", 14)] {
+        let text = MEDIT.replace("RequiredVertices\n1\n5", &format!("{name}\n3\n1\n9\n1"));
+        assert_ne!(text, MEDIT);
+        for (path, bytes) in [("in.mesh", text.into_bytes()), ("in.meshb", meditb([keyword, 1]))] {
+            let file = MeshFile::from_bytes(path.as_ref(), bytes).unwrap();
+            let listed = format!("{name} = list line {name}: [0, 1, 0, 0] [0, 1]");
+            assert!(told(&file).contains(&listed), "{:?}", told(&file));
+            let reference = "line:3 = reference line 3: [0, 1, 0, 0] [0, 1]".to_owned();
+            assert!(told(&file).contains(&reference), "{:?}", told(&file));
+            let anchored = &file.constraints().anchored;
+            assert!(anchored.ends_with(&[0, 1]) && anchored.len() == 4, "{path}: {anchored:?}");
+            assert_eq!(file.constraints().lines, [[0, 1]]);
+        }
+    }
+}
+
 /// Each row of a weir names the node that faces its node on the other bank.
 #[test]
 fn both_banks_of_a_weir_of_adcirc_are_one_group_and_pairs() {

@@ -12,7 +12,7 @@ use crate::edit::numbers::{CoordinateEncoding, NumberEncoding};
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::medit::beside::report_solution;
-use crate::formats::medit::required::send_required_corners;
+use crate::formats::medit::required::NumberList;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::items::{CellKind, GroupScope, RegionAttribute};
@@ -48,7 +48,6 @@ struct List<'a> {
 
 const DIMENSION: i32 = 3;
 const VERTICES: i32 = 4;
-const REQUIRED_TRIANGLES: i32 = 17;
 const END: i32 = 54;
 
 impl FormatReader for MeditBinary {
@@ -76,7 +75,7 @@ impl FormatReader for MeditBinary {
         };
         let mut dimension = 0;
         let mut lists: Vec<List<'_>> = Vec::new();
-        let mut required: Vec<u64> = Vec::new();
+        let mut required = NumberList::all();
         let mut vertices_seen = false;
         loop {
             let keyword = integer(cursor, widths, 4, "a keyword")?;
@@ -101,11 +100,14 @@ impl FormatReader for MeditBinary {
                     vertices_seen = true;
                     vertices(cursor, widths, dimension, visitor)?;
                 }
-                REQUIRED_TRIANGLES => {
+                keyword if required.iter().any(|list| list.keyword == keyword) => {
                     let count = integer(cursor, widths, widths.integer, "a count")?;
-                    let bytes = items(cursor, count, widths.integer, "required triangles")?;
-                    let numbers = bytes.chunks_exact(widths.integer);
-                    required.extend(numbers.map(|number| widths.order.whole(number)));
+                    for list in required.iter_mut().filter(|list| list.keyword == keyword) {
+                        let what = format!("{}s", list.word);
+                        let bytes = items(cursor, count, widths.integer, &what)?;
+                        let numbers = bytes.chunks_exact(widths.integer);
+                        list.numbers.extend(numbers.map(|number| widths.order.whole(number)));
+                    }
                 }
                 8..=10 | 30 | 33 | 49 | 86..=87 | 96..=103 => {
                     if integer(cursor, widths, widths.integer, "a count")? > 0 {
@@ -169,21 +171,34 @@ impl FormatReader for MeditBinary {
         for list in &lists {
             elements(list, widths, visitor)?;
         }
-        lists.retain(|list| list.kind == CellKind::Triangle);
-        let size = 4 * widths.integer;
-        let counts: Vec<u64> = lists.iter().map(|list| (list.bytes.len() / size) as u64).collect();
-        send_required_corners(required, &counts, visitor, |list, index| {
-            let List { cursor, bytes, .. } = &lists[list];
-            let at = index as usize * size;
-            let mut numbers = bytes[at..at + size].chunks_exact(widths.integer);
-            let numbers =
-                [(); 4].map(|()| numbers.next().map_or(0, |own| widths.order.signed(own)));
-            let place = Cursor::at_byte_offset(cursor.source, cursor.last_taken() + at);
-            Ok((place, numbers.map(|number| u64::try_from(number).unwrap_or(0)), numbers[3]))
-        })?;
+        for list in required {
+            send_listed(list, &lists, widths, visitor)?;
+        }
         let numbers = CoordinateEncoding::adjacent(order, widths.precision);
         Ok(CoordinateStorage::in_place(Format::MeditBinary, numbers))
     }
+}
+
+/// Visits the elements of a list of numbers. `lists` are all lists of elements.
+fn send_listed(
+    list: NumberList,
+    lists: &[List<'_>],
+    widths: Widths,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
+    let kind = list.kind;
+    let own: Vec<&List<'_>> = lists.iter().filter(|own| own.kind == kind).collect();
+    let size = (kind.nodes() + 1) * widths.integer;
+    let counts: Vec<u64> = own.iter().map(|list| (list.bytes.len() / size) as u64).collect();
+    list.send(&counts, visitor, |list, index| {
+        let List { cursor, bytes, .. } = own[list];
+        let at = index as usize * size;
+        let mut numbers = bytes[at..at + size].chunks_exact(widths.integer);
+        let numbers = [(); 4].map(|()| numbers.next().map_or(0, |own| widths.order.signed(own)));
+        let place = Cursor::at_byte_offset(cursor.source, cursor.last_taken() + at);
+        let nodes = numbers.map(|number| u64::try_from(number).unwrap_or(0));
+        Ok((place, nodes, numbers[kind.nodes()]))
+    })
 }
 
 /// Takes a signed whole number of `size` bytes, 4 or 8. Messages call the number `what`.

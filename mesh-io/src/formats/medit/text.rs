@@ -1,8 +1,8 @@
 //! Medit's `.mesh`, as text.
 //!
 //! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and the documentation of
-//! mmg and libMeshb. Corners, required vertices, and the vertices of edges and required triangles stay fixed. Required
-//! edges and ridges are not read, as both are listed among the edges.
+//! mmg and libMeshb. Corners, required vertices, and the vertices of edges and required triangles stay fixed. Vertices of
+//! required edges and ridges do not slide either.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -10,7 +10,7 @@ use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::medit::beside::report_solution;
-use crate::formats::medit::required::send_required_corners;
+use crate::formats::medit::required::NumberList;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, quoted};
@@ -75,7 +75,7 @@ impl FormatReader for Medit {
         report_solution(source, visitor);
         let cursor = &mut Cursor::new(source).with_syntax(Syntax::WORDS);
         let mut lists: Vec<List<'_>> = Vec::new();
-        let mut required = Vec::new();
+        let mut required = NumberList::all();
         let mut dimension = 2;
         let mut vertices_seen = false;
         while cursor.next_word() {
@@ -109,7 +109,12 @@ impl FormatReader for Medit {
                         return Err(volume(cursor, &quoted(keyword)));
                     }
                 }
-                b"RequiredTriangles" => numbers(cursor, &mut required)?,
+                keyword if required.iter().any(|list| list.name.as_bytes() == keyword) => {
+                    let is_own = |list: &&mut NumberList| list.name.as_bytes() == keyword;
+                    for list in required.iter_mut().filter(is_own) {
+                        numbers(cursor, list)?;
+                    }
+                }
                 keyword if !is_keyword(keyword) => {
                     let problem = format!("`{}` stands where a keyword should", quoted(keyword));
                     let remedy = "Correct the count of the preceding list, or write the mesh again";
@@ -144,37 +149,50 @@ impl FormatReader for Medit {
             let problem = "it has no list of Vertices";
             return Err(source.error(problem, "Save the mesh again"));
         }
-        lists.retain(|list| list.kind == CellKind::Triangle);
-        let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
-        // The next triangle to be read: the index of its list, and its index in the list.
-        let mut next = (0, 0);
-        send_required_corners(required, &counts, visitor, |list, index| {
-            if next.0 != list {
-                next = (list, 0);
-            }
-            let List { cursor, count, .. } = &mut lists[list];
-            loop {
-                cursor.row(next.1, *count, "elements")?;
-                let triangle = |cursor: &mut Cursor<'_>| element(cursor, CellKind::Triangle);
-                let (nodes, reference) = cursor.item(triangle, &mut None)?;
-                next.1 += 1;
-                if next.1 > index {
-                    return Ok((cursor.clone(), nodes, reference));
-                }
-            }
-        })?;
+        for list in required {
+            let own: Vec<List<'_>> =
+                lists.iter().filter(|own| own.kind == list.kind).cloned().collect();
+            send_listed(list, own, visitor)?;
+        }
         Ok(CoordinateStorage::in_place(Format::Medit, CoordinateEncoding::TEXT))
     }
 }
 
-/// Reads the list `RequiredTriangles`: the list's length, followed by one triangle number per row.
-fn numbers(cursor: &mut Cursor<'_>, numbers: &mut Vec<u64>) -> Result<(), ReadError> {
-    let count = value(cursor, "the number of required triangles")?;
+/// Reads a list of numbers: the list's length, followed by one number of a triangle or edge per row.
+fn numbers(cursor: &mut Cursor<'_>, list: &mut NumberList) -> Result<(), ReadError> {
+    let items = format!("{}s", list.word);
+    let count = value(cursor, &format!("the number of {items}"))?;
     for done in 0..count {
-        cursor.row(done, count, "required triangles")?;
-        numbers.push(cursor.integer("the number of a triangle")?);
+        cursor.row(done, count, &items)?;
+        list.numbers.push(cursor.integer(format_args!("the number of a {}", list.kind.name()))?);
     }
     Ok(())
+}
+
+/// Visits the elements of a list of numbers. `lists` are the lists of elements of their kind.
+fn send_listed(
+    list: NumberList,
+    mut lists: Vec<List<'_>>,
+    visitor: &mut dyn MeshVisitor,
+) -> Result<(), ReadError> {
+    let counts: Vec<u64> = lists.iter().map(|list| list.count).collect();
+    let kind = list.kind;
+    // The next element to be read: the index of its list, and its index in the list.
+    let mut next = (0, 0);
+    list.send(&counts, visitor, |list, index| {
+        if next.0 != list {
+            next = (list, 0);
+        }
+        let List { cursor, count, .. } = &mut lists[list];
+        loop {
+            cursor.row(next.1, *count, "elements")?;
+            let (nodes, reference) = cursor.item(|cursor| element(cursor, kind), &mut None)?;
+            next.1 += 1;
+            if next.1 > index {
+                return Ok((cursor.clone(), nodes, reference));
+            }
+        }
+    })
 }
 
 /// Returns whether a keyword names a list of elements with mid-side nodes, such as `TrianglesP2`.
