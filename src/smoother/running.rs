@@ -207,26 +207,24 @@ impl Smoother<'_> {
         let swept = f(best_sweep);
         let mut problem = over_all.problem.clone();
         stages.set_targets_at(&mut problem, &ended.positions)?;
-        let improving =
+        let before_stage = match options.improve_worst {
+            Some(_) => paced::copied(&ended.positions).await,
+            None => Vec::new(),
+        };
+        let mut improving =
             Improvement::after(&mut ended, options, &problem, stages.bounds(), observe).await;
+        let (mut points, mut returned) = self.as_stored(options, &stages, &ended.positions).await?;
+        if let Some(improving) = &mut improving {
+            let without = self.as_stored(options, &stages, &before_stage).await?;
+            let [old, new] = [&without.0, &points];
+            let old = self.problem.normalized(old, Vec::new()).await;
+            let new = self.problem.normalized(new, Vec::new()).await;
+            if !improving.holds_as_stored(&problem, &old, &new).await {
+                (points, returned) = without;
+                ended.positions = before_stage;
+            }
+        }
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
-        let mut points = self.problem.in_unit_of(&self.mesh, &ended.positions).await;
-        stages.slide_into(&mut points);
-        if !matches!(options.stored, Precision::Double) {
-            paced::for_each_chunk(points.as_flattened_mut(), CHUNK, |_, coordinates| {
-                coordinates.iter_mut().for_each(|x| *x = options.stored.rounded(*x));
-            })
-            .await;
-        }
-        let stored = Some(options.stored);
-        let mut returned = self.certified(&mut points, stored).await?;
-        // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
-        let mut low = usize::from(options.keep_altitude);
-        let guard = if low > 0 { self.final_guard(options).await } else { f64::INFINITY };
-        while low > 0 {
-            low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
-            returned += low + self.certified(&mut points, stored).await?;
-        }
         // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
         let is_as_swept =
             returned == 0 && self.sliding.is_none() && matches!(options.stored, Precision::Double);
@@ -309,6 +307,34 @@ impl Smoother<'_> {
             device_fault: ended.fault,
             smooth: Duration::ZERO,
         })
+    }
+
+    /// Returns the points of normalized positions as they are stored: in the unit of the mesh, rounded, and with vertices set
+    /// back until no triangle is inverted or breaks the bound of altitudes. Returns the number of vertices set back too.
+    async fn as_stored(
+        &self,
+        options: &Options,
+        stages: &Stages<'_>,
+        positions: &[DVec2],
+    ) -> Result<(Vec<[f64; 2]>, usize), MeshError> {
+        let mut points = self.problem.in_unit_of(&self.mesh, positions).await;
+        stages.slide_into(&mut points);
+        if !matches!(options.stored, Precision::Double) {
+            paced::for_each_chunk(points.as_flattened_mut(), CHUNK, |_, coordinates| {
+                coordinates.iter_mut().for_each(|x| *x = options.stored.rounded(*x));
+            })
+            .await;
+        }
+        let stored = Some(options.stored);
+        let mut returned = self.certified(&mut points, stored).await?;
+        // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
+        let mut low = usize::from(options.keep_altitude);
+        let guard = if low > 0 { self.final_guard(options).await } else { f64::INFINITY };
+        while low > 0 {
+            low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
+            returned += low + self.certified(&mut points, stored).await?;
+        }
+        Ok((points, returned))
     }
 
     /// Returns whether f by a metric, with the areas of the vertices at `points`, is lower than f of the mesh. A run

@@ -25,7 +25,8 @@ pub(crate) struct Improvement {
     badness: Badness,
     /// Number of vertices that the stage moved.
     vertices: usize,
-    /// Largest badness of a movable triangle before the stage.
+    /// Largest badness of a movable triangle before the stage, at positions as they are stored. Infinite until
+    /// [`holds_as_stored`](Self::holds_as_stored) evaluates it.
     worst: f64,
     /// Objective by the base metric at the start and at the end of the stage.
     pub(crate) f: [f64; 2],
@@ -50,7 +51,6 @@ impl Improvement {
         let sweep = ended.history.len() as u32 - 1;
         let RunEnd { positions, stop, .. } = ended;
         let before = objective(base, problem, positions).await;
-        let worst_before = worst_movable(problem, badness, positions).await;
         let worst_shape = worst_movable(problem, Badness(WorstBy::Imr), positions).await;
         let rules = MoveConstraints {
             badness,
@@ -73,7 +73,25 @@ impl Improvement {
             }
         }
         let vertices = passes.moved();
-        Some(Self { badness, vertices, worst: worst_before, f: [before, f] })
+        Some(Self { badness, vertices, worst: f64::INFINITY, f: [before, f] })
+    }
+
+    /// Compares the worst triangle at positions as they are stored, without the stage and with it. If the stage has not made
+    /// the worst triangle better, because rounding costs more than the stage gained, the stage counts as undone, and the result
+    /// is false.
+    pub(crate) async fn holds_as_stored(
+        &mut self,
+        problem: &Problem,
+        without: &[DVec2],
+        with: &[DVec2],
+    ) -> bool {
+        self.worst = worst_movable(problem, self.badness, without).await;
+        let holds =
+            self.vertices > 0 && worst_movable(problem, self.badness, with).await < self.worst;
+        if !holds {
+            (self.vertices, self.f[1]) = (0, self.f[0]);
+        }
+        holds
     }
 
     /// Returns whether the worst triangle is better than in the mesh before the run.

@@ -2,11 +2,14 @@
 
 use crate::{backends, distorted, name, plate, run, with_points};
 use gpu_smooth::{
-    Backend, Mesh, Metric, Options, Outcome, Phase, Progress, Slide, Smoother, Stop, Stopping,
-    Targets, measure::Change, options::WorstBy,
+    Backend, Guard, Mesh, Metric, Options, Outcome, Phase, Progress, Slide, Smoother, Stop,
+    Stopping, Targets,
+    measure::Change,
+    options::WorstBy,
+    precision::{Precision, Rounding},
 };
 use std::ops::ControlFlow;
-use support::check;
+use support::{SplitMix64, check};
 
 /// Returns the smallest angle of a triangle in degrees, by the law of cosines.
 fn least_angle([p, q, r]: [[f64; 2]; 3]) -> f64 {
@@ -226,4 +229,61 @@ fn a_triangle_whose_corners_may_slide_is_not_stuck() {
     let slide = Slide { corner_angle: 20.0, ..Slide::default() };
     assert_eq!(smoother.set_slide(Some(&slide)).unwrap(), 1);
     assert_eq!(stuck(&smoother), 0);
+}
+
+/// Rounds to five significant digits.
+pub(crate) const FIVE_DIGITS: Precision = Precision::Custom(Rounding {
+    name: "five digits",
+    round: |x| format!("{x:.4e}").parse().unwrap_or(x),
+    error: |size| 1e-4 * size,
+});
+
+/// Rounding may cost more than the stage gains. The worst triangle then stays as the sweeps left it.
+#[test]
+fn an_improvement_that_rounding_undoes_is_not_written() {
+    let (mut improved, mut undone) = (0, 0);
+    let mut random = SplitMix64::new(5);
+    let plate = support::perturb_random(&plate(300), 0.3, 3);
+    for case in 0..16 {
+        let mut mesh = plate.clone();
+        // In every second mesh, the worst triangles surround a vertex in a rhombus that is a few units of the last digit
+        // high.
+        if case % 2 == 0 {
+            let first = mesh.points.len() as u32;
+            let mut height = || random.range(0.03, 0.09);
+            let rhombus = [[1.0, 0.0], [0.0, height()], [-1.0, 0.0], [0.0, -height()], [0.1, 0.0]];
+            mesh.points.extend(rhombus.map(|[x, y]| [x + 9.0, y]));
+            mesh.triangles.extend((0..4).map(|k| [first + k, first + (k + 1) % 4, first + 4]));
+        }
+        for x in mesh.points.as_flattened_mut() {
+            *x = FIVE_DIGITS.rounded(*x + 300.0);
+        }
+        if !check::is_ccw(&mesh) {
+            continue;
+        }
+        let smoother = Smoother::new(&mesh).unwrap();
+        let usual = Options { stored: FIVE_DIGITS, guard: Guard::Worst, ..Options::default() };
+        let without = run(&smoother, &usual, &Backend::Cpu);
+        for by in [WorstBy::Imr, WorstBy::MinAngle] {
+            let options = Options { improve_worst: Some(by), ..usual.clone() };
+            let outcome = run(&smoother, &options, &Backend::Cpu);
+            let told = outcome.improved.unwrap();
+            let label = format!("case {case}: {told:?}");
+            let [before, after] = [&without, &outcome].map(|o| worst(&smoother, &o.points, by));
+            let is_no_worse = match by {
+                WorstBy::Imr => after <= before * (1.0 + 1e-12),
+                _ => after >= before * (1.0 - 1e-12),
+            };
+            assert!(is_no_worse, "{label}: {before} {after}");
+            match told.vertices {
+                0 => {
+                    assert_eq!(outcome.points, without.points, "{label}");
+                    assert_eq!(told.worst[0], told.worst[1], "{label}");
+                    undone += 1;
+                }
+                _ => improved += 1,
+            }
+        }
+    }
+    assert!(improved > 0 && undone > 0, "{improved} improved, {undone} undone");
 }
