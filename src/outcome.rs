@@ -85,6 +85,9 @@ pub struct Outcome {
     /// The result of sliding; `None` if no vertex could slide; see
     /// [`Smoother::set_slide`](crate::Smoother::set_slide).
     pub slid: Option<Slid>,
+    /// The work of the floor under the worst triangles. `None` if no shape was worse after the sweeps than before the run,
+    /// or if the options or the mesh have another aim; see [`Floored`].
+    pub floored: Option<Floored>,
     /// The result of improving the worst triangles; `None` without
     /// [`Options::improve_worst`](crate::Options::improve_worst).
     pub improved: Option<Improved>,
@@ -108,6 +111,44 @@ pub struct Improved {
     pub stuck: usize,
     /// f by the base metric, after the last sweep and in [`Outcome::points`].
     pub f: [f64; 2],
+}
+
+/// The work of the floor under the worst triangles after the last sweep.
+///
+/// A run with the default metric, method and guard, without a goal, targets and
+/// [`Options::improve_worst`](crate::Options::improve_worst), ends with no smaller angle and no larger inverse mean ratio
+/// than the mesh had before the run. Only triangles with a corner that is free or slides count, in the coordinates as stored
+/// ([`Options::stored`](crate::Options::stored)). If the sweeps end with a worse triangle, the free vertices around the
+/// triangle take Newton steps by penalties on its angles and its inverse mean ratio, on the CPU. Vertices for which these
+/// steps do not suffice go back to their positions before the run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Floored {
+    /// Number of vertices that the floor moved elsewhere.
+    pub moved: usize,
+    /// Number of vertices that went back to their positions before the run. These are all vertices that had moved if the run
+    /// gained nothing beside its floor; [`Outcome::points`] are then the mesh before the run.
+    pub returned: usize,
+    /// Smallest angle of a triangle that can move, in degrees: before the run, after the last sweep, and in
+    /// [`Outcome::points`].
+    pub least_angle: [f64; 3],
+    /// Largest inverse mean ratio of a triangle that can move, likewise.
+    pub worst_imr: [f64; 3],
+    /// f by the base metric, after the last sweep and in [`Outcome::points`].
+    pub f: [f64; 2],
+}
+
+impl Floored {
+    /// Returns the work of a floor that set back all vertices that the sweeps had moved, where f is `f`.
+    pub(crate) fn undone(self, vertices: usize, f: f64) -> Self {
+        let undone = |[before, swept, _]: [f64; 3]| [before, swept, before];
+        Self {
+            moved: 0,
+            returned: vertices,
+            least_angle: undone(self.least_angle),
+            worst_imr: undone(self.worst_imr),
+            f: [self.f[0], f],
+        }
+    }
 }
 
 /// The result of sliding in a run.

@@ -22,7 +22,7 @@ _METHODS = (
 )
 _PROPERTIES = (
     "axes", "metric", "has_target", "engine", "stop", "fault", "sweeps", "corrections", "best_sweep", "movable_f", "remaining",
-    "held_back", "slid", "prepare_seconds", "seconds",
+    "held_back", "slid", "floored", "prepare_seconds", "seconds",
 )
 
 
@@ -155,6 +155,15 @@ class Result:
     def slid(self) -> int:
         """Number of vertices that slid along lines."""
         return self._outcome.slid
+
+    @property
+    def floored(self) -> int:
+        """Number of vertices that moved on or went back because the sweeps had made the worst triangles worse.
+
+        By default, a run ends with no smaller angle and no larger inverse mean ratio than before, among the triangles that can
+        move. 0 if the sweeps made neither worse, and with other schemes, methods and guards, with a target or a goal.
+        """
+        return self._outcome.floored
 
     @property
     def prepare_seconds(self) -> float:

@@ -205,6 +205,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         "worst" lets no triangle become worse than the worst one before the run.
     improve_worst : bool or {"imr", "min-angle", "altitude"}, default False
         Improve the worst triangles after the last sweep, by the inverse mean ratio (also True), angle or altitude.
+        "min-angle" is not for solvers that need orthogonal meshes, as angles above 90 degrees become more.
     max_move : float, optional
         Largest distance of a vertex from its place, in mean lengths of its edges.
     keep_altitude : bool, default False

@@ -177,6 +177,12 @@ impl Outcome {
         self.outcome.slid.map_or(0, |slid| slid.moved)
     }
 
+    /// Number of vertices that moved on or went back because the sweeps had made the worst triangles worse.
+    #[getter]
+    fn floored(&self) -> usize {
+        self.outcome.floored.map_or(0, |floored| floored.moved + floored.returned)
+    }
+
     /// Duration of the preparation of the mesh in seconds.
     #[getter]
     fn prepare_seconds(&self) -> f64 {

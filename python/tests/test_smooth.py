@@ -177,6 +177,25 @@ def test_coincident_vertices_of_two_parts_slide_together() -> None:
     assert np.abs(result.points[middle] - points[middle]).max() > 0.01
 
 
+@pytest.mark.parametrize("engine", ["cpu", "gpu"])
+def test_right_triangles_do_not_become_sharp_by_default(engine: Any) -> None:
+    # Diagonals alternate from row to row. Sweeps would leave an angle of 36 degrees, and no vertex can move without an
+    # angle below 45 degrees.
+    points, triangles = lattice(12, by=0.0)
+    side = 12
+    corner = (np.arange(side) + (side + 1) * np.arange(1, side, 2)[:, None]).ravel()
+    odd = np.isin(triangles[:, 0], corner)
+    other = np.concatenate([
+        np.stack([corner, corner + 1, corner + side + 1], axis=1),
+        np.stack([corner + 1, corner + side + 2, corner + side + 1], axis=1),
+    ])
+    triangles = np.concatenate([triangles[~odd], other])
+    result = gpu_smooth.run(points, triangles, engine=engine)
+    assert result.floored == 121 and np.array_equal(result.points, points)
+    sharp = gpu_smooth.run(points, triangles, engine=engine, method="multilevel")
+    assert sharp.floored == 0 and sharp.quality_after.min_angle < 40.0
+
+
 def test_targets_may_be_sizes_tensors_and_values_of_another_mesh(mesh: Mesh) -> None:
     points, triangles = mesh
     sizes = 1.0 + points[:, 0]

@@ -53,7 +53,7 @@ impl Problem {
     }
 
     /// Returns the point of a normalized position, in the coordinates of the mesh.
-    fn point(&self, position: DVec2) -> [f64; 2] {
+    pub(crate) fn point(&self, position: DVec2) -> [f64; 2] {
         let point = (self.layout.center + position / self.layout.scale).to_array();
         self.projection.map_or(point, |_| Mercator::point(point))
     }

@@ -90,7 +90,7 @@ impl<T: Real> Dual<T> {
 
     /// Returns `f(self)` by the chain rule, from the value of f and its first two derivatives at `self`.
     #[inline(always)]
-    fn chain(self, f: T, df: T, ddf: T) -> Self {
+    pub(crate) fn chain(self, f: T, df: T, ddf: T) -> Self {
         let [x, y] = self.gradient;
         let [xx, xy, yy] = self.hessian;
         Self {

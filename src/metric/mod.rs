@@ -7,6 +7,7 @@ mod corner;
 mod dual;
 mod edge;
 mod edge_slopes;
+mod hinge;
 mod imr;
 mod properties;
 mod rms;
@@ -27,6 +28,7 @@ pub use dual::{Dual, Real};
 #[cfg(test)]
 pub(crate) use edge_slopes::Given;
 pub(crate) use edge_slopes::{EdgeSlopes, Own};
+pub(crate) use hinge::Hinge;
 #[doc(hidden)]
 pub use properties::Properties;
 pub use scheme::Scheme;

@@ -5,7 +5,8 @@
 pub enum WorstBy {
     /// Largest inverse mean ratio, after target maps are applied; minimized.
     Imr,
-    /// Least angle, after target maps are applied; maximized.
+    /// Least angle, after target maps are applied; maximized. Angles above 90 degrees become more, so the measure is not
+    /// for solvers that need orthogonal meshes.
     MinAngle,
     /// Least altitude, in coordinates; maximized. The least altitude bounds the time step of explicit solvers.
     Altitude,

@@ -1,6 +1,7 @@
 //! A prepared mesh, and its runs.
 
 mod backend;
+mod floor;
 mod goal;
 #[cfg(feature = "gpu")]
 mod on_device;

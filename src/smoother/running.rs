@@ -10,7 +10,7 @@ use crate::error::{MeshError, SmoothError};
 use crate::layout::Problem;
 use crate::metric::{Corner, Ideal, Metric};
 use crate::options::{Feature, Goal, Options};
-use crate::outcome::{DeviceFault, GoalOutcome, Improved, Outcome};
+use crate::outcome::{DeviceFault, Floored, GoalOutcome, Improved, Outcome};
 use crate::parallel::paced;
 use crate::precision::Precision;
 use crate::quality::Quality;
@@ -234,10 +234,33 @@ impl Smoother<'_> {
                 Some(base.ideal_squared() + mean_excess(base, &problem, &ended.positions).await)
             }
         };
-        let judged = self.problem.normalized(&points, ended.positions).await;
+        let mut judged = self.problem.normalized(&points, ended.positions).await;
         stages.set_targets_at(&mut problem, &judged)?;
         let problem = &problem;
-        let written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
+        // f of the sweeps as stored, before the floor trades some of it for better triangles.
+        let rounded = base.ideal_squared() + mean_excess(base, problem, &judged).await;
+        let (mut written, mut floored, mut all_moved) = (rounded, None, 0);
+        if let Some(floor) = self.lacking_floor(options, &points).await {
+            let (was_canceled, sweep) = (ended.stop == Stop::Canceled, evaluations as u32 - 1);
+            let now = Progress { phase: Phase::Improving, sweep, f: rounded };
+            // A canceled run ends soon, but not with a worse triangle than before.
+            let goes_on = || {
+                let goes_on = was_canceled || observe(&now).is_continue();
+                if !goes_on {
+                    ended.stop = Stop::Canceled;
+                }
+                goes_on
+            };
+            let bounds = stages.bounds();
+            let swept = points.iter().zip(&self.mesh.points).filter(|(to, from)| to != from);
+            all_moved = swept.count();
+            let raised =
+                floor.raise(options, problem, bounds, &judged, &mut points, goes_on).await?;
+            judged = self.problem.normalized(&points, judged).await;
+            written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
+            floored =
+                Some(Floored { f: [rounded, written].map(|f| over_all.f(base, f)), ..raised });
+        }
         let mut gains =
             initial - written > NOISE * initial + ROUNDING && self.is_lower(base, &points).await?;
         if let (false, Some(improving)) = (gains, &improving) {
@@ -245,16 +268,18 @@ impl Smoother<'_> {
         }
         // In a smaller gain, the errors of f on a device would be a considerable share.
         let lost = match initial - swept > 100.0 * JITTER * initial {
-            true => ((written - swept) / (initial - swept)).clamp(0.0, 1.0),
+            true => ((rounded - swept) / (initial - swept)).clamp(0.0, 1.0),
             false => 0.0,
         };
         if !gains {
             points.clone_from(&self.mesh.points);
             returned = 0;
+            floored = floored
+                .map(|floored: Floored| floored.undone(all_moved, over_all.f(base, initial)));
         }
         // A device sums in single precision, and so cannot find a gain below the error of its f.
         let error = match improving {
-            None => (exact.unwrap_or(written) - swept).abs() / written.max(MIN_SCALE),
+            None => (exact.unwrap_or(rounded) - swept).abs() / written.max(MIN_SCALE),
             Some(_) => 0.0,
         };
         let projection_error = self.projection_error(&points).await;
@@ -303,6 +328,7 @@ impl Smoother<'_> {
             goal,
             returned,
             slid,
+            floored,
             improved,
             device_fault: ended.fault,
             smooth: Duration::ZERO,
@@ -419,6 +445,7 @@ impl Smoother<'_> {
             goal: None,
             returned: 0,
             slid: None,
+            floored: None,
             improved: None,
             device_fault: None,
             smooth: start.elapsed(),

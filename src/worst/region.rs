@@ -12,6 +12,7 @@ use crate::patch::{
 };
 use crate::run::SweepParams;
 use crate::worst::badness::Badness;
+use crate::worst::penalties::{FloorObjective, Penalties};
 
 /// Binary logarithms of the exponents k of the p-norms, in the order in which a region lowers the norms.
 const DOUBLINGS: [u32; 3] = [3, 5, 7];
@@ -126,6 +127,27 @@ impl<'a> Region<'a> {
             }
         }
         Some(self.vertices.into_iter().zip(self.positions).collect())
+    }
+
+    /// Moves the vertices by Newton steps that lower the penalties on triangles beyond their limits. Each vertex is visited
+    /// `visits` times at most. Returns the new positions of moved vertices with their indices in the problem.
+    pub(crate) async fn descend(mut self, penalties: Penalties, visits: u32) -> Vec<(u32, DVec2)> {
+        let count = self.vertices.len();
+        let before = self.positions[..count].to_vec();
+        for _ in 0..visits {
+            let mut most = 0.0_f64;
+            for v in 0..count {
+                let patch = &self.patch(v);
+                let objective = FloorObjective { patch, penalties };
+                most = most.max(self.step(v, patch, &objective, f64::INFINITY));
+                pause().await;
+            }
+            if most < SETTLED {
+                break;
+            }
+        }
+        let moves = self.vertices.into_iter().zip(self.positions).zip(before);
+        moves.filter(|((_, to), from)| to != from).map(|(moved, _)| moved).collect()
     }
 
     /// Returns the triangles around a vertex, with the positions of their corners.

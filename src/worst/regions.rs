@@ -2,9 +2,13 @@
 
 use crate::layout::Problem;
 
-/// Returns the free vertices of the given triangles and of `rings` rings around them. Each edge-connected region has
-/// its own list, in ascending order.
-pub(crate) fn around(problem: &Problem, triangles: &[u32], rings: u32) -> Vec<Vec<u32>> {
+/// Returns the free vertices among `seeds` and in `rings` rings around them. Each edge-connected region has its own list,
+/// in ascending order.
+pub(crate) fn around(
+    problem: &Problem,
+    seeds: impl IntoIterator<Item = u32>,
+    rings: u32,
+) -> Vec<Vec<u32>> {
     let free = problem.free_count() as u32;
     let mut found = Vec::new();
     let mut is_in = vec![false; free as usize];
@@ -13,9 +17,7 @@ pub(crate) fn around(problem: &Problem, triangles: &[u32], rings: u32) -> Vec<Ve
             found.push(v);
         }
     };
-    for &t in triangles {
-        problem.triangles()[t as usize].into_iter().for_each(|v| add(v, &mut found));
-    }
+    seeds.into_iter().for_each(|v| add(v, &mut found));
     let mut ring = 0..found.len();
     for _ in 0..rings {
         for at in ring.clone() {

@@ -109,7 +109,8 @@ impl<'a> Passes<'a> {
         let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MAX_WORST);
         let bad = worst_triangles(problem, badness, count).await;
         let here = &*positions;
-        let regions = around(problem, &bad, RINGS);
+        let corners = bad.iter().flat_map(|&t| problem.triangles()[t as usize]);
+        let regions = around(problem, corners, RINGS);
         let improved = paced::map_futures(regions, |vertices| async {
             Region::new(problem, rules, here, vertices).improve().await
         })

@@ -8,6 +8,7 @@ mod coloring;
 mod counts;
 mod fields;
 mod flat;
+mod floor;
 mod global;
 mod goals;
 mod guard;

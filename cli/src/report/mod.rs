@@ -2,6 +2,7 @@
 
 mod certificate;
 mod distinct;
+mod floored;
 mod histogram;
 mod improved;
 mod run;
@@ -12,6 +13,7 @@ mod versioned;
 
 pub(crate) use certificate::{Certificate, FileHash};
 pub(crate) use distinct::DistinctMeasures;
+pub(crate) use floored::FlooredReport;
 pub(crate) use histogram::{Histogram, histogram};
 pub(crate) use improved::ImprovedReport;
 pub(crate) use run::{

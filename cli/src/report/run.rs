@@ -11,7 +11,7 @@ use gpu_smooth::{
 use serde::Serialize;
 
 use crate::load::explain::BadTriangleReport;
-use crate::report::{Certificate, ImprovedReport, TargetReport};
+use crate::report::{Certificate, FlooredReport, ImprovedReport, TargetReport};
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -79,6 +79,9 @@ pub(crate) struct Report {
     /// Movement of vertices along lines; `None` without `--slide`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) slid: Option<SlideReport>,
+    /// Work of the floor under the worst triangles; `None` if the sweeps made no shape worse.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) floored: Option<FlooredReport>,
     /// Result of improving the worst triangles; `None` without `--improve-worst`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) improved: Option<ImprovedReport>,

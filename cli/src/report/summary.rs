@@ -42,6 +42,9 @@ impl Report {
         if let Some(slides) = self.slides() {
             let _ = writeln!(text, "{slides}");
         }
+        if let Some(floored) = &self.floored {
+            let _ = writeln!(text, "{}", floored.sentence());
+        }
         if let Some(improved) = &self.improved {
             let _ = writeln!(text, "{}", improved.sentence());
         }
@@ -319,7 +322,8 @@ impl Report {
             }
         };
         if self.sweeps > 0 && self.best_sweep == 0 && is_unchanged {
-            text.push_str("; no gain, so the mesh is written unchanged");
+            let but = if self.floored.is_some() { " without a worse triangle" } else { "" };
+            let _ = write!(text, "; no gain{but}, so the mesh is written unchanged");
         } else if self.best_sweep != self.sweeps {
             let _ = write!(text, "; written is the best state, after sweep {}", self.best_sweep);
         }

@@ -79,6 +79,7 @@ pub(super) fn report(
                 ready.sliding.as_ref().map_or((0, false), |own| (own.ends, own.has_weirs));
             SlideReport { ends, has_weirs, ..slid.into() }
         }),
+        floored: outcome.floored.map(Into::into),
         improved: outcome.improved.map(Into::into),
         max_move: request.max_move(),
         change: measured.change.into(),

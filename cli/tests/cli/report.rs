@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{disturbed, number, small};
+use super::{Folder, assert_holds, disturbed, number, small};
 use gpu_smooth::Metric;
 use serde_json::Value;
 
@@ -220,6 +220,53 @@ fn the_certificate_holds_of_the_files() {
     }
 }
 
+/// Returns the node and the element file of a lattice of right triangles, whose diagonals alternate from row to row. Any move
+/// makes an angle sharper.
+pub(super) fn right_triangles() -> [String; 2] {
+    let (mut node, mut ele) = ("81 2 0 0\n".to_owned(), "128 3 0\n".to_owned());
+    for v in 0..81 {
+        node += &format!("{} {} {}\n", v + 1, v % 9, v / 9);
+    }
+    for square in 0..64 {
+        let a = square / 8 * 9 + square % 8 + 1;
+        let [b, c, d] = [a + 1, a + 10, a + 9];
+        let cut = if square / 8 % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        for (half, [p, q, r]) in cut.into_iter().enumerate() {
+            ele += &format!("{} {p} {q} {r}\n", 2 * square + half + 1);
+        }
+    }
+    [node, ele]
+}
+
+#[test]
+fn a_run_by_default_tells_why_the_mesh_stays_as_it_was() {
+    let [node, ele] = right_triangles();
+    let folder = Folder::new(&[("right.node", &node), ("right.ele", &ele)]);
+    let run = folder.line("right out --engine cpu --report r.json").clean();
+    assert_holds(
+        &run.out,
+        &[
+            "no gain without a worse triangle, so the mesh is written unchanged",
+            "the sweeps left a least angle of 3",
+            "° (45.00° before)",
+            "; 49 vertices went back to end at 45.00°",
+        ],
+    );
+    let report = folder.json("r.json");
+    assert_eq!(report["floored"]["returned"], 49);
+    let [floored, after] = [&report["floored"], &report["after"]];
+    for [one, other] in [
+        [&floored["least_angle"][2], &after["min_angle"]],
+        [&floored["worst_imr"][2], &after["worst_imr"]],
+        [&floored["f"][1], &after["f"]["imr"]],
+    ] {
+        assert!((number(one) / number(other) - 1.0).abs() < 1e-12, "{one} and {other}");
+    }
+    let run = folder.line("right sharp --engine cpu --method multilevel --report r.json").clean();
+    assert!(!run.out.contains("the sweeps left"), "{}", run.out);
+    assert!(folder.json("r.json").get("floored").is_none());
+}
+
 /// Adds the path of each key of `value` to `found`: `[]` stands for the entries of a list of texts or objects, METRIC
 /// for the name of a metric.
 fn add_paths(path: &str, value: &Value, found: &mut BTreeSet<String>) {
@@ -257,6 +304,9 @@ fn every_key_of_a_report_is_documented_and_every_documented_key_is_in_a_report()
     std::fs::write(folder.path("bad.node"), node).unwrap();
     std::fs::write(folder.path("bad.ele"), ele).unwrap();
     assert_eq!(folder.line("convert in in.gr3 --lossy").code, Some(0));
+    let [node, ele] = right_triangles();
+    std::fs::write(folder.path("right.node"), node).unwrap();
+    std::fs::write(folder.path("right.ele"), ele).unwrap();
     let mut found = BTreeSet::new();
     for line in [
         "in out --engine gpu --history all",
@@ -267,6 +317,7 @@ fn every_key_of_a_report_is_documented_and_every_documented_key_is_in_a_report()
         "in out --continue r.ckpt",
         "in.gr3 out.gr3 --interpolate all",
         "bad out --untangle",
+        "right out",
     ] {
         let run = folder.line(&format!("{line} --report r.json --force"));
         assert_eq!(run.code, Some(0), "{line}: {}", run.err);

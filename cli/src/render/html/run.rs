@@ -37,6 +37,9 @@ pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliEr
     for choice in &done.report.choices {
         item("choice", choice);
     }
+    if let Some(floored) = &done.report.floored {
+        item("worst", &floored.sentence());
+    }
     if let Some(improved) = &done.report.improved {
         item("worst", &improved.sentence());
     }

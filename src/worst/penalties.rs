@@ -1,0 +1,156 @@
+//! The penalties that bring triangles back within limits of angle and inverse mean ratio.
+
+use crate::metric::{Corner, Dual, Hinge, Real};
+use crate::patch::{FanCorner, FanPatch, Objective};
+use crate::worst::shapes::WorstShapes;
+
+/// Factor of the least angle, and share of the worst squared inverse mean ratio's excess over 1, that give the limits of
+/// the penalties. The limits are a little stricter than the shapes that must not become worse, as a penalty is still zero at
+/// its limit.
+const ANGLE_RESERVE: f64 = 1.01;
+const SQUARE_RESERVE: f64 = 0.98;
+/// Width of the cubic part of the penalties, as a share of their limits.
+const RAMP: f64 = 0.05;
+/// Weight of the penalties in the first two rounds. The weight is tripled in every second round, so that most meshes end
+/// near the least f.
+const FIRST_WEIGHT: f64 = 1000.0;
+/// Number of rounds after which the weight becomes tenfold in each round, up to the largest weight. Only triangles that
+/// can be no better than the limit need such weights.
+const SLOW_ROUNDS: u32 = 8;
+const LAST_WEIGHT: f64 = 1e12;
+
+/// The function of a triangle that vertices lower while the floor brings triangles back: imr² + weight (Σ ψ(cot) +
+/// ψ(imr²)), with a penalty ψ on the cotangents of the three angles and on imr², the squared inverse mean ratio.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Penalties {
+    cotangent: Hinge,
+    square: Hinge,
+    weight: f64,
+}
+
+impl Penalties {
+    /// Returns the penalties of the first round, for triangles that must not be worse than `worst`.
+    pub(crate) fn new(worst: WorstShapes) -> Self {
+        let angle = ANGLE_RESERVE * worst.least_angle().to_radians();
+        let hinge = |limit: f64| Hinge { limit, ramp: RAMP * limit };
+        Self {
+            cotangent: hinge(angle.tan().recip()),
+            square: hinge(1.0 + SQUARE_RESERVE * (worst.imr * worst.imr - 1.0)),
+            weight: FIRST_WEIGHT,
+        }
+    }
+
+    /// Returns the limits of the penalties.
+    pub(crate) fn limits(&self) -> WorstShapes {
+        WorstShapes { cotangent: self.cotangent.limit, imr: self.square.limit.sqrt() }
+    }
+
+    /// Returns the penalties of a round, counted from 0.
+    pub(crate) fn in_round(self, round: u32) -> Self {
+        let (slow, fast) = (round.min(SLOW_ROUNDS) / 2, round.saturating_sub(SLOW_ROUNDS));
+        let weight = FIRST_WEIGHT * 3f64.powi(slow as i32) * 10f64.powi(fast as i32);
+        Self { weight: weight.min(LAST_WEIGHT), ..self }
+    }
+
+    fn square<T: Real>([a, b, c]: [T; 3]) -> T {
+        (a * a + b * b + c * c + 2.0) * (1.0 / 3.0)
+    }
+
+    fn of(&self, corner: &Corner<f64>) -> f64 {
+        let cotangents = corner.cotangents();
+        let square = Self::square(cotangents);
+        let angles: f64 = cotangents.iter().map(|&x| self.cotangent.of(x)).sum();
+        square + self.weight * (angles + self.square.of(square))
+    }
+
+    /// Returns the function with its derivatives by the vertex at which the edges of the triangle start.
+    fn expansion(&self, corner: &Corner<f64>) -> Dual {
+        let vertex = |edge: [f64; 2]| [0, 1].map(|axis| Dual::variable(edge[axis], axis, -1.0));
+        let (a, b) = (vertex(corner.a), vertex(corner.b));
+        let cotangents = Corner { a, b, ideal: corner.ideal }.cotangents();
+        let square = Self::square(cotangents);
+        let penalties = cotangents
+            .into_iter()
+            .fold(self.square.expansion(square), |sum, x| sum + self.cotangent.expansion(x));
+        square + penalties * self.weight
+    }
+}
+
+/// The sum of [`Penalties`] over a patch.
+pub(crate) struct FloorObjective<'a> {
+    pub(crate) patch: &'a FanPatch,
+    pub(crate) penalties: Penalties,
+}
+
+impl FloorObjective<'_> {
+    fn corners(&self, at: [f64; 2]) -> impl Iterator<Item = Corner<f64>> {
+        let seen = move |triangle: &FanCorner| triangle.in_plane(at.into(), self.patch.ideal);
+        self.patch.corners.iter().map(seen)
+    }
+}
+
+impl Objective<f64> for FloorObjective<'_> {
+    fn expansion(&self, at: [f64; 2]) -> Dual {
+        let add = |sum, corner| sum + self.penalties.expansion(&corner);
+        self.corners(at).fold(Dual::default(), add)
+    }
+
+    fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
+        (self.corners(to).map(|corner| self.penalties.of(&corner)).sum(), true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::metric::Ideal;
+
+    #[test]
+    fn derivatives_are_those_of_the_penalties() {
+        let worst = WorstShapes { cotangent: 1.2, imr: 1.1 };
+        let weight = |round: u32| Penalties::new(worst).in_round(round).weight;
+        assert_eq!([0, 1, 2, 8, 9, 99].map(weight), [1e3, 1e3, 3e3, 8.1e4, 8.1e5, 1e12]);
+        let penalties = Penalties::new(worst).in_round(3);
+        let ends = [[1.3, 0.1], [0.4, 0.9]].map(DVec2::from);
+        let corner = |x: f64, y: f64| {
+            FanCorner { ends, map: None }.in_plane(DVec2::new(x, y), Ideal::of_area(1.0))
+        };
+        // Both penalties act at the first place, and neither at the second.
+        let (h, mut sizes) = (1e-5, Vec::new());
+        for [x, y] in [[0.1, 0.4], [0.15, 0.0]] {
+            let value = |i: f64, j: f64| penalties.of(&corner(x + i * h, y + j * h));
+            let found = penalties.expansion(&corner(x, y));
+            let here = value(0.0, 0.0);
+            assert!((found.value - here).abs() < 1e-12 * here);
+            let size = found.hessian.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+            let (left, right) = (value(-1.0, 0.0), value(1.0, 0.0));
+            let (low, high) = (value(0.0, -1.0), value(0.0, 1.0));
+            let gradient = [(right - left) / (2.0 * h), (high - low) / (2.0 * h)];
+            let cross = value(1.0, 1.0) - value(1.0, -1.0) - value(-1.0, 1.0) + value(-1.0, -1.0);
+            let hessian = [right - 2.0 * here + left, 0.25 * cross, high - 2.0 * here + low];
+            for (got, want) in found.gradient.into_iter().zip(gradient) {
+                assert!((got - want).abs() < 1e-6 * size, "{got} {want}");
+            }
+            for (got, want) in found.hessian.into_iter().zip(hessian) {
+                assert!((got - want / (h * h)).abs() < 1e-3 * size, "{got} {want}");
+            }
+            sizes.push(here);
+        }
+        assert!(sizes[0] > 100.0 && sizes[1] < 2.0, "{sizes:?}");
+    }
+
+    #[test]
+    fn limits_are_a_little_better_than_the_worst_shapes() {
+        let worst = WorstShapes { cotangent: 1.0, imr: 1.25 };
+        let limits = Penalties::new(worst).limits();
+        assert!((limits.least_angle() - 45.45).abs() < 1e-9);
+        assert!((limits.imr.powi(2) - (1.0 + 0.98 * 0.5625)).abs() < 1e-12);
+        let none = Penalties::new(WorstShapes { cotangent: f64::INFINITY, imr: f64::INFINITY });
+        assert_eq!(none.limits().imr, f64::INFINITY);
+        assert!(
+            none.of(&Corner { a: [1.0, 0.0], b: [0.0, 1e-3], ideal: Ideal::of_area(1.0) }) > 0.0
+        );
+    }
+}
