@@ -1,6 +1,7 @@
 //! The command `gpu-smooth try`: its rows are those of runs, and the best row suits the mesh.
 
 use super::output::INVERTED;
+use super::report::right_triangles;
 use super::{Folder, assert_holds, number, small};
 use serde_json::Value;
 use support::SplitMix64;
@@ -93,6 +94,25 @@ fn the_best_row_keeps_a_boundary_layer_and_improves_an_even_mesh() {
     let tried_even = tried(&folder, "even");
     assert_eq!(tried_even["runs"][0]["keeps_mesh"], true, "{tried_even:#}");
     assert!(!best(&tried_even).contains(&"keep-shape"), "{tried_even:#}");
+}
+
+#[test]
+fn no_row_is_marked_where_every_run_makes_an_angle_sharper_or_moves_nothing() {
+    let [node, ele] = right_triangles();
+    let folder = Folder::new(&[("right.node", &node), ("right.ele", &ele)]);
+    let tried = tried(&folder, "right");
+    let rows = tried["runs"].as_array().unwrap();
+    for row in rows {
+        let [before, after] = [&tried["before"], &row["after"]];
+        let is_sharper = number(&after["min_angle"]) < number(&before["min_angle"]);
+        assert!(is_sharper || after["f"] == before["f"], "{row:#}");
+        assert_eq!(row["best"], false);
+    }
+    assert!(rows.iter().any(|row| number(&row["after"]["min_angle"]) < 44.0), "{tried:#}");
+    assert_eq!(tried["command"], Value::Null);
+    let text = folder.line("try right --engine cpu").out;
+    assert_holds(&text, &["no row helps: "]);
+    assert!(!text.contains('*'), "{text}");
 }
 
 #[test]

@@ -10,6 +10,8 @@ pub(super) const MAX_MOVE: f64 = 0.5;
 pub(super) const MAX_SIZE_CHANGE: f64 = 1.25;
 /// Two values of the worst imr within this factor count as equal.
 const EQUAL: f64 = 1.01;
+/// Share by which rounding may change the least angle or the worst imr of a mesh that keeps its worst element.
+const ROUNDING: f64 = 1e-9;
 /// If no run keeps the mesh, the best is one of the runs that move vertices at most this many times as far as any run.
 pub(super) const ABOUT_LEAST: f64 = 1.1;
 
@@ -27,8 +29,10 @@ pub(super) struct Best {
 pub(super) struct Gains {
     /// f by imr, before and after.
     f: [f64; 2],
-    /// The worst inverse mean ratio of the triangles with a free vertex, after the run.
-    worst_imr: f64,
+    /// The least angle in degrees, before and after.
+    least_angle: [f64; 2],
+    /// The worst inverse mean ratio of the triangles with a free vertex, before and after.
+    worst_imr: [f64; 2],
     /// Values that 19 of 20 vertices do not exceed: the move in lengths of an edge, and the factor of sizes.
     moved: f64,
     size: f64,
@@ -38,7 +42,8 @@ impl From<&Report> for Gains {
     fn from(report: &Report) -> Self {
         Self {
             f: [report.before.f["imr"], report.after.f["imr"]],
-            worst_imr: report.after.worst_movable_imr,
+            least_angle: [report.before.min_angle, report.after.min_angle],
+            worst_imr: [report.before.worst_movable_imr, report.after.worst_movable_imr],
             moved: report.change.moved.p95,
             size: report.change.size.p95,
         }
@@ -46,6 +51,15 @@ impl From<&Report> for Gains {
 }
 
 impl Gains {
+    /// Returns whether the run makes the mesh better in some way, and the worst element no worse: neither the least angle
+    /// nor the worst imr.
+    pub(super) fn helps(self) -> bool {
+        let Self { f, least_angle: angle, worst_imr: imr, .. } = self;
+        let keeps_worst =
+            angle[1] >= angle[0] * (1.0 - ROUNDING) && imr[1] <= imr[0] * (1.0 + ROUNDING);
+        keeps_worst && (f[1] < f[0] || angle[1] > angle[0] || imr[1] < imr[0])
+    }
+
     /// Returns whether the run lowers f, and leaves sizes and positions about as they are.
     pub(super) fn keeps_mesh(self) -> bool {
         let lowers = self.f[1] <= self.f[0];
@@ -53,20 +67,23 @@ impl Gains {
     }
 }
 
-/// Returns the best of the runs; `None` for a run that failed. Of the runs that keep the mesh, or of those that move
-/// vertices about as little as any, the best has the least worst imr, and if several are within 1 % of it, the least f.
+/// Returns the best of the runs that help, or `None` if no run helps. A run that failed is `None` in the list. Of the runs
+/// that keep the mesh, or of those that move vertices about as little as any, the best has the least worst imr, and if
+/// several are within 1 % of it, the least f.
 pub(super) fn best(runs: &[Option<Gains>]) -> Option<Best> {
-    let ended: Vec<(usize, Gains)> =
-        runs.iter().enumerate().filter_map(|(row, gains)| Some((row, (*gains)?))).collect();
-    let keeps_mesh = ended.iter().any(|(_, gains)| gains.keeps_mesh());
-    let least_move = least(ended.iter().map(|(_, gains)| gains.moved));
+    let helping = |(row, gains): (usize, &Option<Gains>)| {
+        gains.filter(|gains| gains.helps()).map(|gains| (row, gains))
+    };
+    let helping: Vec<(usize, Gains)> = runs.iter().enumerate().filter_map(helping).collect();
+    let keeps_mesh = helping.iter().any(|(_, gains)| gains.keeps_mesh());
+    let least_move = least(helping.iter().map(|(_, gains)| gains.moved));
     let is_candidate = |gains: &Gains| match keeps_mesh {
         true => gains.keeps_mesh(),
         false => gains.moved <= ABOUT_LEAST * least_move,
     };
-    let candidates = || ended.iter().filter(|(_, gains)| is_candidate(gains));
-    let least_imr = least(candidates().map(|(_, gains)| gains.worst_imr));
-    let equal = candidates().filter(|(_, gains)| gains.worst_imr <= EQUAL * least_imr);
+    let candidates = || helping.iter().filter(|(_, gains)| is_candidate(gains));
+    let least_imr = least(candidates().map(|(_, gains)| gains.worst_imr[1]));
+    let equal = candidates().filter(|(_, gains)| gains.worst_imr[1] <= EQUAL * least_imr);
     let (row, _) = equal.min_by(|(_, a), (_, b)| a.f[1].total_cmp(&b.f[1]))?;
     Some(Best { row: *row, keeps_mesh })
 }
@@ -80,7 +97,8 @@ mod tests {
     use super::*;
 
     fn gains(f: f64, worst_imr: f64, moved: f64, size: f64) -> Option<Gains> {
-        Some(Gains { f: [1.3, f], worst_imr, moved, size })
+        let worst_imr = [2.0, worst_imr];
+        Some(Gains { f: [1.3, f], least_angle: [20.0; 2], worst_imr, moved, size })
     }
 
     fn row(runs: &[Option<Gains>]) -> Option<(usize, bool)> {
@@ -108,5 +126,16 @@ mod tests {
         assert_eq!(row(&[None, far, near]), Some((2, false)));
         assert_eq!(row(&[far, near, nearly]), Some((2, false)));
         assert_eq!(row(&[None, None]), None);
+    }
+
+    #[test]
+    fn a_run_with_a_worse_element_is_never_the_best() {
+        let sharp = |gains: Option<Gains>| gains.map(|g| Gains { least_angle: [45.0, 39.0], ..g });
+        let good = gains(1.2, 1.5, 0.2, 1.1);
+        assert_eq!(row(&[sharp(good), gains(1.25, 1.9, 0.2, 1.1)]), Some((1, true)));
+        assert_eq!(row(&[sharp(good), gains(1.1, 2.1, 0.2, 1.1)]), None);
+        // A mesh that comes back as it was is no better.
+        assert_eq!(row(&[gains(1.3, 2.0, 0.0, 1.0), sharp(good)]), None);
+        assert_eq!(row(&[gains(1.29, 2.0, 0.1, 1.0), sharp(good)]), Some((0, true)));
     }
 }

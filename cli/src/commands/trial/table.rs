@@ -78,9 +78,14 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
         "\nworst imr: of the triangles with a free vertex. sizes, moved: 19 of 20 vertices change the size of the elements\n\
          around them, and move in lengths of an edge, by no more\n"
     );
-    if let Some(best) = best {
-        let _ = writeln!(text, "* the best row: {}\n", rule(best));
-        let _ = write!(text, "{}", command(tried[best.row].run));
+    match best {
+        Some(best) => {
+            let _ = writeln!(text, "* the best row: {}\n", rule(best));
+            let _ = write!(text, "{}", command(tried[best.row].run));
+        }
+        None => {
+            let _ = write!(text, "{NO_BEST}");
+        }
     }
     text.trim_end().to_owned()
 }
@@ -91,17 +96,22 @@ fn quality(report: &QualityReport) -> [String; 3] {
     [sig6(report.f["imr"]), angle, sig6(report.worst_movable_imr)]
 }
 
+/// The sentence for runs none of which is the best.
+const NO_BEST: &str =
+    "no row helps: each makes the least angle or the worst imr worse, or leaves the mesh as it was";
+
 /// Returns the rule by which a run is the best.
 fn rule(best: Best) -> String {
     let sizes = change_of(MAX_SIZE_CHANGE);
     match best.keeps_mesh {
         true => format!(
-            "of the rows that lower f, with sizes up to {sizes} and moved up to {MAX_MOVE}, the row with the least worst imr, and\n  \
-             of rows within 1 % of that, the row with the least f"
+            "of the rows that lower f and make neither the least angle nor the worst imr worse, with sizes up to {sizes} and\n  \
+             moved up to {MAX_MOVE}, the row with the least worst imr, and of rows within 1 % of that, the row with the least f"
         ),
         false => format!(
-            "no row lowers f with sizes up to {sizes} and moved up to {MAX_MOVE}. Of the rows with about the least moved (within\n  \
-             {:.0} %), the row with the least worst imr, and of rows within 1 % of that, the row with the least f",
+            "no row lowers f, makes neither the least angle nor the worst imr worse, and has sizes up to {sizes} and moved up to\n  \
+             {MAX_MOVE}. Of the rows that make neither worse, with about the least moved (within {:.0} %), the row with the least\n  \
+             worst imr, and of rows within 1 % of that, the row with the least f",
             100.0 * (ABOUT_LEAST - 1.0)
         ),
     }
@@ -136,7 +146,7 @@ pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> V
         "file": args.mesh.display().to_string(),
         "before": before,
         "runs": rows,
-        "rule": best.map(|best| rule(best).replace("\n  ", " ")),
+        "rule": best.map_or(NO_BEST.to_owned(), |best| rule(best).replace("\n  ", " ")),
         "command": best.map(|best| command(tried[best.row].run)),
     })
 }
