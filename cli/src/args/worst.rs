@@ -7,7 +7,8 @@ use clap::{Args, ValueEnum};
 pub(crate) struct WorstArgs {
     /// Improve the worst triangles after the last sweep, at a small cost in f: move the vertices around the worst
     /// thousandth of the triangles until the largest imr is as small as it can be made, or the least angle or altitude
-    /// as large [default without =MEASURE: imr]
+    /// as large. Least angles grow at the cost of angles above 90 degrees, so min-angle is not for solvers that need
+    /// orthogonal meshes [default without =MEASURE: imr]
     #[arg(
         long,
         value_enum,

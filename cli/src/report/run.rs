@@ -64,6 +64,9 @@ pub(crate) struct Report {
     pub(crate) interpolated: Option<String>,
     /// Number of vertices that the guard kept from moving at the end of an otherwise converged run.
     pub(crate) held_back: usize,
+    /// Whether `--guard worst` was given.
+    #[serde(skip)]
+    pub(crate) guards_worst: bool,
     /// Fraction of the gain in f that is lost by rounding coordinates to the digits of the file.
     pub(crate) lost: f64,
     #[serde(skip_serializing_if = "Option::is_none")]

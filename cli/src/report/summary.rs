@@ -6,8 +6,8 @@ use gpu_smooth::Metric;
 
 use crate::load::stay_as_ends;
 use crate::report::{
-    ChangeReport, FaultReport, MeshReport, Report, Seconds, SlideReport, TargetReport,
-    UntangleReport,
+    ChangeReport, FaultReport, MeshReport, QualityReport, Report, Seconds, SlideReport,
+    TargetReport, UntangleReport,
 };
 use crate::terminal::numbers::{percent, rough, sig6};
 
@@ -126,8 +126,7 @@ impl Report {
         row("max angle", angle(self.before.max_angle), angle(self.after.max_angle));
         row("worst imr", sig6(self.before.worst_imr), sig6(self.after.worst_imr));
         // The value is 0 if no triangle has a free vertex.
-        let movable = self.after.worst_movable_imr;
-        if movable > 0.0 && movable < self.after.worst_imr {
+        if self.has_worse_fixed() {
             let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
             row("  of movable", sig6(before), sig6(after));
         }
@@ -135,6 +134,13 @@ impl Report {
         row("min altitude", sig6(before), sig6(after));
         row("inverted", self.before.inverted.to_string(), self.after.inverted.to_string());
         rows
+    }
+
+    /// Returns whether a triangle without a free vertex has the worst imr, before or after the run, so that the worst imr of
+    /// movable triangles is another value. False if no triangle has a free vertex, as the value is then 0.
+    fn has_worse_fixed(&self) -> bool {
+        let is_worse = |quality: &QualityReport| quality.worst_movable_imr < quality.worst_imr;
+        self.after.worst_movable_imr > 0.0 && (is_worse(&self.before) || is_worse(&self.after))
     }
 
     /// Returns a warning if the worst movable element became worse by more than 1 %; `None` otherwise.
@@ -148,11 +154,23 @@ impl Report {
         let shape = self.scheme.split('+').any(judges_shape);
         let base = self.base();
         let remedy = match shape {
-            true => "f is a mean, which may fall as one element gets worse; --guard worst does not let it".to_owned(),
+            true => {
+                let bounds = match (self.guards_worst, &self.target) {
+                    (false, _) => "; --guard worst does not let it",
+                    (true, Some(_)) => {
+                        "; --guard worst bounds triangles as the target transforms them"
+                    }
+                    (true, None) => {
+                        "; --guard worst bounds triangles before their coordinates are rounded to the digits of the file"
+                    }
+                };
+                format!("f is a mean, which may fall as one element gets worse{bounds}")
+            }
             false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
         };
         let (before, after) = (sig6(before), sig6(after));
-        Some(format!("worst imr rose from {before} to {after}: {remedy}"))
+        let of = if self.has_worse_fixed() { " of movable triangles" } else { "" };
+        Some(format!("worst imr{of} rose from {before} to {after}: {remedy}"))
     }
 
     /// Describes in one sentence how far vertices moved and how much sizes changed.

@@ -173,6 +173,11 @@ impl SmoothRequest {
         self.run.max_move
     }
 
+    /// Returns whether the guard bounds every triangle by the worst one of IN.
+    pub(crate) fn guards_worst(&self) -> bool {
+        self.run.guard == Guard::Worst
+    }
+
     /// Returns whether the history of a report has the objectives of all metrics.
     pub(crate) fn tracks_all(&self) -> bool {
         self.run.track_all

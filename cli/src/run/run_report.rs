@@ -71,6 +71,7 @@ pub(super) fn report(
         choices: choice.notes.clone(),
         interpolated: measured.interpolated,
         held_back: outcome.held_back,
+        guards_worst: request.guards_worst(),
         lost: outcome.lost,
         goal: goal_report(outcome),
         returned: outcome.returned,
