@@ -3,6 +3,7 @@
 use crate::parallel::collect;
 use crate::targets::surface::Surface;
 use crate::targets::tensor::Tensor;
+use crate::topology::Topology;
 
 /// 1/√3. The equilateral triangle W has the inverse W⁻¹ = [[1, -1/√3], [0, 2/√3]].
 const W: f64 = 0.577_350_269_189_625_8;
@@ -22,12 +23,12 @@ pub(super) fn sizes(
         Tensor::isotropic(-0.5 * area.ln())
     };
     let of_triangles: Vec<Tensor> = collect(triangles.len(), |t| of(&triangles[t]));
-    let at = averaged(triangles, points.len(), rings, &of_triangles);
+    let at = averaged(triangles, points.len(), rings, &of_triangles, |_| true);
     // The average flattens gradation, above all at the boundary. Its difference from the sizes of the triangles,
     // averaged and added, restores most of the gradation (twicing; Tukey, Exploratory Data Analysis, 1977).
     let rest = |t: usize| of_triangles[t].plus(mean_at_corners(&at, &triangles[t]).times(-1.0));
     let rest: Vec<Tensor> = collect(triangles.len(), rest);
-    let rest = averaged(triangles, points.len(), rings, &rest);
+    let rest = averaged(triangles, points.len(), rings, &rest, |_| true);
     collect(points.len(), |v| at[v].plus(rest[v]).exp())
 }
 
@@ -44,11 +45,14 @@ pub(super) fn size_weight(stretching: f64) -> f64 {
     1.0 + 0.5 * (stretching - UNWEIGHTED).max(0.0)
 }
 
-/// Returns the maps under which the triangles of the mesh are equilateral and of equal size.
-pub(super) fn shapes(triangles: &[[u32; 3]], points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
+/// Returns the maps under which the triangles of the mesh are equilateral and of equal size. Triangles without a free
+/// vertex, such as those of a kept boundary layer, do not count at the vertices of other triangles, so that the first
+/// triangles beyond a layer are not stretched like the layer.
+pub(super) fn shapes(topology: &Topology<'_>, points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
+    let triangles = topology.triangles();
     let of = |t: usize| shape_logarithm(&triangles[t], points, [1.0; 2]);
     let of_triangles: Vec<Tensor> = collect(triangles.len(), of);
-    let at = averaged(triangles, points.len(), rings, &of_triangles);
+    let at = averaged(triangles, points.len(), rings, &of_triangles, |t| topology.can_move(t));
     collect(points.len(), |v| at[v].exp())
 }
 
@@ -78,18 +82,24 @@ fn edges(t: &[u32; 3], points: &[[f64; 2]]) -> [[f64; 2]; 2] {
 }
 
 /// Averages the values of triangles at each vertex. Then, `rings` times, averages vertex values in each triangle and
-/// triangle values at each vertex.
+/// triangle values at each vertex. Averages at a vertex are over its triangles that count, or over all if none counts.
 fn averaged(
     triangles: &[[u32; 3]],
     vertices: usize,
     rings: u32,
     of_triangles: &[Tensor],
+    counts: impl Fn(usize) -> bool,
 ) -> Vec<Tensor> {
-    let mut at = at_vertices(triangles, vertices, of_triangles);
+    let mut has_counting = vec![false; vertices];
+    for (_, triangle) in triangles.iter().enumerate().filter(|(t, _)| counts(*t)) {
+        triangle.iter().for_each(|&v| has_counting[v as usize] = true);
+    }
+    let counts = |t: usize, v: u32| counts(t) || !has_counting[v as usize];
+    let mut at = at_vertices(triangles, vertices, of_triangles, counts);
     for _ in 0..rings {
         let of_triangles: Vec<Tensor> =
             collect(triangles.len(), |t| mean_at_corners(&at, &triangles[t]));
-        at = at_vertices(triangles, vertices, &of_triangles);
+        at = at_vertices(triangles, vertices, &of_triangles, counts);
     }
     at
 }
@@ -100,11 +110,17 @@ pub(super) fn mean_at_corners(at: &[Tensor], triangle: &[u32; 3]) -> Tensor {
     p.plus(q).plus(r).times(1.0 / 3.0)
 }
 
-/// Returns the mean of the values of each vertex's triangles; zero for a vertex without triangles.
-fn at_vertices(triangles: &[[u32; 3]], vertices: usize, of: &[Tensor]) -> Vec<Tensor> {
+/// Returns the mean of the values of each vertex's triangles; zero for a vertex without triangles. `counts` takes a
+/// triangle and a vertex, and returns whether the triangle counts at the vertex.
+fn at_vertices(
+    triangles: &[[u32; 3]],
+    vertices: usize,
+    of: &[Tensor],
+    counts: impl Fn(usize, u32) -> bool,
+) -> Vec<Tensor> {
     let mut sums = vec![(Tensor::default(), 0u32); vertices];
-    for (t, &value) in triangles.iter().zip(of) {
-        for &v in t {
+    for (t, (triangle, &value)) in triangles.iter().zip(of).enumerate() {
+        for &v in triangle.iter().filter(|v| counts(t, **v)) {
             let (sum, count) = &mut sums[v as usize];
             *sum = sum.plus(value);
             *count += 1;

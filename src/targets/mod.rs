@@ -90,8 +90,8 @@ impl Targets {
     }
 
     /// Makes targets for elements with the size, stretching and orientation of the mesh's triangles, averaged over
-    /// `rings` rings of neighbors. These targets keep boundary layers and anisotropic adaptation, and remove noise. To
-    /// keep the spacing at walls, fix the vertices of [`Layers`](crate::layers::Layers).
+    /// `rings` rings of neighbors. These targets keep anisotropic adaptation, and remove noise. Triangles without a free
+    /// vertex, such as those of kept [layers](crate::layers), count only at vertices that no other triangle has.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -101,7 +101,7 @@ impl Targets {
         rings: u32,
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
-        Ok(Self::of_maps(keep::shapes(topology.triangles(), points, rings)))
+        Ok(Self::of_maps(keep::shapes(topology, points, rings)))
     }
 
     /// Converts targets in lengths on a surface to targets in its coordinates, with the vertices at `points`. Do not
