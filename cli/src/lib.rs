@@ -9,6 +9,7 @@
 mod args;
 mod commands;
 mod error;
+mod kept_layers;
 mod load;
 mod render;
 mod report;

@@ -1,10 +1,12 @@
 //! A mesh file that is prepared for smoothing, and the smoothed mesh.
 
+use std::borrow::Cow;
 use std::path::Path;
 
+use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
-use gpu_smooth::{Backend, Mesh, Options, Outcome, SmoothError, Smoother};
+use gpu_smooth::{Backend, Mesh, MeshError, Options, Outcome, SmoothError, Smoother, Topology};
 use mesh_io::MeshFile;
 
 use crate::domain::Domain;
@@ -13,13 +15,14 @@ use crate::plane::{plane_of_file, z_field};
 use crate::precision::smoother_precision;
 
 /// A mesh file that is prepared for smoothing. Vertices that the file constrains and vertices between regions are fixed,
-/// a mesh in another plane than that of x and y is laid out in its plane, and no triangle is inverted by the digits that
+/// boundary layers stay ([`Job::keep_layers`]), a mesh in another plane than that of x and y is laid out in its plane, and no triangle is inverted by the digits that
 /// the file has for a coordinate.
 pub struct Job<'f> {
     file: &'f MeshFile,
     domain: Domain,
     /// The plane of the mesh; `None` if the mesh has no third coordinates, or equal ones.
     plane: Option<Plane>,
+    keep_layers: KeepLayers,
 }
 
 impl<'f> Job<'f> {
@@ -32,10 +35,30 @@ impl<'f> Job<'f> {
         if let Some(plane) = &plane {
             domain.mesh.points = plane.points().to_vec();
         }
-        Ok(Self { file, domain, plane })
+        Ok(Self { file, domain, plane, keep_layers: KeepLayers::Auto })
     }
 
-    /// Returns the mesh to smooth, with the fixed vertices. Points are x and y of the file, or positions in the plane of
+    /// Chooses the boundary layers whose vertices stay; by default [`KeepLayers::Auto`]. Walls are the boundary, the lines of
+    /// the file, and edges between regions. Quadrilaterals of the file are elements of layers too.
+    pub fn keep_layers(self, keep_layers: KeepLayers) -> Self {
+        Self { keep_layers, ..self }
+    }
+
+    /// Finds the boundary layers whose vertices stay.
+    ///
+    /// # Errors
+    /// [`MeshError`] if the mesh cannot be smoothed; see [`Topology::new`].
+    pub fn layers(&self) -> Result<Layers, MeshError> {
+        let Self { file, domain, .. } = self;
+        let topology = Topology::new(&domain.mesh)?;
+        let faces: Vec<Vec<u32>> = file.other_faces().map(<[u32]>::to_vec).collect();
+        let lines = [file.constraints().lines.clone(), file.interface_edges()].concat();
+        let points = &domain.mesh.points;
+        let elements = Elements { topology: &topology, points, faces: &faces, lines: &lines };
+        self.keep_layers.find(&elements, None)
+    }
+
+    /// Returns the mesh to smooth, with the vertices that the file fixes. Points are x and y of the file, or positions in the plane of
     /// the mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.domain.mesh
@@ -60,7 +83,7 @@ impl<'f> Job<'f> {
     /// [`JobError::Smooth`] if the mesh cannot be smoothed, an option is refused, or the device fails.
     pub fn smooth(self, options: &Options, backend: &Backend) -> Result<Smoothed<'f>, JobError> {
         let run = || -> Result<_, SmoothError> {
-            let smoother = Smoother::new(self.mesh())?;
+            let smoother = Smoother::keeping(Cow::Borrowed(self.mesh()), self.layers()?)?;
             let options = Options { stored: self.stored(), ..options.clone() };
             let mut outcome = smoother.run(&options).on(backend).block()?;
             if let Some(plane) = &self.plane {

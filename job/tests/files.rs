@@ -1,8 +1,10 @@
 //! Meshes from file to file: signs of triangles as stored, material interfaces, and planes.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
+use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::{Backend, Mesh, Options, Smoother};
 use gpu_smooth_job::{Job, JobError, PlaneError};
 use mesh_io::{MeshFile, Precision};
@@ -176,4 +178,61 @@ fn a_mesh_in_another_plane_is_smoothed_there_and_a_curved_one_is_refused() {
         Job::of_file(&read("curved.bdf", nastran(&curved, &triangles()).into())).err().unwrap();
     assert!(matches!(error, JobError::Plane(PlaneError::NotPlanar { .. })), "{error}");
     assert!(error.to_string().starts_with("curved.bdf:"), "{error}");
+}
+
+/// Returns an SU2 file of a flat wall with a layer of ten rows, and nine rows of noisy triangles above. With
+/// `has_quads`, the layer consists of quadrilaterals.
+fn layer(has_quads: bool) -> MeshFile {
+    const COLUMNS: usize = 24;
+    let mut heights = vec![0.0];
+    for row in 0..18 {
+        let step = if row < 10 { 0.05 * 1.3_f64.powi(row) } else { 1.1 };
+        heights.push(heights[row as usize] + step);
+    }
+    let last = heights.len() - 1;
+    let at = |i: usize, k: usize| k * (COLUMNS + 1) + i;
+    let (mut elements, mut count, mut points) = (String::new(), 0, String::new());
+    for (k, i) in (0..last).flat_map(|k| (0..COLUMNS).map(move |i| (k, i))) {
+        let [p, q, r, s] = [at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)];
+        if has_quads && k < 10 {
+            writeln!(elements, "9 {p} {q} {r} {s}").unwrap();
+            count += 1;
+        } else {
+            writeln!(elements, "5 {p} {q} {r}\n5 {p} {r} {s}").unwrap();
+            count += 2;
+        }
+    }
+    for (k, i) in (0..=last).flat_map(|k| (0..=COLUMNS).map(move |i| (k, i))) {
+        let is_free = 0 < i && i < COLUMNS && 10 < k && k < last;
+        let noise = if is_free { 0.2 * ((7 * i + 3 * k) as f64).sin() } else { 0.0 };
+        writeln!(points, "{} {}", i as f64 + noise, heights[k] - noise).unwrap();
+    }
+    let size = (last + 1) * (COLUMNS + 1);
+    let text = format!("NDIME= 2\nNELEM= {count}\n{elements}NPOIN= {size}\n{points}NMARK= 0\n");
+    read("layer.su2", text.into())
+}
+
+#[test]
+fn boundary_layers_of_a_file_stay_unless_the_caller_says_otherwise() {
+    let file = layer(false);
+    let run = |job: Job<'_>| {
+        let smoothed = job.smooth(&Options::default(), &Backend::Cpu).unwrap();
+        smoothed.outcome().points.clone()
+    };
+    let job = || Job::of_file(&file).unwrap();
+    let layers = job().layers().unwrap();
+    assert_eq!((layers.rows, layers.vertices.len()), (10, 23 * 11 + 2 * 10));
+    let kept = run(job());
+    assert!(layers.vertices.iter().all(|&v| kept[v as usize] == file.points()[v as usize]));
+    let fixed = Mesh { fixed: layers.vertices.clone(), ..job().into_mesh() };
+    let smoother = Smoother::keeping(Cow::Owned(fixed), Layers::default()).unwrap();
+    let options = Options { stored: job().stored(), ..Options::default() };
+    let outcome = smoother.run(&options).block().unwrap();
+    assert_eq!(kept, outcome.points);
+    assert_ne!(kept, file.points());
+    let moved = run(job().keep_layers(KeepLayers::None));
+    assert!(layers.vertices.iter().any(|&v| moved[v as usize] != file.points()[v as usize]));
+    // The rows of quadrilaterals are found too.
+    let whole = layer(true);
+    assert_eq!(Job::of_file(&whole).unwrap().layers().unwrap().vertices, layers.vertices);
 }

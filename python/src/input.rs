@@ -1,8 +1,10 @@
 //! Fixes vertices of a mesh, continues its longitudes, untangles it, and prepares it for runs.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 use gpu_smooth::interpolate::Chart;
+use gpu_smooth::layers::Layers;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::untangle::{Untangled, Untangling};
@@ -97,7 +99,7 @@ impl Input {
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.
     pub(crate) fn smoother(&self, options: &MeshOptions) -> Result<Smoother<'_>, Failure> {
-        let mut smoother = Smoother::new(&self.mesh)?;
+        let mut smoother = Smoother::keeping(Cow::Borrowed(&self.mesh), Layers::default())?;
         self.layout.set_up(options, &mut smoother)?;
         Ok(smoother)
     }
@@ -108,7 +110,7 @@ impl Input {
         options: &MeshOptions,
     ) -> Result<(Smoother<'static>, Layout), Failure> {
         let Self { mesh, layout } = self;
-        let mut smoother = Smoother::from_mesh(mesh)?;
+        let mut smoother = Smoother::keeping(Cow::Owned(mesh), Layers::default())?;
         layout.set_up(options, &mut smoother)?;
         Ok((smoother, layout))
     }

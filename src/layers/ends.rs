@@ -1,8 +1,9 @@
-//! The ends of layers: last columns where rows end abruptly, and corners where rows cross.
+//! The ends of layers: last columns where rows end abruptly, corners where rows cross, and rows that end at other walls.
 
 use crate::layers::front::CORNER;
 use crate::layers::keep::ASPECT;
 use crate::layers::march::Rows;
+use crate::layers::measure::Measure;
 use crate::layers::sectors::{NONE, Sectors};
 use crate::layers::vector::{cross, length, minus};
 
@@ -111,4 +112,23 @@ fn at_corners(sectors: &Sectors, rows: &Rows, traced: &[bool], added: &mut [bool
             }
         }
     }
+}
+
+/// Marks the nodes of other walls, such as an inlet, at which kept rows end.
+pub(super) fn sides(sectors: &Sectors, rows: &Rows, kept: &[bool]) -> Vec<bool> {
+    let mut sides = vec![false; kept.len()];
+    let in_rows = rows.lists.iter().skip(1).flatten().filter(|n| kept[**n as usize]);
+    for &node in in_rows {
+        let parent = rows.parent[node as usize];
+        let height = rows.height[node as usize];
+        for &side in sectors.neighbors(node) {
+            if kept[side as usize] || !sectors.is_wall(side) {
+                continue;
+            }
+            // A side of the row before has height 0, a side of the next row at least 4/3 of the height.
+            let above = Measure::new(sectors, side, parent, rows.beside(parent)).height;
+            sides[side as usize] |= (0.5..=4.0 / 3.0).contains(&(above / height));
+        }
+    }
+    sides
 }

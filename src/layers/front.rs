@@ -5,8 +5,8 @@ use crate::layers::measure::Measure;
 use crate::layers::sectors::{NONE, Sectors};
 use crate::layers::vector::{length, minus};
 
-/// Least aspect of the first row at a seed. Rows of lower aspect are no layers.
-pub(super) const SEED_ASPECT: f64 = 2.0;
+/// Least aspect of the first row at a seed, up to rounding: 2. Rows of lower aspect are no layers.
+pub(super) const SEED_ASPECT: f64 = 2.0 - 1e-9;
 
 /// Number of vertices in a gap that closes whatever its heights.
 const GAP: usize = 2;

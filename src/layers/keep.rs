@@ -8,13 +8,17 @@ use crate::layers::vector::median;
 /// Least aspect of a vertex that stays. Below, triangles gain more than they lose by moving.
 pub(super) const ASPECT: f64 = 1.5;
 
-/// Least number of columns of a layer, share of the wall's vertices that have columns, and rows of a column.
-const COLUMNS: usize = 8;
-const SHARE: f64 = 0.7;
+/// Least number of kept rows of a column that counts.
 const ROWS: u32 = 3;
 
-/// Least growth of heights from the first row of a column to the last, in the median. It excludes structured meshes that
-/// are no layers, such as beams.
+/// Least number of columns that count above a connected run of wall vertices.
+const COLUMNS: usize = 8;
+
+/// Least share of the wall vertices of a run above which columns count.
+const SHARE: f64 = 0.7;
+
+/// Least median over the columns of a run of the last height divided by the first. Structured meshes of beams and
+/// channels have rows of equal heights and are no layers.
 const GROWTH: f64 = 1.2;
 
 /// Returns the nodes that stay, row 0 included.

@@ -23,9 +23,10 @@ pub(super) struct Rows {
     pub(super) lists: Vec<Vec<u32>>,
     /// Row of each node; [`NONE`] for a node in no row.
     pub(super) row: Vec<u32>,
-    /// The node below, in the row before; [`NONE`] in row 0.
+    /// Parent of each node: the nearest node of the row before; [`NONE`] in row 0.
     pub(super) parent: Vec<u32>,
-    /// Height above the row before, and aspect, of each node.
+    /// Height of each node above the row before, in the unit of the mesh, and its aspect: the mean length of the edges of the
+    /// row before beside the parent, divided by the height. 0 and infinite in row 0.
     pub(super) height: Vec<f64>,
     pub(super) aspect: Vec<f64>,
     /// Whether a column goes on above a node.

@@ -1,9 +1,9 @@
-//! The place of a vertex above a row.
+//! Offset, height and aspect of a vertex above a row.
 
 use crate::layers::sectors::{NONE, Sectors};
 use crate::layers::vector::{cross, dot, length, minus};
 
-/// The place of a node above a node of the row below.
+/// Offset, height and aspect of a node above a node of the row below.
 #[derive(Clone, Copy)]
 pub(super) struct Measure {
     /// Offset along the row, as a share of the edge of the row toward which the node leans.

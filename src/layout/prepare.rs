@@ -19,17 +19,14 @@ pub fn prepare(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     Ok((topology, problem))
 }
 
-/// Prepares a mesh as [`prepare`] does, but accepts a mesh without free vertices, whose boundary vertices may slide.
+/// Checks a mesh and lays it out as [`prepare`] does, but accepts a mesh without free vertices, whose boundary vertices
+/// may slide.
 ///
 /// # Errors
 /// [`MeshError`] if the mesh cannot be smoothed; never [`MeshError::NothingFree`].
-pub(crate) fn prepare_to_slide(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
-    let topology = Topology::new(mesh)?;
+pub(crate) fn prepare_to_slide(mesh: &Mesh, topology: &Topology<'_>) -> Result<Problem, MeshError> {
     match topology.check_smoothable(&mesh.points) {
-        Ok(()) | Err(MeshError::NothingFree { .. }) => {
-            let problem = laid_out(mesh, &topology);
-            Ok((topology, problem))
-        }
+        Ok(()) | Err(MeshError::NothingFree { .. }) => Ok(laid_out(mesh, topology)),
         Err(error) => Err(error),
     }
 }

@@ -47,7 +47,7 @@ pub struct Problem {
     /// Whether coarse levels work in the coordinates of the plane even if a map is anisotropic.
     levels_in_plane: bool,
     ideal: Ideal,
-    /// The triangles over which the objective is the mean, in place of all triangles.
+    /// Triangles over whose squared qualities the objective is the mean: all triangles, or those that can move.
     judged: Judged,
 }
 

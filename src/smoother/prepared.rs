@@ -9,6 +9,7 @@ use web_time::Instant;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
+use crate::layers::{Elements, KeepLayers, Layers};
 use crate::layout::{Mercator, Problem, laid_out, prepare_to_slide};
 use crate::mesh::{Mesh, MeshSize};
 use crate::metric::Metric;
@@ -30,6 +31,10 @@ pub struct Smoother<'a> {
     /// The curves that the caller set, for the fingerprint in checkpoints; `None` if no vertex slides.
     pub(super) slide: Option<Slide>,
     pub(super) sliding: Option<Sliding>,
+    /// The boundary layers that runs keep.
+    layers: Layers,
+    /// Whether all free vertices are in boundary layers. Runs then have no sweeps, and no vertex is fixed or slides.
+    pub(super) is_all_kept: bool,
     /// Number of periodic pairs that slide, and number of pairs that stay because the common motion does not fit them.
     pairs: [usize; 2],
     /// Number of pairs of vertices at one place that slide, and number of further vertices of curves at the place of
@@ -59,10 +64,7 @@ impl Smoother<'static> {
     /// # Errors
     /// [`MeshError`] under the conditions of [`Smoother::new`].
     pub fn from_mesh(mesh: Mesh) -> Result<Self, MeshError> {
-        let start = Instant::now();
-        let (topology, problem) = prepare_to_slide(&mesh)?;
-        let topology = topology.into_owned();
-        Ok(Self::of(Cow::Owned(mesh), topology, problem, start))
+        Self::keeping_found(Cow::Owned(mesh))
     }
 }
 
@@ -70,25 +72,69 @@ impl<'a> Smoother<'a> {
     /// Prepares a mesh. A mesh without free vertices, such as a strip of triangles, is accepted, as its vertices can
     /// slide; see [`set_slide`](Self::set_slide).
     ///
+    /// Runs keep the boundary layers that [`KeepLayers::Auto`] finds above the boundary, as if [`Mesh::fixed`] listed their
+    /// vertices. [`Self::keeping`] keeps other layers, or none.
+    ///
     /// # Errors
     /// [`MeshError`] if the mesh cannot be smoothed: see [`Topology::new`] and [`Topology::check_smoothable`].
     pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
+        Self::keeping_found(Cow::Borrowed(mesh))
+    }
+
+    fn keeping_found(mesh: Cow<'a, Mesh>) -> Result<Self, MeshError> {
         let start = Instant::now();
-        let (topology, problem) = prepare_to_slide(mesh)?;
-        Ok(Self::of(Cow::Borrowed(mesh), topology, problem, start))
+        let topology = topology_of(&mesh)?;
+        let points = &mesh.points;
+        let elements = Elements { topology: &topology, points, faces: &[], lines: &[] };
+        let layers = KeepLayers::Auto.find(&elements, None)?;
+        Self::of(mesh, topology, layers, start)
+    }
+
+    /// Prepares a mesh as [`Self::new`] does. Runs keep the given boundary layers, such as those of [`KeepLayers::find`] with
+    /// walls inside the mesh, or none: `Layers::default()`. An application that moves walls keeps none, as vertices of
+    /// layers would not follow the walls.
+    ///
+    /// If all free vertices are in layers, runs end before the first sweep, and no vertex moves.
+    ///
+    /// # Errors
+    /// [`MeshError`] if the mesh cannot be smoothed, as for [`Self::new`], and [`MeshError::IndexOutOfRange`] if the layers
+    /// have a vertex that does not exist.
+    pub fn keeping(mesh: Cow<'a, Mesh>, layers: Layers) -> Result<Self, MeshError> {
+        let start = Instant::now();
+        let topology = topology_of(&mesh)?;
+        Self::of(mesh, topology, layers, start)
     }
 
     fn of(
-        mesh: Cow<'a, Mesh>,
+        mut mesh: Cow<'a, Mesh>,
         mut topology: Topology<'a>,
-        problem: Problem,
+        layers: Layers,
         start: Instant,
-    ) -> Self {
+    ) -> Result<Self, MeshError> {
+        let is_all_kept = layers.have_all_free(&topology);
+        if !is_all_kept && !layers.vertices.is_empty() {
+            mesh.to_mut().fixed.extend_from_slice(&layers.vertices);
+            topology = Topology::new(&mesh)?.into_owned();
+        }
+        let problem = prepare_to_slide(&mesh, &topology)?;
         // Runs need only the problem. The stars are computed again when a vertex has to be set back.
         topology.forget_stars();
         let (slide, sliding, field, opened) = (None, None, None, None);
-        let (pairs, coincident, prepare) = ([0; 2], [0; 2], start.elapsed());
-        Self { mesh, topology, problem, slide, sliding, pairs, coincident, field, opened, prepare }
+        let (pairs, coincident) = ([0; 2], [0; 2]);
+        Ok(Self {
+            mesh,
+            topology,
+            problem,
+            slide,
+            sliding,
+            layers,
+            is_all_kept,
+            pairs,
+            coincident,
+            field,
+            opened,
+            prepare: start.elapsed(),
+        })
     }
 
     /// Fails with [`MeshError::NothingFree`] if no vertex is free and no vertex slides.
@@ -99,9 +145,15 @@ impl<'a> Smoother<'a> {
         }
     }
 
-    /// Returns the mesh that the smoother has prepared.
+    /// Returns the mesh that the smoother has prepared. The fixed vertices of the mesh include those of kept
+    /// [layers](Self::layers).
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// Returns the boundary layers that runs keep; see [`Self::keeping`].
+    pub fn layers(&self) -> &Layers {
+        &self.layers
     }
 
     /// Copies the mesh into the smoother, which then borrows nothing and can be stored in a struct without lifetimes,
@@ -113,6 +165,8 @@ impl<'a> Smoother<'a> {
             problem: self.problem,
             slide: self.slide,
             sliding: self.sliding,
+            layers: self.layers,
+            is_all_kept: self.is_all_kept,
             pairs: self.pairs,
             coincident: self.coincident,
             field: self.field,
@@ -144,7 +198,7 @@ impl<'a> Smoother<'a> {
             return Ok(true);
         }
         let Some(opened) = slivers::opened(&self.mesh, &self.topology) else { return Ok(false) };
-        let mut opened = Smoother::from_mesh(opened)?;
+        let mut opened = Smoother::keeping(Cow::Owned(opened), Layers::default())?;
         opened.project_from_sphere()?;
         self.problem = laid_out(&self.mesh, &self.topology);
         self.stop_sliding();
@@ -201,8 +255,8 @@ impl<'a> Smoother<'a> {
         Ok(outside)
     }
 
-    /// Lets vertices slide along the boundary and other curves in further runs; `None` turns sliding off. Returns the
-    /// number of vertices that may slide.
+    /// Lets vertices slide along the boundary and other curves in further runs; `None` turns sliding off. Vertices of kept
+    /// [layers](Self::layers) do not slide. Returns the number of vertices that may slide.
     ///
     /// # Errors
     /// [`SmoothError::Option`] if a number is outside its range, [`MeshError::IndexOutOfRange`] if a listed vertex does
@@ -215,6 +269,11 @@ impl<'a> Smoother<'a> {
         let Some(slide) = slide else { return Ok(0) };
         let vertices = self.mesh.points.len();
         slide.check(vertices)?;
+        if self.is_all_kept {
+            return Ok(0);
+        }
+        let held = [&slide.held[..], &self.layers.vertices].concat();
+        let slide = &Slide { held, ..slide.clone() };
         let sliding = Sliding::new(&self.mesh.points, &self.topology, slide);
         let sliding = sliding.numbered(&self.problem, vertices);
         self.topology.forget_stars();
@@ -332,6 +391,14 @@ impl<'a> Smoother<'a> {
         }
         let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
         self.problem.judged_by_movable(&slides)
+    }
+}
+
+/// Returns the topology of a mesh, which borrows the triangles of a borrowed mesh.
+fn topology_of<'a>(mesh: &Cow<'a, Mesh>) -> Result<Topology<'a>, MeshError> {
+    match mesh {
+        Cow::Borrowed(mesh) => Topology::new(mesh),
+        Cow::Owned(mesh) => Ok(Topology::new(mesh)?.into_owned()),
     }
 }
 

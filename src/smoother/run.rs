@@ -6,7 +6,7 @@ use std::pin::Pin;
 
 use crate::error::SmoothError;
 use crate::mesh::Mesh;
-use crate::options::Options;
+use crate::options::{Options, Stopping};
 use crate::outcome::Outcome;
 use crate::parallel::pace::{budget_after, paced};
 use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Progress};
@@ -105,6 +105,14 @@ impl<'r> Run<'r> {
 
     async fn begin(mut self, device: Option<Device<'r>>) -> Result<Outcome, SmoothError> {
         let Self { smoother, options, resumed, .. } = self;
+        let unswept;
+        let options = if smoother.is_all_kept {
+            let stopping = Stopping::default();
+            unswept = Options { max_sweeps: 0, stopping, improve_worst: None, ..options.clone() };
+            &unswept
+        } else {
+            options
+        };
         let smoother = smoother.serving(options);
         smoother.run_at(options, device, resumed, &mut *self.policy, &mut *self.observer).await
     }

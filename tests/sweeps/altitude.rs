@@ -1,7 +1,7 @@
 //! Runs with `keep_altitude`, which preserves the smallest altitude of a mesh.
 
 use crate::random::scattered;
-use crate::{backends, history, name, plate, run};
+use crate::{backends, history, name, plate, run, with_free_layers};
 use gpu_smooth::{
     Backend, Guard, Mesh, Metric, OptionError, Options, Quality, Slide, SmoothError, Smoother,
     Stop, TargetField, Targets, measure::Change, options::Feature, precision::Precision, topology,
@@ -24,7 +24,7 @@ fn fields(count: u32) -> Mesh {
 #[test]
 fn the_least_altitude_does_not_fall_if_it_is_to_be_kept() {
     let mesh = fields(12);
-    let smoother = Smoother::new(&mesh).unwrap();
+    let smoother = with_free_layers(&mesh);
     let altitudes = |points: &[[f64; 2]]| {
         Change::between(smoother.topology(), &mesh.points, points).unwrap().least_altitude
     };

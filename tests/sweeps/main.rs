@@ -38,9 +38,16 @@ mod worst;
 use gpu_smooth::{
     Backend, Gpu, Mesh, Metric, Options, Outcome, Scheme, Smoother, Topology,
     internal::{Coloring, Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
+    layers::Layers,
     options::{Derivatives, PNormExponent},
 };
+use std::borrow::Cow;
 use std::sync::OnceLock;
+
+/// Prepares a mesh whose boundary layers may move.
+fn with_free_layers(mesh: &Mesh) -> Smoother<'_> {
+    Smoother::keeping(Cow::Borrowed(mesh), Layers::default()).unwrap()
+}
 
 /// The alternating schemes of the paper.
 const SCHEMES: [&str; 8] = [

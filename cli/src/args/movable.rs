@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::parse::{self, KeptLayers};
+use crate::args::parse;
+use crate::kept_layers::KeptLayers;
 
 const HEADING: &str = "What may move";
 

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use gpu_smooth::{Scheme, layers::KeepLayers, options::OptionRange};
 
+use crate::kept_layers::KeptLayers;
+
 /// The desired f of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Desired {
@@ -42,14 +44,6 @@ pub(crate) fn group_names(text: &str) -> Result<String, String> {
         true => Err("the name or the tag of a group is needed".into()),
         false => Ok(text.to_owned()),
     }
-}
-
-/// The value of `--keep-layers`.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct KeptLayers {
-    pub(crate) keep: KeepLayers,
-    /// Names or tags of the groups of walls, with commas between them; `None` for all walls.
-    pub(crate) groups: Option<String>,
 }
 
 /// Parses the layers that stay, and the groups of their walls behind a comma.

@@ -5,9 +5,9 @@ use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use mesh_io::Group;
 
 use crate::error::CliError;
+use crate::kept_layers::KeptLayers;
 use crate::load::named::{named, refusal};
 use crate::load::{LoadedMesh, explain};
-use crate::request::KeptLayers;
 
 /// Number of vertices of a wall from which a group names the wall, and from which seeds without a layer are noted.
 const FEW: usize = 3;
@@ -88,7 +88,8 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
 fn note(file: &LoadedMesh, kept: &KeptLayers, layers: &Layers) -> Result<String, CliError> {
     let walls = &layers.walls;
     let is_wall = |v: &u32| walls.binary_search(v).is_ok();
-    let inner = layers.vertices.iter().filter(|v| !is_wall(v)).count();
+    let is_inner = |v: &u32| !is_wall(v) && layers.sides.binary_search(v).is_err();
+    let inner = layers.vertices.iter().filter(|v| is_inner(v)).count();
     let mut names = Vec::new();
     for group in file.source.groups()?.iter().filter(|group| is_of_lines(group)) {
         let common = group.vertices().iter().filter(|v| is_wall(v)).count();

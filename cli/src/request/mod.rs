@@ -16,7 +16,7 @@ mod tests;
 mod trial;
 
 pub(crate) use command_line::command_line;
-pub(crate) use movable::{FieldsRequest, KeptLayers, MovableRequest, NearBad, SlideRequest};
+pub(crate) use movable::{FieldsRequest, MovableRequest, NearBad, SlideRequest};
 pub(crate) use outputs::{CheckpointPlan, MeshOutput, Outputs, is_checkpoint};
 pub(crate) use picture::{PictureFormat, PictureRequest};
 pub(crate) use read::ReadRequest;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use gpu_smooth::layers::KeepLayers;
 
 use crate::args::{FieldArgs, MoveArgs, SlideArgs};
+use crate::kept_layers::KeptLayers;
 
 /// The selection of vertices that may move. By default, vertices on constraints and between regions are fixed.
 pub(crate) struct MovableRequest {
@@ -24,14 +25,6 @@ pub(crate) struct MovableRequest {
     pub(crate) near_bad: Option<NearBad>,
     /// Boundary layers that stay; `None` for no layer.
     pub(crate) keep_layers: Option<KeptLayers>,
-}
-
-/// Boundary layers that stay.
-#[derive(Clone)]
-pub(crate) struct KeptLayers {
-    pub(crate) keep: KeepLayers,
-    /// Names or tags of the groups of walls, with commas between them; `None` for all walls.
-    pub(crate) groups: Option<String>,
 }
 
 /// The neighborhood of bad triangles.
@@ -56,8 +49,6 @@ impl From<MoveArgs> for MovableRequest {
             keep_layers,
             ..
         } = args;
-        let keep_layers =
-            keep_layers.map(|given| KeptLayers { keep: given.keep, groups: given.groups });
         Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad, keep_layers }
     }
 }

@@ -1,7 +1,9 @@
 //! Preparation of a mesh: engine, colors and levels, untangling, targets and sliding.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
+use gpu_smooth::layers::Layers;
 use gpu_smooth::targets::{Adaptation, Surface};
 use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
 
@@ -55,7 +57,7 @@ impl<'a> Subject<'a> {
         file: &LoadedMesh,
         mended: &'a UntangledInput,
     ) -> Result<Self, CliError> {
-        let smoother = Smoother::new(&mended.mesh);
+        let smoother = Smoother::keeping(Cow::Borrowed(&mended.mesh), Layers::default());
         let smoother = smoother.map_err(|error| explain::mesh_error(file, &error))?;
         Ok(Self { smoother, mended: Some(mended) })
     }
@@ -155,7 +157,8 @@ pub(super) fn smoother<'f>(
     request: &SmoothRequest,
     file: &'f LoadedMesh,
 ) -> Result<Smoother<'f>, MeshError> {
-    let mut smoother = Smoother::new(file.mesh())?;
+    // The file has fixed the vertices of its layers.
+    let mut smoother = Smoother::keeping(Cow::Borrowed(file.mesh()), Layers::default())?;
     if smoother.topology().free_count() == 0 {
         let slide = request.slide.as_ref().and_then(|slide| slide.slide(file).ok());
         let slides = slide.and_then(|slide| smoother.set_slide(Some(&slide)).ok());

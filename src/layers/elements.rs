@@ -1,0 +1,32 @@
+//! The elements of a mesh among which layers are searched.
+
+use crate::error::MeshError;
+use crate::topology::Topology;
+
+/// The elements of a mesh among which layers are searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Elements<'m> {
+    /// The triangles.
+    pub topology: &'m Topology<'m>,
+    /// Positions of the vertices, in any unit.
+    pub points: &'m [[f64; 2]],
+    /// Quadrilaterals and larger faces as vertex indices, of either winding.
+    pub faces: &'m [Vec<u32>],
+    /// Edges inside the mesh that are walls: named lines, and edges between regions. Edges of the boundary are walls
+    /// without a list.
+    pub lines: &'m [[u32; 2]],
+}
+
+impl Elements<'_> {
+    /// Checks that all elements, lines and walls name vertices that have points.
+    fn check(&self, walls: Option<&[u32]>) -> Result<(), MeshError> {
+        self.topology.check_count(self.points)?;
+        let vertices = self.points.len();
+        let faces = self.faces.iter().flatten();
+        let named = faces.chain(self.lines.as_flattened()).chain(walls.into_iter().flatten());
+        match named.copied().find(|&v| v as usize >= vertices) {
+            Some(vertex) => Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }),
+            None => Ok(()),
+        }
+    }
+}
