@@ -19,7 +19,7 @@ pub struct Elements<'m> {
 
 impl Elements<'_> {
     /// Checks that all elements, lines and walls name vertices that have points.
-    fn check(&self, walls: Option<&[u32]>) -> Result<(), MeshError> {
+    pub(super) fn check(&self, walls: Option<&[u32]>) -> Result<(), MeshError> {
         self.topology.check_count(self.points)?;
         let vertices = self.points.len();
         let faces = self.faces.iter().flatten();

@@ -12,9 +12,11 @@ mod result;
 mod search;
 mod sectors;
 mod segments;
+mod spacing;
 mod vector;
 mod wakes;
 
 pub use choice::KeepLayers;
 pub use elements::Elements;
 pub use result::Layers;
+pub use spacing::Spacing;

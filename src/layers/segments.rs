@@ -1,6 +1,6 @@
 //! Distances from many segments.
 
-use crate::layers::vector::{dot, length, minus};
+use crate::layers::vector::{distance_to_segment, length};
 
 /// A tree of segments: each node has the box of its segments.
 pub(super) struct Segments {
@@ -36,17 +36,10 @@ impl Segments {
             }
             if node < self.leaves {
                 open.extend([2 * node + 1, 2 * node]);
-            } else if distance_from(point, self.segments[node - self.leaves]) <= distance {
+            } else if distance_to_segment(point, self.segments[node - self.leaves]) <= distance {
                 return true;
             }
         }
         false
     }
-}
-
-fn distance_from(point: [f64; 2], [p, q]: [[f64; 2]; 2]) -> f64 {
-    let (edge, to) = (minus(q, p), minus(point, p));
-    let size = dot(edge, edge);
-    let share = if size > 0.0 { (dot(to, edge) / size).clamp(0.0, 1.0) } else { 0.0 };
-    length(minus(to, edge.map(|x| share * x)))
 }

@@ -16,6 +16,14 @@ pub(super) fn length(a: [f64; 2]) -> f64 {
     a[0].hypot(a[1])
 }
 
+/// Returns the distance of a point from a segment.
+pub(super) fn distance_to_segment(point: [f64; 2], [p, q]: [[f64; 2]; 2]) -> f64 {
+    let (edge, to) = (minus(q, p), minus(point, p));
+    let size = dot(edge, edge);
+    let share = if size > 0.0 { (dot(to, edge) / size).clamp(0.0, 1.0) } else { 0.0 };
+    length(minus(to, edge.map(|x| share * x)))
+}
+
 /// Returns the angle at `p` from `q` counter-clockwise to `r`, from 0 to 360 degrees.
 pub(super) fn angle(p: [f64; 2], q: [f64; 2], r: [f64; 2]) -> f64 {
     let (a, b) = (minus(q, p), minus(r, p));

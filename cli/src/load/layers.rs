@@ -7,6 +7,7 @@ use mesh_io::Group;
 use crate::error::CliError;
 use crate::kept_layers::KeptLayers;
 use crate::load::named::{named, refusal};
+use crate::load::walls::{is_of_lines, name};
 use crate::load::{LoadedMesh, explain};
 
 /// Number of vertices of a wall from which a group names the wall, and from which seeds without a layer are noted.
@@ -147,18 +148,4 @@ fn overlooked(
     let mut names: Vec<String> = found.map(name).collect();
     names.dedup();
     Ok(names.iter().take(NAMED).map(|name| note(name, &format!(",{name}"))).collect())
-}
-
-/// Returns whether a group consists of lines.
-fn is_of_lines(group: &Group) -> bool {
-    group.dimension == 1 && !group.vertices().is_empty()
-}
-
-/// Returns the name of a group, else its tag.
-fn name(group: &Group) -> String {
-    match (&group.name, group.tag) {
-        (Some(name), _) => name.clone(),
-        (None, Some(tag)) => tag.to_string(),
-        (None, None) => group.to_string(),
-    }
 }

@@ -14,6 +14,7 @@ mod slide;
 pub(crate) mod streams;
 mod surface;
 mod targets;
+mod walls;
 
 pub(crate) use fields::InterpolatedFields;
 pub(crate) use fixed::FixedBy;
@@ -23,3 +24,4 @@ pub(crate) use plane::axes_legend;
 pub(crate) use slide::{SlidingVertices, stay_as_ends};
 pub(crate) use surface::{as_in_file, lay_out};
 pub(crate) use targets::TargetFacts;
+pub(crate) use walls::{wall_edges, walls};

@@ -6,6 +6,7 @@ mod floored;
 mod histogram;
 mod improved;
 mod run;
+mod spacing;
 mod summary;
 mod target;
 mod task;
@@ -20,6 +21,7 @@ pub(crate) use run::{
     ChangeReport, EngineReport, FaultReport, GoalReport, MeshReport, QualityReport, Refusal,
     Report, Seconds, SlideReport, UntangleReport, history,
 };
+pub(crate) use spacing::{SpacingReport, spacing_change, spacing_sentences};
 pub(crate) use summary::change_of;
 pub(crate) use target::TargetReport;
 pub(crate) use task::{Done, Failure, SmoothJob};

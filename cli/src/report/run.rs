@@ -11,7 +11,7 @@ use gpu_smooth::{
 use serde::Serialize;
 
 use crate::load::explain::BadTriangleReport;
-use crate::report::{Certificate, FlooredReport, ImprovedReport, TargetReport};
+use crate::report::{Certificate, FlooredReport, ImprovedReport, SpacingReport, TargetReport};
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -77,6 +77,8 @@ pub(crate) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) max_move: Option<f64>,
     pub(crate) change: ChangeReport,
+    /// Spacing at the walls. Without a report or a page, empty if nearly no triangle at a wall is flat.
+    pub(crate) spacing: Vec<SpacingReport>,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
     /// Movement of vertices along lines; `None` without `--slide`.

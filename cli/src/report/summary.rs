@@ -7,7 +7,7 @@ use gpu_smooth::Metric;
 use crate::load::stay_as_ends;
 use crate::report::{
     ChangeReport, FaultReport, MeshReport, QualityReport, Report, Seconds, SlideReport,
-    TargetReport, UntangleReport,
+    TargetReport, UntangleReport, spacing_sentences,
 };
 use crate::terminal::numbers::{percent, rough, sig6};
 
@@ -39,6 +39,9 @@ impl Report {
         }
         let _ = writeln!(text, "\n{}", self.ending());
         let _ = writeln!(text, "{}", self.moves());
+        for spacing in spacing_sentences(&self.spacing) {
+            let _ = writeln!(text, "{spacing}");
+        }
         if let Some(slides) = self.slides() {
             let _ = writeln!(text, "{slides}");
         }

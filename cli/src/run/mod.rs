@@ -11,6 +11,7 @@ pub(crate) mod proof;
 pub(crate) mod rehearsal;
 mod result;
 mod run_report;
+mod spacing;
 mod sweeps;
 mod untangle;
 

@@ -6,12 +6,13 @@ use gpu_smooth::{Quality, measure::Change};
 
 use crate::error::CliError;
 use crate::load::{InterpolatedFields, streams};
-use crate::report::{Certificate, FileHash, TargetReport};
+use crate::report::{Certificate, FileHash, SpacingReport, TargetReport};
 use crate::run::checkpoint;
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
 use crate::run::prepare::Ready;
 use crate::run::proof::{self, MeshVersion, Proof};
+use crate::run::spacing;
 use crate::run::sweeps::FinishedRun;
 use crate::terminal::progress::Stage;
 
@@ -19,6 +20,7 @@ use crate::terminal::progress::Stage;
 pub(super) struct Measures {
     pub(super) after: Quality,
     pub(super) change: Change,
+    pub(super) spacing: Vec<SpacingReport>,
     pub(super) target: Option<TargetReport>,
     /// A sentence on interpolated data; `None` without interpolation.
     pub(super) interpolated: Option<String>,
@@ -46,6 +48,8 @@ pub(super) fn measure(
     let (topology, old) = (ready.smoother.topology(), &file.mesh().points);
     let after = Quality::on(request.surface, &outcome.points, topology)?;
     let change = Change::between(topology, old, &outcome.points)?;
+    let is_reported = request.outputs.report.is_some() || request.outputs.page.is_some();
+    let spacing = spacing::at_walls(file, topology, &outcome.points, is_reported)?;
     let base = request.scheme().base();
     let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
     let f_after = || Ok(ready.smoother.f(base, &outcome.points)?);
@@ -58,7 +62,7 @@ pub(super) fn measure(
     for note in interpolated.iter().chain(&omission_remark).chain(left_over) {
         follow.remark(note);
     }
-    Ok(Measures { after, change, target, interpolated, at: Instant::now() })
+    Ok(Measures { after, change, spacing, target, interpolated, at: Instant::now() })
 }
 
 /// Writes a smoothed mesh, and proves the statements of the report from the files. Removes the checkpoint unless the

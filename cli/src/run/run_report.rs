@@ -84,6 +84,7 @@ pub(super) fn report(
         improved: outcome.improved.map(Into::into),
         max_move: request.max_move(),
         change: measured.change.into(),
+        spacing: measured.spacing,
         before: (&ready.before).into(),
         after: (&measured.after).into(),
         certificate,

@@ -1,6 +1,6 @@
 //! Boundary layers that stay, by `--keep-layers`.
 
-use crate::{Folder, assert_holds};
+use crate::{Folder, assert_holds, number};
 use std::fmt::Write;
 
 const COLUMNS: usize = 24;
@@ -86,6 +86,44 @@ fn a_layer_stays_as_if_its_vertices_were_listed() {
     }
     let count = 23 * ROWS;
     assert_holds(&out("").0, &[&format!("layers: {count} vertices in {ROWS} rows at wall stay")]);
+}
+
+#[test]
+fn the_spacing_at_walls_is_stated_before_and_after() {
+    let (mesh, points) = layer(8);
+    let folder = Folder::new(&[("in.su2", &*mesh)]);
+    let run = |args: &str| {
+        let line =
+            format!("in.su2 out.su2 --force --engine cpu --report r.json --html p.html {args}");
+        let run = folder.line(&line);
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let walls = folder.json("r.json")["spacing"].as_array().unwrap().clone();
+        assert_eq!(walls.iter().map(|wall| &wall["wall"]).collect::<Vec<_>>(), ["wall", "far"]);
+        assert_eq!([&walls[0]["flat"], &walls[1]["flat"]], [true, false]);
+        assert!(!run.out.contains("spacing at far"));
+        let page = std::fs::read_to_string(folder.path("p.html")).unwrap();
+        let line = run.out.lines().find(|line| line.starts_with("spacing at wall: ")).unwrap();
+        assert!(page.contains(line), "{line}");
+        (walls[0].clone(), line.to_owned())
+    };
+    let (wall, line) = run("");
+    assert_eq!((&wall["count"], &wall["changed"]), (&23.into(), &0.0.into()));
+    assert_eq!(wall["ratios"], serde_json::json!([1.0, 1.0, 1.0]));
+    assert_eq!(number(&wall["medians"][1]), points[COLUMNS + 1][1]);
+    assert_holds(
+        &line,
+        &["0.050000 before, 0.050000 after (median of 23 vertices)", "1.000 (most); 0 %"],
+    );
+    let (wall, line) = run("--keep-layers none");
+    let most = number(&wall["ratios"][2]);
+    assert!(most > 2.0 && number(&wall["changed"]) > 0.9, "{wall}");
+    // The first row is that of the file, as the wall does not move.
+    let after = folder.mesh("out.su2").points;
+    let heights = (1..COLUMNS).map(|i| after[COLUMNS + 1 + i][1] / 0.05).fold(0.0, f64::max);
+    assert!((most - heights).abs() < 1e-9 * heights, "{most} {heights}");
+    assert_holds(&line, &[&format!("{most:.3} (most)")]);
+    let tried = folder.line("try in.su2 --engine cpu --keep-layers none");
+    assert_holds(&tried.out, &["max angle", "spacing", &format!("{most:.1} times")]);
 }
 
 #[test]

@@ -48,6 +48,7 @@ fn report_holds_the_documented_keys() {
                 "levels_left_out",
                 "best_sweep",
                 "change",
+                "spacing",
                 "stop",
                 "returned",
                 "before",

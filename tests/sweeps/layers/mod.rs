@@ -161,6 +161,47 @@ fn a_mesh_whose_free_vertices_are_all_in_layers_stays_as_it_is() {
     }
 }
 
+#[test]
+fn the_spacing_at_walls_is_the_distance_of_the_vertices_next_to_them() {
+    let of = |grown: &Grown, wall: Vec<[u32; 2]>, after: &[[f64; 2]]| {
+        let Grown { mesh, faces, lines, .. } = grown;
+        let topology = Topology::new(mesh).unwrap();
+        let elements = Elements { topology: &topology, points: &mesh.points, faces, lines };
+        elements.spacing(&[wall, Vec::new()], after).unwrap()
+    };
+    let chain = |columns: &[Vec<u32>]| -> Vec<[u32; 2]> {
+        let ends = columns.windows(2).map(|w| [w[0][0], w[1][0]]);
+        ends.filter(|[a, b]| a != b).collect()
+    };
+    for cut in [Cut::Alternating, Cut::Whole] {
+        let grown = on_flat_wall(cut);
+        let first = 1.0 / 30.0 / 42.0;
+        let mut after: Vec<_> = grown.mesh.points.iter().map(|&[x, y]| [x, 1.5 * y]).collect();
+        after[grown.columns[7][1] as usize][1] = 3.0 * first;
+        after[grown.columns[8][1] as usize][1] = first;
+        let found = of(&grown, chain(&grown.columns), &after);
+        let wall = found[0].unwrap();
+        assert!(found[1].is_none() && wall.is_flat());
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
+        assert_eq!((wall.count, wall.flat), (29, 29));
+        assert!(near(wall.medians[0], first) && near(wall.medians[1], 1.5 * first));
+        assert!(wall.ratios.into_iter().zip([1.0, 1.5, 3.0]).all(|(a, b)| near(a, b)));
+        assert!(near(wall.changed, 28.0 / 29.0) && near(wall.largest_change(), 3.0));
+    }
+    // Both sides of a wall inside the mesh count; its ends do not.
+    let rows = Rows::of_aspect(mean_edge(&plate(40)), 40.0, 1.25, 14);
+    let inner = sheet(false, rows, Cut::Shortest);
+    let wall = of(&inner, inner.lines.clone(), &inner.mesh.points)[0].unwrap();
+    assert_eq!((wall.count, wall.ratios), (2 * 39, [1.0; 3]));
+    // Around the sharp edge of an airfoil, the vertex next to the wall is behind the edge.
+    let airfoil = around_airfoil();
+    let mut around = chain(&airfoil.columns);
+    around.push([airfoil.columns[airfoil.columns.len() - 1][0], airfoil.columns[0][0]]);
+    let wall = of(&airfoil, around, &airfoil.mesh.points)[0].unwrap();
+    let edge = mean_edge(&naca(0.12, 40, false)) / 40.0;
+    assert!(wall.count == 80 && (wall.medians[0] / edge - 1.0).abs() < 0.05, "{wall:?}");
+}
+
 /// Returns the largest inverse mean ratio of triangles with a vertex that moves and a vertex that stays.
 fn worst_at_rim(mesh: &Mesh, is_free: &[bool], points: &[[f64; 2]]) -> f64 {
     let is_at_rim = |t: &&[u32; 3]| {

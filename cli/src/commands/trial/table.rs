@@ -8,14 +8,15 @@ use crate::args::TryArgs;
 use crate::commands::trial::best::{ABOUT_LEAST, Best, Gains, MAX_MOVE, MAX_SIZE_CHANGE};
 use crate::commands::trial::tried::Tried;
 use crate::render::columns::{left, right};
-use crate::report::{MeshReport, QualityReport, Report, change_of};
+use crate::report::{MeshReport, QualityReport, Report, change_of, spacing_change};
 use crate::request::TrialRun;
 use crate::terminal::numbers::sig6;
 use crate::terminal::shell_words;
 
-const COLUMNS: [&str; 6] = ["f imr", "min angle", "worst imr", "sizes", "moved", "s"];
-const WIDTHS: [usize; 6] = [10, 10, 10, 11, 8, 8];
-const EMPTY: [&str; 6] = [""; 6];
+const COLUMNS: [&str; 8] =
+    ["f imr", "min angle", "max angle", "worst imr", "sizes", "moved", "spacing", "s"];
+const WIDTHS: [usize; 8] = [10, 10, 10, 10, 11, 8, 11, 8];
+const EMPTY: [&str; 8] = [""; 8];
 
 /// Returns the options of a run as a row of the table names them.
 pub(super) fn label(run: &TrialRun) -> String {
@@ -43,7 +44,7 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
         "{}: {format}, {vertices} vertices ({free} free), {triangles} triangles\n\n",
         args.mesh.display()
     );
-    let mut line = |name: &str, fields: [&str; 6]| {
+    let mut line = |name: &str, fields: [&str; 8]| {
         text += &left(name, width);
         for (field, width) in fields.iter().zip(WIDTHS) {
             text += &right(field, width);
@@ -52,18 +53,20 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
         text.push('\n');
     };
     line("", COLUMNS);
-    let [f, angle, imr] = quality(&first.before);
-    line("  before", [&f, &angle, &imr, "", "", ""]);
+    let [f, least, greatest, imr] = quality(&first.before);
+    line("  before", [&f, &least, &greatest, &imr, "", "", "", ""]);
     for (row, tried) in tried.iter().enumerate() {
         let is_best = best.is_some_and(|best| best.row == row);
         let name = format!("{} {}", if is_best { "*" } else { " " }, label(tried.run));
         match &tried.result {
             Ok(report) => {
-                let [f, angle, imr] = quality(&report.after);
+                let [f, least, greatest, imr] = quality(&report.after);
                 let sizes = change_of(report.change.size.p95);
                 let moved = format!("{:.2}", report.change.moved.p95);
+                let spacing = spacing_change(&report.spacing).map(change_of).unwrap_or_default();
                 let seconds = format!("{:.3}", report.seconds.total);
-                line(&name, [&f, &angle, &imr, &sizes, &moved, &seconds]);
+                let fields = [&f, &least, &greatest, &imr, &sizes, &moved, &spacing, &seconds];
+                line(&name, fields.map(String::as_str));
             }
             Err(_) => line(&format!("{name} failed"), EMPTY),
         }
@@ -78,6 +81,9 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
         "\nworst imr: of the triangles with a free vertex. sizes, moved: 19 of 20 vertices change the size of the elements\n\
          around them, and move in lengths of an edge, by no more\n"
     );
+    if spacing_change(&first.spacing).is_some() {
+        text += "spacing: no vertex next to a wall with flat triangles changes its distance from the wall by more\n";
+    }
     match best {
         Some(best) => {
             let _ = writeln!(text, "* the best row: {}\n", rule(best));
@@ -90,10 +96,10 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
     text.trim_end().to_owned()
 }
 
-/// Returns f by imr, the least angle, and the worst imr of the triangles with a free vertex.
-fn quality(report: &QualityReport) -> [String; 3] {
-    let angle = format!("{:.2}°", report.min_angle);
-    [sig6(report.f["imr"]), angle, sig6(report.worst_movable_imr)]
+/// Returns f by imr, the least and the largest angle, and the worst imr of the triangles with a free vertex.
+fn quality(report: &QualityReport) -> [String; 4] {
+    let [least, greatest] = [report.min_angle, report.max_angle].map(|a| format!("{a:.2}°"));
+    [sig6(report.f["imr"]), least, greatest, sig6(report.worst_movable_imr)]
 }
 
 /// The sentence for runs none of which is the best.
@@ -132,6 +138,7 @@ pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> V
                 before = json!(report.before);
                 object["after"] = json!(report.after);
                 object["change"] = json!(report.change);
+                object["spacing"] = json!(report.spacing);
                 object["keeps_mesh"] = Gains::from(report).keeps_mesh().into();
                 object["engine"] = json!(report.engine);
                 object["sweeps"] = report.sweeps.into();

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use crate::error::CliError;
 use crate::render::html::page::escape;
 use crate::render::picture::slid;
-use crate::report::{Done, SmoothJob};
+use crate::report::{Done, SmoothJob, spacing_sentences};
 use crate::terminal::numbers::sig6;
 use crate::terminal::{process, shell_words};
 
@@ -36,6 +36,9 @@ pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliEr
     item("engine", &format!("{on}{reason}"));
     for choice in &done.report.choices {
         item("choice", choice);
+    }
+    for spacing in spacing_sentences(&done.report.spacing) {
+        item("spacing", &spacing);
     }
     if let Some(floored) = &done.report.floored {
         item("worst", &floored.sentence());
