@@ -220,7 +220,7 @@ def measured(program, mesh, folder, *options):
 
 
 def row(program, name, mesh, folder):
-    sized = measured(program, mesh, folder, "--target", "keep-size")
+    sized = measured(program, mesh, folder, "--target", "keep-size", "--keep-layers", "none")
     weight = sized["target"]["size_weight"]
     stretching = f"{2.5 + 2 * (weight - 1):.1f}" if weight > 1 else "below 2.5"
     cells = [name, sized["mesh"]["vertices"], stretching, f"{weight:.1f}"]
