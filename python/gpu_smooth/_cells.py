@@ -59,10 +59,29 @@ class Cells(NamedTuple):
         return {**found, **{name: value for name, value in given.items() if name not in ("fixed", "lines")}}
 
 
-def named(fixed: Any, groups: dict[str, Callable[[], Any]]) -> Any:
+def with_groups(options: dict[str, Any], groups: Callable[[], dict[str, Callable[[], Any]]]) -> dict[str, Any]:
+    """Return options with vertices in place of the groups that `fixed` and `keep_layers` name.
+
+    `groups` returns a function for each name, which returns the vertices of the group.
+    """
+    found = dict(options)
+    if "fixed" in options:
+        found["fixed"] = named(options["fixed"], groups())
+    layers = options.get("keep_layers")
+    if isinstance(layers, str) and "," in layers:
+        layers = tuple(layers.split(",", 1))
+    if isinstance(layers, tuple) and len(layers) == 2:
+        walls = layers[1]
+        names = walls.split(",") if isinstance(walls, str) and walls not in groups() else walls
+        found["keep_layers"] = (layers[0], named(names, groups(), "keep_layers"))
+    return found
+
+
+def named(fixed: Any, groups: dict[str, Callable[[], Any]], option: str = "fixed") -> Any:
     """Return the vertices of groups that `fixed` names: a name, or a list of names. Other values are returned as they are.
 
-    `groups` has a function for each name, which returns the vertices of the group.
+    `groups` has a function for each name, which returns the vertices of the group. `option` is the option that has the
+    names.
     """
     names = [fixed] if isinstance(fixed, str) else fixed
     if isinstance(names, np.ndarray) and names.dtype.kind == "U":
@@ -72,7 +91,7 @@ def named(fixed: Any, groups: dict[str, Callable[[], Any]]) -> Any:
     unknown = [name for name in names if name not in groups]
     if unknown:
         known = ", ".join(sorted(groups)) or "none"
-        raise MeshError(f"fixed: the mesh has no group {unknown[0]!r}. Its groups are: {known}")
+        raise MeshError(f"{option}: the mesh has no group {unknown[0]!r}. Its groups are: {known}")
     return np.unique(np.concatenate([np.asarray(groups[name](), np.int64).ravel() for name in names]))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gpu_smooth._cells import Cells, named
+from gpu_smooth._cells import Cells, with_groups
 from gpu_smooth._errors import GpuSmoothError, MeshError
 from gpu_smooth._smooth import run
 
@@ -33,7 +33,7 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     ----------
     **options
         The options of `smooth`. Vertices are numbered by the rows of `gmsh.model.mesh.getNodes()`. `fixed` may also be the
-        name of a physical group, or a list of names.
+        name of a physical group, or a list of names, and `keep_layers` may name groups of walls: `"rows=3,wall"`.
 
     Returns
     -------
@@ -65,9 +65,7 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     rows = np.full(int(tags.max(initial=0)) + 1, -1)
     rows[tags] = np.arange(len(tags))
     cells = _cells(gmsh, rows)
-    given: dict[str, Any] = dict(options)
-    if "fixed" in given:
-        given["fixed"] = named(given["fixed"], _groups(gmsh, rows))
+    given = with_groups(dict(options), lambda: _groups(gmsh, rows))
     given = cells.options(given, len(points))
     if np.ptp(points[cells.triangles, 2]) == 0.0:
         # Nodes that no triangle has, such as centers of arcs, may have another z.

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gpu_smooth import _native
-from gpu_smooth._cells import REGIONS, Cells, named, whole
+from gpu_smooth._cells import REGIONS, Cells, whole, with_groups
 from gpu_smooth._ends import ends_of_lines, ends_of_numbers, ends_of_vertices
 from gpu_smooth._errors import MeshError
 
@@ -102,8 +102,7 @@ def smooth(mesh: Any, options: dict[str, Any]) -> Any:
     """Return a copy of a `meshio.Mesh` with moved vertices. The copy shares cells and data with the mesh."""
     cells = cells_of(mesh)
     points = np.asarray(mesh.points)
-    if "fixed" in options:
-        options = {**options, "fixed": named(options["fixed"], groups_of(mesh))}
+    options = with_groups(options, lambda: groups_of(mesh))
     if options.get("slide"):
         cells = cells._replace(ends=ends_of(mesh, cells))
     smoothed = copy.copy(mesh)

@@ -41,7 +41,7 @@ class MeshOptions(TypedDict, total=False):
     corner_angle: float | None
     hausdorff: float | None
     periodic: Array | None
-    keep_layers: str | None
+    keep_layers: str | tuple[str, Array] | None
     only_bad: float | None
     rings: int | None
     target: Target | None

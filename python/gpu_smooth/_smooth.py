@@ -146,10 +146,12 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         a tenth of the local edge length.
     periodic : array_like of int, shape (k, 2), optional
         With `slide`: pairs of vertices that slide together.
-    keep_layers : str, default "auto"
+    keep_layers : str or tuple of str and array_like, default "auto"
         Boundary layers whose vertices stay: `"auto"` for the layers that are found above walls, `"none"`, `"rows=N"` for
         the first N rows, or `"within=DISTANCE"` for all vertices within a distance of walls, in the unit of the points.
-        Walls are the boundary, `lines` and lines between regions. If no other vertex is free, the points do not move.
+        Walls are the boundary, `lines` and lines between regions; a tuple such as `("rows=3", walls)` has the vertices of
+        the only walls that count, as `fixed` takes vertices. For a `meshio.Mesh`, `"rows=3,GROUP"` names groups of walls.
+        If no other vertex is free, the points do not move, and a warning says so.
     only_bad : float, optional
         Let only vertices move that are near a triangle with a larger inverse mean ratio.
     rings : int, default 2

@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use crate::arrays::PerVertex;
 use crate::error;
 use crate::mesh_options::{MeshOptions, Target};
-use crate::movement::{self, Constraints};
+use crate::movement::{self, Constraints, LayersEffect};
 use crate::observer::RunObserver;
 
 /// The reason for which a mesh cannot be smoothed.
@@ -86,7 +86,19 @@ impl Input {
             constraints.held.extend_from_slice(chart.held());
             mesh = chart.mesh().clone();
         }
-        let is_all_kept = movement::keep_layers(&mut mesh, options, &mut constraints)?;
+        let effect = movement::keep_layers(&mut mesh, options, &mut constraints)?;
+        match effect {
+            LayersEffect::Fixed => {}
+            LayersEffect::AllKept => observer.warn(
+                "keep_layers: every free vertex is in a boundary layer that stays, so the points do not move. Pass \
+                 keep_layers=\"none\" to let them move",
+            ),
+            LayersEffect::NotFound => observer.warn(
+                "keep_layers: no wall has such a layer, so all vertices may move. Pass the vertices of walls, as in \
+                 (\"rows=3\", walls)",
+            ),
+        }
+        let is_all_kept = effect == LayersEffect::AllKept;
         let mut tangled = None;
         if options.untangles {
             let done = untangled(&mesh, stored, observer)?;

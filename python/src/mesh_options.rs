@@ -62,6 +62,8 @@ pub(crate) struct MeshOptions {
     pub(crate) periodic: Vec<[u32; 2]>,
     /// Boundary layers that stay.
     pub(crate) keep_layers: KeepLayers,
+    /// Vertices of the walls of these layers; `None` for all walls.
+    pub(crate) walls: Option<Vec<u32>>,
     /// Inverse mean ratio of bad triangles; only vertices near bad triangles move.
     pub(crate) only_bad: Option<f64>,
     pub(crate) rings: Option<u32>,
@@ -86,6 +88,7 @@ impl MeshOptions {
             hausdorff: None,
             periodic: Vec::new(),
             keep_layers: KeepLayers::Auto,
+            walls: None,
             only_bad: None,
             rings: None,
             target: Target::Equilateral,
@@ -110,10 +113,22 @@ impl MeshOptions {
             "hausdorff" => self.hausdorff = Some(given.number(OptionRange::HAUSDORFF)?),
             "periodic" => self.periodic = arrays::pairs(name, value, vertices)?,
             "keep_layers" => {
-                let words =
-                    "\"auto\", \"none\", \"rows=N\" with N from 1 to 1000, or \"within=DISTANCE\"";
-                let text = value.extract::<String>().map_err(|_| given.refused(words))?;
+                let words = "\"auto\", \"none\", \"rows=N\" with N from 1 to 1000, or \"within=DISTANCE\", alone or in a \
+                     tuple with the vertices of walls";
+                let of_walls = value.cast::<PyTuple>().ok().filter(|tuple| tuple.len() == 2);
+                let text = match of_walls {
+                    Some(pair) => pair.get_item(0)?,
+                    None => value.clone(),
+                };
+                let text = text.extract::<String>().map_err(|_| given.refused(words))?;
                 self.keep_layers = text.parse().map_err(|_| given.refused(words))?;
+                if let Some(pair) = of_walls {
+                    if self.keep_layers == KeepLayers::None {
+                        return Err(given.refused(words));
+                    }
+                    let walls = pair.get_item(1)?;
+                    self.walls = Some(arrays::vertex_set("keep_layers[1]", &walls, vertices)?);
+                }
             }
             "only_bad" => {
                 let is_ratio = |ratio: f64| ratio >= 1.0 && ratio.is_finite();

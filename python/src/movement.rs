@@ -49,25 +49,40 @@ pub(crate) fn fix(mesh: &mut Mesh, options: &MeshOptions) -> Result<Constraints,
     Ok(Constraints { lines, held })
 }
 
-/// Fixes the vertices of the boundary layers that stay. Returns true, and fixes no vertex, if no other vertex is free.
+/// The effect of the boundary layers that stay.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum LayersEffect {
+    /// The vertices of layers are fixed, if any were found.
+    Fixed,
+    /// All free vertices are in layers. No vertex is fixed, and runs have no sweeps.
+    AllKept,
+    /// The walls, rows or distance of the options have no layer.
+    NotFound,
+}
+
+/// Fixes the vertices of the boundary layers that stay, unless no other vertex is free.
 pub(crate) fn keep_layers(
     mesh: &mut Mesh,
     options: &MeshOptions,
     constraints: &mut Constraints,
-) -> Result<bool, MeshError> {
+) -> Result<LayersEffect, MeshError> {
     if options.keep_layers == KeepLayers::None {
-        return Ok(false);
+        return Ok(LayersEffect::Fixed);
     }
     let topology = Topology::new(mesh)?;
     let points = &mesh.points;
     let elements = Elements { topology: &topology, points, faces: &[], lines: &constraints.lines };
-    let layers = options.keep_layers.find(&elements, None)?;
+    let layers = options.keep_layers.find(&elements, options.walls.as_deref())?;
     if layers.have_all_free(&topology) {
-        return Ok(true);
+        return Ok(LayersEffect::AllKept);
+    }
+    let is_asked = options.walls.is_some() || options.keep_layers != KeepLayers::Auto;
+    if is_asked && layers.vertices.is_empty() {
+        return Ok(LayersEffect::NotFound);
     }
     constraints.held.extend_from_slice(&layers.vertices);
     mesh.fixed.extend(layers.vertices);
-    Ok(false)
+    Ok(LayersEffect::Fixed)
 }
 
 /// Returns the curves along which vertices slide.

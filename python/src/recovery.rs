@@ -7,7 +7,6 @@ use std::time::Instant;
 
 use gpu_smooth::{Checkpoint, CheckpointPolicy, GpuError, Stop};
 use mesh_io::atomic;
-use pyo3::exceptions::PyRuntimeWarning;
 use pyo3::prelude::*;
 
 use crate::error;
@@ -97,19 +96,6 @@ impl CheckpointPolicy for Recovery<'_> {
 
     fn falls_back_to_cpu(&mut self, _: &GpuError, _: u32) -> bool {
         self.falls_back
-    }
-}
-
-impl RunObserver<'_> {
-    /// Issues a warning. A filter of warnings may make the warning an exception, which ends the run.
-    fn warn(&self, text: &str) {
-        let text = std::ffi::CString::new(text.replace('\0', " ")).unwrap_or_default();
-        Python::attach(|py| {
-            let category = py.get_type::<PyRuntimeWarning>();
-            if let Err(raised) = PyErr::warn(py, &category, &text, 1) {
-                self.cancel(raised);
-            }
-        });
     }
 }
 

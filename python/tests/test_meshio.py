@@ -29,6 +29,18 @@ def test_a_mesh_of_triangles_is_smoothed_as_its_arrays(mesh: Mesh) -> None:
     assert [block.type for block in smoothed.cells] == ["triangle", "triangle"]
 
 
+def test_layers_stay_above_groups_of_walls() -> None:
+    points, triangles = lattice(12, by=0.0)
+    points[:, 1] = 12.0 * (1.4 ** points[:, 1] - 1.0) / (1.4**12 - 1.0)
+    bottom = np.flatnonzero(points[:, 1] == points[0, 1])
+    given = meshio.Mesh(points, [("triangle", triangles)], point_sets={"wall": bottom})
+    smoothed = gpu_smooth.smooth(given, keep_layers="rows=2,wall")
+    expected = gpu_smooth.smooth(points, triangles, keep_layers=("rows=2", bottom))
+    assert np.array_equal(smoothed.points, expected)
+    with pytest.raises(gpu_smooth.MeshError, match="keep_layers: the mesh has no group 'inlet'"):
+        gpu_smooth.smooth(given, keep_layers="rows=2,inlet")
+
+
 def test_vertices_of_other_cells_and_between_regions_stay(mesh: Mesh) -> None:
     points, triangles = mesh
     column = np.flatnonzero(np.arange(len(points)) % 13 == 6)

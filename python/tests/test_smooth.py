@@ -78,6 +78,27 @@ def test_options_act_as_those_of_the_command_line(
     assert not np.array_equal(smoothed, gpu_smooth.smooth(points, triangles))
 
 
+def test_layers_stay_above_the_walls_that_are_passed() -> None:
+    points, triangles = lattice(12, by=0.0)
+    points[:, 1] = 12.0 * (1.4 ** points[:, 1] - 1.0) / (1.4**12 - 1.0)
+    bottom, top = (np.flatnonzero(points[:, 1] == y) for y in (points[0, 1], points[-1, 1]))
+    row = np.arange(len(points)) // 13
+    for walls, kept in ((bottom, row <= 2), (top, row >= 10), (row == 0, row <= 2)):
+        smoothed = gpu_smooth.smooth(points, triangles, keep_layers=("rows=2", walls))
+        moved = (smoothed != points).any(axis=1)
+        assert not moved[kept].any() and moved[~kept].sum() > 60
+    with pytest.raises(gpu_smooth.OptionError, match="keep_layers"):
+        gpu_smooth.smooth(points, triangles, keep_layers=("none", bottom))
+    with pytest.raises(gpu_smooth.MeshError, match="keep_layers"):
+        gpu_smooth.smooth(points, triangles, keep_layers=("rows=2", [999]))
+    with pytest.warns(RuntimeWarning, match="every free vertex is in a boundary layer"):
+        smoothed = gpu_smooth.smooth(points, triangles, keep_layers=("rows=12", bottom))
+    assert np.array_equal(smoothed, points)
+    even, triangles = lattice(12)
+    with pytest.warns(RuntimeWarning, match="no wall has such a layer"):
+        gpu_smooth.smooth(even, triangles, keep_layers="rows=2")
+
+
 def test_every_option_is_one_of_the_command_line() -> None:
     known = command_line("--help").stdout
     only_here = {"fixed", "lines", "regions", "on_sweep", "resume"}
