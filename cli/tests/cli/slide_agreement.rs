@@ -21,8 +21,9 @@ fn random(random: &mut SplitMix64) -> (String, bool) {
     for row in 0..=rows {
         let mut last = None;
         for (k, &column) in places.iter().enumerate() {
-            let mut off =
-                |i: u32, n: u32| if i % n == 0 { 0.0 } else { noise * random.range(-1.0, 1.0) };
+            let mut off = |i: u32, n: u32| {
+                if i.is_multiple_of(n) { 0.0 } else { noise * random.range(-1.0, 1.0) }
+            };
             let (x, y) =
                 (f64::from(column) + off(column, columns), f64::from(row) + off(row, rows));
             let at = [
