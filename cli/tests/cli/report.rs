@@ -318,7 +318,7 @@ fn every_key_of_a_report_is_documented_and_every_documented_key_is_in_a_report()
         "in out --continue r.ckpt",
         "in.gr3 out.gr3 --interpolate all",
         "bad out --untangle",
-        "right out",
+        "right right-out",
     ] {
         let run = folder.line(&format!("{line} --report r.json --force"));
         assert_eq!(run.code, Some(0), "{line}: {}", run.err);
