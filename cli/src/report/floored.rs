@@ -76,8 +76,8 @@ mod tests {
         };
         assert_eq!(
             report.sentence(),
-            "the sweeps left a least angle of 20.90° (30.51° before) and a worst imr of 1.731 (1.599 before); \
-             113 vertices moved on and 2 went back to end at 30.61° and 1.591, which changed f by +0.09 %"
+            "the sweeps left a least angle of 20.90° (30.51° before) and a worst imr of 1.731000 (1.599000 before); \
+             113 vertices moved on and 2 went back to end at 30.61° and 1.591000, which changed f by +0.09 %"
         );
         let report = FlooredReport {
             moved: 1,
