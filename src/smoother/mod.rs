@@ -3,6 +3,7 @@
 mod backend;
 mod floor;
 mod goal;
+mod judging;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod over_all;

@@ -1,0 +1,272 @@
+//! The assessment of a run: its final positions as coordinates that can be stored, and the gain of the run there.
+
+use std::time::Duration;
+
+use glam::DVec2;
+
+use crate::cpu::mean_excess;
+use crate::error::{MeshError, SmoothError};
+use crate::metric::{Corner, Ideal, Metric};
+use crate::options::Options;
+use crate::outcome::{Floored, GoalOutcome, Improved, Outcome};
+use crate::parallel::paced;
+use crate::precision::Precision;
+use crate::quality::Quality;
+use crate::run::{
+    JITTER, MIN_SCALE, NOISE, Observer, Phase, Plan, Progress, ROUNDING, Stop, set_guards,
+};
+use crate::slide::Sliding;
+use crate::targets::Surface;
+use crate::whole::{Improvement, RunEnd, altitude};
+
+use super::over_all::OverAll;
+use super::prepared::Smoother;
+use super::stages::Stages;
+
+/// Number of coordinates that one task rounds, and of triangles that one task measures.
+const CHUNK: usize = 1 << 14;
+
+/// What judges a run: its objective, and the objective before the first sweep.
+pub(super) struct JudgedBy<'r> {
+    pub(super) over_all: &'r OverAll<'r>,
+    /// Objective of the problem by the base metric before the first sweep.
+    pub(super) initial: f64,
+}
+
+impl Smoother<'_> {
+    /// Converts the final positions of the sweeps to coordinates, and evaluates the result. Rounding, and vertices that
+    /// were set back, may have cost more than the sweeps gained. A device also moves the vertices of an optimal mesh by
+    /// its own rounding. If nothing was gained on `initial`, the mesh is returned unchanged.
+    pub(super) async fn judged(
+        &self,
+        options: &Options,
+        JudgedBy { over_all, initial }: JudgedBy<'_>,
+        goal: Option<GoalOutcome>,
+        mut ended: RunEnd,
+        stages: Stages<'_>,
+        observe: &mut dyn Observer,
+    ) -> Result<Outcome, SmoothError> {
+        let base = options.scheme.base();
+        let f = |k: usize| ended.history[k].of(base).unwrap_or(f64::INFINITY);
+        let evaluations = ended.history.len();
+        let best_sweep = match Plan::new(options).is_monotone() {
+            true => evaluations - 1,
+            false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
+        };
+        let swept = f(best_sweep);
+        let mut problem = over_all.problem.clone();
+        stages.set_targets_at(&mut problem, &ended.positions)?;
+        let before_stage = match options.improve_worst {
+            Some(_) => paced::copied(&ended.positions).await,
+            None => Vec::new(),
+        };
+        let mut improving =
+            Improvement::after(&mut ended, options, &problem, stages.bounds(), observe).await;
+        let (mut points, mut returned) = self.as_stored(options, &stages, &ended.positions).await?;
+        if let Some(improving) = &mut improving {
+            let without = self.as_stored(options, &stages, &before_stage).await?;
+            let [old, new] = [&without.0, &points];
+            let old = self.problem.normalized(old, Vec::new()).await;
+            let new = self.problem.normalized(new, Vec::new()).await;
+            if !improving.holds_as_stored(&problem, &old, &new).await {
+                (points, returned) = without;
+                ended.positions = before_stage;
+            }
+        }
+        let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
+        // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
+        let is_as_swept =
+            returned == 0 && self.sliding.is_none() && matches!(options.stored, Precision::Double);
+        let exact = match is_as_swept {
+            true => None,
+            false => {
+                Some(base.ideal_squared() + mean_excess(base, &problem, &ended.positions).await)
+            }
+        };
+        let mut judged = self.problem.normalized(&points, ended.positions).await;
+        stages.set_targets_at(&mut problem, &judged)?;
+        let problem = &problem;
+        // f of the sweeps as stored, before the floor trades some of it for better triangles.
+        let rounded = base.ideal_squared() + mean_excess(base, problem, &judged).await;
+        let (mut written, mut floored, mut all_moved) = (rounded, None, 0);
+        if let Some(floor) = self.lacking_floor(options, &points).await {
+            let (was_canceled, sweep) = (ended.stop == Stop::Canceled, evaluations as u32 - 1);
+            let now = Progress { phase: Phase::Improving, sweep, f: rounded };
+            // A canceled run ends soon, but not with a worse triangle than before.
+            let goes_on = || {
+                let goes_on = was_canceled || observe(&now).is_continue();
+                if !goes_on {
+                    ended.stop = Stop::Canceled;
+                }
+                goes_on
+            };
+            let bounds = stages.bounds();
+            let swept = points.iter().zip(&self.mesh.points).filter(|(to, from)| to != from);
+            all_moved = swept.count();
+            let raised =
+                floor.raise(options, problem, bounds, &judged, &mut points, goes_on).await?;
+            judged = self.problem.normalized(&points, judged).await;
+            written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
+            floored =
+                Some(Floored { f: [rounded, written].map(|f| over_all.f(base, f)), ..raised });
+        }
+        let mut gains =
+            initial - written > NOISE * initial + ROUNDING && self.is_lower(base, &points).await?;
+        if let (false, Some(improving)) = (gains, &improving) {
+            gains = improving.is_better(problem, &judged).await;
+        }
+        // In a smaller gain, the errors of f on a device would be a considerable share.
+        let lost = match initial - swept > 100.0 * JITTER * initial {
+            true => ((rounded - swept) / (initial - swept)).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        if !gains {
+            points.clone_from(&self.mesh.points);
+            returned = 0;
+            floored = floored
+                .map(|floored: Floored| floored.undone(all_moved, over_all.f(base, initial)));
+        }
+        // A device sums in single precision, and so cannot find a gain below the error of its f.
+        let error = match improving {
+            None => (exact.unwrap_or(rounded) - swept).abs() / written.max(MIN_SCALE),
+            Some(_) => 0.0,
+        };
+        let projection_error = self.projection_error(&points).await;
+        let slid = stages.slid(&points);
+        let best = if gains { written } else { initial };
+        let least = base.least_objective(problem.targets().is_some());
+        let possible = (best - least).max(0.0) / best.max(MIN_SCALE);
+        let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
+        let improved = match improving {
+            Some(improving) => {
+                let positions = if gains { &judged } else { self.problem.positions() };
+                let improved = improving.outcome(problem, positions, best, &slides, gains).await;
+                Some(Improved { f: improved.f.map(|f| over_all.f(base, f)), ..improved })
+            }
+            None => None,
+        };
+        let goal = goal.map(|goal| {
+            let gone = (initial - best) / (initial - goal.desired);
+            // 0 / 0 means that the initial objective equals the desired one.
+            let best_fraction = if gone.is_nan() { 1.0 } else { gone };
+            let given = options.stopping.goal().and_then(|goal| goal.desired);
+            let desired = given.unwrap_or_else(|| over_all.f(base, goal.desired));
+            GoalOutcome { best_fraction, desired, ..goal }
+        });
+        let history = ended.history.into_iter().map(|now| over_all.objectives(now)).collect();
+        Ok(Outcome {
+            points,
+            stop: ended.stop,
+            sweeps: evaluations as u32 - 1,
+            alternated: ended.counts.alternated,
+            corrections: ended.counts.corrections,
+            opening_sweeps: ended.opening_sweeps,
+            closing_sweeps: ended.closing_sweeps,
+            levels_left_out: ended.counts.levels_left_out,
+            levels: ended.counts.levels,
+            best_sweep: if gains { best_sweep as u32 } else { 0 },
+            // A decay that has just begun may promise more than the distance between f and its lower limit.
+            remaining: ended
+                .remaining
+                .map(|left| left.max(error).max(projection_error).min(possible)),
+            projection_error,
+            held_back: ended.held_back,
+            lost,
+            history,
+            movable_f: [initial, best],
+            goal,
+            returned,
+            slid,
+            floored,
+            improved,
+            device_fault: ended.fault,
+            smooth: Duration::ZERO,
+        })
+    }
+
+    /// Returns the points of normalized positions as they are stored: in the unit of the mesh, rounded, and with vertices set
+    /// back until no triangle is inverted or breaks the bound of altitudes. Returns the number of vertices set back too.
+    async fn as_stored(
+        &self,
+        options: &Options,
+        stages: &Stages<'_>,
+        positions: &[DVec2],
+    ) -> Result<(Vec<[f64; 2]>, usize), MeshError> {
+        let mut points = self.problem.in_unit_of(&self.mesh, positions).await;
+        stages.slide_into(&mut points);
+        if !matches!(options.stored, Precision::Double) {
+            paced::for_each_chunk(points.as_flattened_mut(), CHUNK, |_, coordinates| {
+                coordinates.iter_mut().for_each(|x| *x = options.stored.rounded(*x));
+            })
+            .await;
+        }
+        let stored = Some(options.stored);
+        let mut returned = self.certified(&mut points, stored).await?;
+        // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
+        let mut low = usize::from(options.keep_altitude);
+        let guard = if low > 0 { self.final_guard(options).await } else { f64::INFINITY };
+        while low > 0 {
+            low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
+            returned += low + self.certified(&mut points, stored).await?;
+        }
+        Ok((points, returned))
+    }
+
+    /// Returns whether f by a metric, with the areas of the vertices at `points`, is lower than f of the mesh. A run
+    /// divides areas by the mean area at its start, and sliding vertices change the mean area. Areas that are errors of
+    /// rounding depend on the unit of positions too. With targets, sizes are absolute, and the result is true.
+    async fn is_lower(&self, metric: Metric, points: &[[f64; 2]]) -> Result<bool, MeshError> {
+        let is_exact = metric.properties().barrier && metric.is_scale_invariant();
+        if is_exact || self.problem.targets().is_some() || self.field.is_some() {
+            return Ok(true);
+        }
+        let f = async |points: &[[f64; 2]]| {
+            let images = self.problem.images(points);
+            let quality = Quality::with_pauses(Surface::Plane, &images, &self.topology);
+            quality.await.map(|quality| quality.f(metric))
+        };
+        Ok(f(points).await? < f(&self.mesh.points).await?)
+    }
+
+    /// Returns an upper estimate, as a share of f, of the distance between the optimum in the projection of a sphere and
+    /// the optimum on the sphere; 0 without a projection. With vertices at `points`, f by the inverse mean ratio in the
+    /// projection differs from f on the sphere, where triangles are measured at their centers. At the other optimum, the
+    /// difference is about as large, and the estimate is twice the difference. Only triangles with a free vertex count.
+    async fn projection_error(&self, points: &[[f64; 2]]) -> f64 {
+        if !self.problem.is_projected() {
+            return 0.0;
+        }
+        let images = self.problem.images(points);
+        let square = |points: &[[f64; 2]], t: &[u32; 3], lengths: [f64; 2]| {
+            let [p, q, r] = t.map(|v| DVec2::from(points[v as usize]) * DVec2::from(lengths));
+            let corner =
+                Corner { a: (q - p).into(), b: (r - p).into(), ideal: Ideal::of_area(1.0) };
+            corner.inverse_mean_ratio().powi(2)
+        };
+        let squares = |_, triangles: &[[u32; 3]]| {
+            let movable =
+                triangles.iter().filter(|t| t.iter().any(|&v| self.topology.free()[v as usize]));
+            movable.fold([0.0; 2], |[on_sphere, projected], t| {
+                let lengths = Surface::Sphere.lengths_in(points, t);
+                let [s, p] = [square(points, t, lengths), square(&images, t, [1.0; 2])];
+                [on_sphere + s, projected + p]
+            })
+        };
+        let parts = paced::map_parts(self.topology.triangles().chunks(CHUNK), squares).await;
+        let [on_sphere, projected] =
+            [0, 1].map(|k| parts.iter().map(|part: &[f64; 2]| part[k]).sum::<f64>());
+        let share = 2.0 * (on_sphere - projected).abs() / on_sphere;
+        if share.is_finite() { share } else { 0.0 }
+    }
+
+    /// Returns the largest inverse mean ratio that the guard of a run allows; infinite without a guard. Also infinite
+    /// with targets and in a projection, where the guard applies to transformed triangles.
+    async fn final_guard(&self, options: &Options) -> f64 {
+        if self.problem.targets().is_some() || self.problem.is_projected() {
+            return f64::INFINITY;
+        }
+        let mut plan = Plan::new(options);
+        set_guards(&mut plan, options.guard, &self.problem, self.problem.positions()).await;
+        plan.base_step(1.0).shape_guard
+    }
+}
