@@ -37,7 +37,7 @@ mod text;
 mod visit;
 mod xml;
 
-pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs};
+pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs, edges_between_regions};
 pub use crate::content::group::{Group, Groups};
 pub use crate::content::remark::Remark;
 pub use crate::convert::{Conversion, Encoding};

@@ -56,6 +56,8 @@ impl From<SmoothError> for Failure {
 pub(crate) struct Input {
     /// The mesh with continued longitudes on a sphere, after untangling.
     pub(crate) mesh: Mesh,
+    /// The boundary layers that stay.
+    layers: Layers,
     pub(crate) layout: Layout,
 }
 
@@ -65,8 +67,6 @@ pub(crate) struct Layout {
     pub(crate) tangled: Option<Vec<[f64; 2]>>,
     pub(crate) chart: Option<Chart>,
     constraints: Constraints,
-    /// Whether all free vertices are in boundary layers that stay. A run then has no sweeps.
-    pub(crate) is_all_kept: bool,
 }
 
 impl Input {
@@ -86,7 +86,7 @@ impl Input {
             constraints.held.extend_from_slice(chart.held());
             mesh = chart.mesh().clone();
         }
-        let effect = movement::keep_layers(&mut mesh, options, &mut constraints)?;
+        let (layers, effect) = movement::keep_layers(&mut mesh, options, &constraints)?;
         match effect {
             LayersEffect::Fixed => {}
             LayersEffect::AllKept => observer.warn(
@@ -98,7 +98,6 @@ impl Input {
                  (\"rows=3\", walls)",
             ),
         }
-        let is_all_kept = effect == LayersEffect::AllKept;
         let mut tangled = None;
         if options.untangles {
             let done = untangled(&mesh, stored, observer)?;
@@ -106,12 +105,12 @@ impl Input {
                 tangled = Some(std::mem::replace(&mut mesh.points, points));
             }
         }
-        Ok(Self { mesh, layout: Layout { tangled, chart, constraints, is_all_kept } })
+        Ok(Self { mesh, layers, layout: Layout { tangled, chart, constraints } })
     }
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.
     pub(crate) fn smoother(&self, options: &MeshOptions) -> Result<Smoother<'_>, Failure> {
-        let mut smoother = Smoother::keeping(Cow::Borrowed(&self.mesh), Layers::default())?;
+        let mut smoother = Smoother::keeping(Cow::Borrowed(&self.mesh), self.layers.clone())?;
         self.layout.set_up(options, &mut smoother)?;
         Ok(smoother)
     }
@@ -121,8 +120,8 @@ impl Input {
         self,
         options: &MeshOptions,
     ) -> Result<(Smoother<'static>, Layout), Failure> {
-        let Self { mesh, layout } = self;
-        let mut smoother = Smoother::keeping(Cow::Owned(mesh), Layers::default())?;
+        let Self { mesh, layers, layout } = self;
+        let mut smoother = Smoother::keeping(Cow::Owned(mesh), layers)?;
         layout.set_up(options, &mut smoother)?;
         Ok((smoother, layout))
     }

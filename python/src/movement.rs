@@ -1,27 +1,11 @@
 //! The vertices of a mesh that stay, slide or move, by the options of the mesh.
 
-use std::collections::HashMap;
-
-use gpu_smooth::layers::{Elements, KeepLayers};
+use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use gpu_smooth::slide::Periodic;
 use gpu_smooth::{Mesh, MeshError, Slide, Topology, select};
+use mesh_io::edges_between_regions;
 
 use crate::mesh_options::MeshOptions;
-
-/// Edges between triangles of different regions. `regions` has a number per triangle, and is empty without regions.
-fn interface_edges(triangles: &[[u32; 3]], regions: &[i64]) -> Vec<[u32; 2]> {
-    let mut region_of = HashMap::new();
-    let mut between = Vec::new();
-    for (&[a, b, c], &region) in triangles.iter().zip(regions) {
-        for [a, b] in [[a, b], [b, c], [c, a]] {
-            let edge = [a.min(b), a.max(b)];
-            if *region_of.entry(edge).or_insert(region) != region {
-                between.push(edge);
-            }
-        }
-    }
-    between
-}
 
 /// The vertices of a mesh that are not free.
 #[derive(Clone)]
@@ -35,7 +19,7 @@ pub(crate) struct Constraints {
 /// Sets the fixed vertices of a mesh by its options.
 pub(crate) fn fix(mesh: &mut Mesh, options: &MeshOptions) -> Result<Constraints, MeshError> {
     let mut lines = options.lines.clone();
-    lines.extend(interface_edges(&mesh.triangles, &options.regions));
+    lines.extend(edges_between_regions(&options.regions, &mesh.triangles, mesh.points.len()));
     let mut held = options.fixed.clone();
     if let Some(limit) = options.only_bad {
         let topology = Topology::new(mesh)?;
@@ -60,29 +44,29 @@ pub(crate) enum LayersEffect {
     NotFound,
 }
 
-/// Fixes the vertices of the boundary layers that stay, unless no other vertex is free.
+/// Returns the boundary layers that stay. Fixes their vertices, which untangling leaves alone too, unless no other vertex
+/// is free.
 pub(crate) fn keep_layers(
     mesh: &mut Mesh,
     options: &MeshOptions,
-    constraints: &mut Constraints,
-) -> Result<LayersEffect, MeshError> {
+    constraints: &Constraints,
+) -> Result<(Layers, LayersEffect), MeshError> {
     if options.keep_layers == KeepLayers::None {
-        return Ok(LayersEffect::Fixed);
+        return Ok((Layers::default(), LayersEffect::Fixed));
     }
     let topology = Topology::new(mesh)?;
     let points = &mesh.points;
     let elements = Elements { topology: &topology, points, faces: &[], lines: &constraints.lines };
     let layers = options.keep_layers.find(&elements, options.walls.as_deref())?;
     if layers.have_all_free(&topology) {
-        return Ok(LayersEffect::AllKept);
+        return Ok((layers, LayersEffect::AllKept));
     }
     let is_asked = options.walls.is_some() || options.keep_layers != KeepLayers::Auto;
     if is_asked && layers.vertices.is_empty() {
-        return Ok(LayersEffect::NotFound);
+        return Ok((layers, LayersEffect::NotFound));
     }
-    constraints.held.extend_from_slice(&layers.vertices);
-    mesh.fixed.extend(layers.vertices);
-    Ok(LayersEffect::Fixed)
+    mesh.fixed.extend_from_slice(&layers.vertices);
+    Ok((layers, LayersEffect::Fixed))
 }
 
 /// Returns the curves along which vertices slide.

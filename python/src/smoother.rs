@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use gpu_smooth::options::Feature;
 use gpu_smooth::plane::Plane;
-use gpu_smooth::{Backend, Checkpoint, Mesh, Options, Smoother as PreparedMesh, Stopping};
+use gpu_smooth::{Backend, Checkpoint, Mesh, Options, Smoother as PreparedMesh};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{self, Points, PointsForm};
 use crate::engine;
 use crate::error;
-use crate::input::{Failure, Input, Layout};
+use crate::input::{Failure, Input};
 use crate::mesh_options::{CallOptions, MeshOptions, Target};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
@@ -55,8 +55,8 @@ impl Smoother {
             run.set_named(&name, &value, "Smoother.run")?;
         }
         run.check(py)?;
-        let Prepared { smoother, layout, options, form } = &*self.0;
-        let plan = RunPlan::new(py, &run, options, form, smoother, layout)?;
+        let Prepared { smoother, options, form, .. } = &*self.0;
+        let plan = RunPlan::new(py, &run, options, form, smoother)?;
         let observer = RunObserver::new(&run);
         let outcome = threads::watched(py, &observer, || plan.run(smoother, &observer))?;
         let outcome = finished(py, &observer, outcome)?;
@@ -126,15 +126,10 @@ impl<'a> RunPlan<'a> {
         mesh: &MeshOptions,
         form: &'a PointsForm,
         smoother: &PreparedMesh<'_>,
-        layout: &Layout,
     ) -> PyResult<Self> {
-        let mut options = run.library(form.precision(), mesh.default_metric());
+        let options = run.library(form.precision(), mesh.default_metric());
         let untangle = if mesh.untangles { &[Feature::Untangle][..] } else { &[] };
         options.check_with(untangle).map_err(|error| error::of_option(py, &error))?;
-        if layout.is_all_kept {
-            let stopping = Stopping::default();
-            options = Options { max_sweeps: 0, stopping, improve_worst: None, ..options };
-        }
         let checkpoints = run.checkpoint_plan();
         let resumed = run.resume().map(|path| recovery::resumed(py, path)).transpose()?;
         if let Some(plan) = &checkpoints {
@@ -201,7 +196,7 @@ pub(crate) fn smooth<'py>(
         Ok(smoother) => smoother,
         failed => finished(py, &observer, failed)?,
     };
-    let plan = RunPlan::new(py, &run, &options, &form, &smoother, &input.layout)?;
+    let plan = RunPlan::new(py, &run, &options, &form, &smoother)?;
     let outcome = threads::watched(py, &observer, || plan.run(&smoother, &observer))?;
     let outcome = finished(py, &observer, outcome)?;
     drop(smoother);

@@ -112,7 +112,8 @@ impl<'a> Smoother<'a> {
         start: Instant,
     ) -> Result<Self, MeshError> {
         let is_all_kept = layers.have_all_free(&topology);
-        if !is_all_kept && !layers.vertices.is_empty() {
+        let is_free = |&v: &u32| topology.free().get(v as usize).is_none_or(|&is_free| is_free);
+        if !is_all_kept && layers.vertices.iter().any(is_free) {
             mesh.to_mut().fixed.extend_from_slice(&layers.vertices);
             topology = Topology::new(&mesh)?.into_owned();
         }
@@ -319,8 +320,8 @@ impl<'a> Smoother<'a> {
     }
 
     /// Returns the number of pairs of vertices with equal coordinates that slide together, as on both sides of a crack, and
-    /// the number of further vertices of curves with the coordinates of another vertex. Those stay: three or more are at
-    /// their place, or one of them is a corner or an end of the crack.
+    /// the number of further vertices of curves with the coordinates of another vertex. Further vertices stay:
+    /// three or more share their coordinates, or one of two is a corner or an end of the crack.
     pub fn coincident(&self) -> [usize; 2] {
         self.coincident
     }

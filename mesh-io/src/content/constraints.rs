@@ -42,8 +42,13 @@ pub struct Constraints {
 }
 
 /// Returns the edges between triangles of different regions, ascending, the smaller vertex of each edge first.
-pub(crate) fn edges_between_regions(
-    regions: &[u32],
+/// `regions` has the region of each triangle; a shorter list leaves further triangles out. `triangles` have vertices
+/// below `vertices`, zero-based.
+///
+/// # Panics
+/// Panics if a triangle has a vertex that is not below `vertices`.
+pub fn edges_between_regions<R: Copy + Ord>(
+    regions: &[R],
     triangles: &[[u32; 3]],
     vertices: usize,
 ) -> Vec<[u32; 2]> {
