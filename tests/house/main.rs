@@ -45,6 +45,13 @@ fn uses_of(source: &'static str) -> &'static Uses {
 }
 
 #[test]
+fn all_uses_of_a_small_crate_are_found() {
+    let used = &uses_of("job/src")["job"];
+    let expected = ["domain", "error", "plane", "precision"].map(String::from);
+    assert!(expected.iter().all(|name| used.contains(name)), "{used:?}");
+}
+
+#[test]
 fn files_do_not_use_each_other_in_a_circle() {
     for source in CRATES {
         assert_eq!(circles(uses_of(source)), [[""; 0]; 0], "{source}");
