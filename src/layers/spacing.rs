@@ -13,12 +13,12 @@ const FLAT: f64 = 2.0;
 /// Share of change from which a distance counts as changed.
 const CHANGED: f64 = 0.1;
 
-/// The spacing at a wall before and after a run: distances from the wall of the vertices next to it, from which
-/// vertex-centered solvers of flows compute y+.
+/// The distances of vertices from the wall next to them, before and after a run. Vertex-centered solvers of flows compute
+/// y+ from these distances.
 ///
 /// The vertex next to a vertex of the wall is the inner neighbor whose edge is the most normal to the wall in the mesh before
-/// the run. Distances are those from the edges of the wall that are up to two edges away. The first and last vertices of a
-/// wall do not count. Vertices of a wall inside the mesh have a distance on each side.
+/// the run. Distances are those from the edges of the wall that are up to two edges away. Both ends of
+/// a wall are left out. Vertices of a wall inside the mesh have a distance on each side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spacing {
     /// Number of distances.

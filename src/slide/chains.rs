@@ -65,7 +65,7 @@ impl Chains {
 /// A walk along the curves.
 struct Walk<'w> {
     corners: &'w Corners<'w>,
-    /// For each vertex of the mesh, whether a chain has it between its ends.
+    /// Flags of the vertices of the mesh that are inside a chain, between its ends.
     walked: Vec<bool>,
     found: Vec<Chain>,
 }

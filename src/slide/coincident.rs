@@ -36,7 +36,7 @@ impl Coincident {
         found
     }
 
-    /// Returns the number of vertices at the place of another vertex.
+    /// Returns the number of vertices whose coordinates equal those of another vertex.
     pub(crate) fn count(&self) -> usize {
         2 * self.pairs.len() + self.crowded.len()
     }

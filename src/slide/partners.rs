@@ -13,7 +13,7 @@ use crate::slide::rigid::Rigid;
 pub(crate) struct Partner {
     pub(crate) vertex: u32,
     pub(crate) motion: Rigid,
-    /// Whether both vertices have the same position, as on the sides of a crack. The motion is then the identity.
+    /// Whether the partners have equal coordinates, as on both sides of a crack. The motion is then the identity.
     pub(crate) is_coincident: bool,
 }
 

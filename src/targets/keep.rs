@@ -82,7 +82,8 @@ fn edges(t: &[u32; 3], points: &[[f64; 2]]) -> [[f64; 2]; 2] {
 }
 
 /// Averages the values of triangles at each vertex. Then, `rings` times, averages vertex values in each triangle and
-/// triangle values at each vertex. Averages at a vertex are over its triangles that count, or over all if none counts.
+/// triangle values at each vertex. A vertex averages its triangles for which `counts` returns true, or all its triangles if
+/// there are none.
 fn averaged(
     triangles: &[[u32; 3]],
     vertices: usize,

@@ -40,8 +40,8 @@ fn glslang(files: &[String], folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Calls `check` for each distinct module of the kernels, on all threads. The first argument of `check` is a file name:
-/// the number of the module, then the label of the kernel.
+/// Calls `check` for each distinct module of the kernels, on all threads. The first argument of `check` is a file name
+/// with the number of the module and the label of the kernel.
 fn for_each_module(check: impl Fn(&str, translations::Kernel<'_>) + Sync) {
     modules().par_iter().enumerate().for_each(|(number, Validated { kernel, module, info })| {
         let name = format!("{number}-{}", kernel.label().replace([' ', '+', '/'], "-"));

@@ -15,7 +15,7 @@ fn at(column: u32, row: u32) -> [f64; 2] {
     [x, y + 0.02 * x * (6.0 - x)]
 }
 
-/// Adds a part of a lattice with vertices of its own.
+/// Adds a rectangle of a lattice, whose vertices belong to no other part of the mesh.
 fn add(mesh: &mut Mesh, columns: Range<u32>, rows: Range<u32>) {
     let first = mesh.points.len() as u32;
     let width = columns.len() as u32 + 1;

@@ -3,7 +3,7 @@
 use crate::content::curve_edges::CurveEdges;
 use crate::content::group::{Group, Groups};
 
-/// Least number of places at which numbers are compared before they can count as a mere numbering.
+/// Least number of places at which the numbers of groups are compared. At fewer places, numbers always denote groups.
 const MIN_PLACES: usize = 6;
 
 /// Returns the vertices at which groups end, ascending.

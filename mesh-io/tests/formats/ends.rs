@@ -179,7 +179,7 @@ fn groups_of_vertices_end_where_their_codes_change_along_the_boundary() {
     assert_eq!(folder.read("in.node").group_ends().unwrap(), [0, 4, 5, 9]);
 }
 
-/// The first and the last vertex of a side have the number of one of the two lines that meet there.
+/// The number of a corner of the square is that of one of its two sides.
 #[test]
 fn numbers_of_vertices_that_repeat_those_of_lines_add_no_ends() {
     let [inlet, wall] = parts();

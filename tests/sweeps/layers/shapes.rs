@@ -6,7 +6,7 @@ use support::SplitMix64;
 
 use super::grown::{Cut, Grown};
 
-/// The heights of a layer: those of the first row, their growth, and the number of rows.
+/// A layer: the height of its first row, the growth of heights from row to row, and the number of rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rows {
     pub(super) first: f64,

@@ -29,7 +29,7 @@ pub(super) struct Best {
 pub(super) struct Gains {
     /// f by imr, before and after.
     f: [f64; 2],
-    /// The least angle in degrees, before and after.
+    /// The least angle of the mesh before and after the run, in degrees.
     least_angle: [f64; 2],
     /// The worst inverse mean ratio of the triangles with a free vertex, before and after.
     worst_imr: [f64; 2],
