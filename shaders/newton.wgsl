@@ -12,6 +12,9 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
         if !is_positive(doubled_area(t)) {
             return vec2(0.0, 0.0);
         }
+        if BOUNDED && !keeps_altitude(a + d, b + d, a, b, p.unit) {
+            return vec2(0.0, 0.0);
+        }
         if limit < NO_GUARD && inverse_mean_ratio(t) > limit {
             return vec2(0.0, 0.0);
         }
@@ -31,8 +34,8 @@ fn lengthening(decrease: f32, squares: f32) -> f32 {
     return 1.0 / max(1.0 - FLAT_EXPONENT * share, 1.0 / part.max_lengthening);
 }
 
-// Returns a Newton step after its line search, in the patch's unit; zero if no trial improves the patch.
-fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
+// Returns a Newton step of a vertex after its line search, in the patch's unit; zero if no trial improves the patch.
+fn newton_step(vertex: u32, p: Patch, omega: f32) -> vec2<f32> {
     var value = 0.0;
     var gradient = vec2(0.0);
     var hessian = vec3(0.0);
@@ -60,6 +63,11 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     if MAPPED {
         down = vec3(mapped(inverse, down.xy), down.z);
     }
+    var disc: Disc;
+    if BOUNDED {
+        disc = disc_of(vertex, p.at, p.unit);
+        down = turned(disc, down, Derivatives(value, gradient, hessian));
+    }
     if down.z >= 0.0 {
         return vec2(0.0);
     }
@@ -67,11 +75,19 @@ fn newton_step(p: Patch, omega: f32) -> vec2<f32> {
     let slack = SLACK * squares;
     var length = omega * lengthening(-down.z, squares);
     for (var trial = 0u; trial < TRIALS; trial++) {
-        let d = down.xy * length;
+        var d = down.xy * length;
+        var change = length * down.z;
+        if BOUNDED {
+            d = within(disc, d);
+            change = dot(gradient, d);
+        }
         let there = objective_at(p, d, limit);
+        // A projected step need not lower a quadratic objective.
+        let is_exact = QUADRATIC && !BOUNDED;
         if there.y == 0.0 {
             length *= SHORTEN_INFEASIBLE;
-        } else if QUADRATIC || there.x <= value + SUFFICIENT_DECREASE * length * down.z + slack {
+        } else if (!BOUNDED || change < 0.0)
+            && (is_exact || there.x <= value + SUFFICIENT_DECREASE * change + slack) {
             return d;
         } else {
             length *= SHORTEN;
@@ -98,7 +114,7 @@ fn sweep(
     var p = patch_of(vertex);
     var moved = false;
     for (var i = 0u; i < params.newton_steps; i++) {
-        let d = newton_step(p, part.omega);
+        let d = newton_step(vertex, p, part.omega);
         if all(d == vec2(0.0)) {
             break;
         }

@@ -27,11 +27,12 @@ pub struct Outcome {
     /// Number of sweeps at the start of a run on a GPU that the CPU did. The CPU does the first sweeps if triangles are too
     /// flat or too small for single precision, and every sweep if its first sweeps left such triangles. The CPU also
     /// does every sweep of a run with coarser levels if triangles are strongly stretched relative to their targets, as
-    /// a GPU has no room for such a mesh's second map per vertex.
+    /// a GPU has no room for such a mesh's second map per vertex, and of a run with a bound of moves or altitudes in degrees,
+    /// as single precision has too few digits for latitudes.
     pub opening_sweeps: u32,
     /// Number of sweeps at the end of a run on a GPU that the CPU did. The CPU replaces the GPU if corrections from
     /// coarser levels were refused and are tried again in double precision, if a run around a vertex of more than 16 neighbors
-    /// would converge after more than 16 corrections, or if sliding or a bound of moves has made triangles too flat for
+    /// would converge after more than 16 corrections, or if sliding has made triangles too flat for
     /// single precision.
     pub closing_sweeps: u32,
     /// Whether [`Method::Auto`](crate::Method::Auto) ran without corrections because the coarser levels do not fit the

@@ -40,11 +40,8 @@ pub(crate) fn check(
         !opened.log.is_empty() && fits(&opened.positions) && fits(&opened.best)
     });
     let is_of_stages = period.as_ref().is_none_or(|period| {
-        let PeriodState { began, before, f_before, held, .. } = period;
-        fits(before)
-            && held.len() == problem.free_count()
-            && (*began as usize) < saved.log.len()
-            && f_before.is_finite()
+        let PeriodState { began, before, f_before, .. } = period;
+        fits(before) && (*began as usize) < saved.log.len() && f_before.is_finite()
     });
     let is_whole = is_whole && about.on_cpu_from.is_none_or(|from| from <= saved.sweeps());
     if own.mesh != about.mesh || !is_whole || !is_of_stages {

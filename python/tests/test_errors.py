@@ -114,7 +114,6 @@ def test_an_error_of_a_mesh_has_the_indices() -> None:
         ({"guard": "dog"}, "guard: "),
         ({"improve_worst": "all"}, "improve_worst: "),
         ({"max_move": 0}, "max_move: "),
-        ({"max_move": 1, "keep_altitude": True}, "keep_altitude does not go with max_move"),
         ({"max_move": 1, "untangle": True}, "max_move does not go with untangle"),
         ({"method": "multilevel", "scheme": "area"}, 'method="multilevel" does not go with scheme'),
         ({"keep_altitude": 1}, "keep_altitude: the value is 1, and must be True or False"),

@@ -7,12 +7,20 @@ fn length_along() -> f32 {
     return vectors[LENGTHS].x;
 }
 
-// Returns the displacement of a free vertex. The correction is in the coordinates of the shape of the vertex's
+// Returns the displacement of a free vertex, within its disc. The correction is in the coordinates of the shape of the vertex's
 // map, and is mapped back.
 fn move_of(v: u32) -> vec2<f32> {
     var d = direction[v];
     if MAPPED {
         d = mapped(inverse_of(shape_of(v)), d);
     }
-    return opaque2(length_along() * d);
+    if !BOUNDED {
+        return opaque2(length_along() * d);
+    }
+    var slopes = gradient[v];
+    if MAPPED {
+        slopes = mapped(shape_of(v), slopes);
+    }
+    let disc = disc_of(v, position(v), 1.0);
+    return opaque2(within(disc, length_along() * along_circle(disc, d, slopes)));
 }

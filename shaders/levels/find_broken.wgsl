@@ -26,7 +26,8 @@ fn find_broken(
         let ideal = Ideal(params.mean_area, params.size_weight);
         let here = transformed(Corner(a, b, ideal), map);
         let there = transformed(Corner(moved_a, moved_b, ideal), map);
-        kept = kept && !is_broken(here, there);
+        kept = kept && !is_broken(here, there)
+            && keeps_altitude(a, b, moved_a, moved_b, 1.0);
         a = b;
         moved_a = moved_b;
     }

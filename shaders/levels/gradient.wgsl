@@ -23,6 +23,9 @@ fn find_gradient(
     inverse_penalty_guard = op.inverse_penalty_guard;
     let p = patch_of(vertex);
     var sum = derivatives_around(p);
+    if BOUNDED {
+        sum.gradient = tangential(disc_of(vertex, p.at, p.unit), sum.gradient);
+    }
     if MAPPED {
         sum = pulled_back(sum, inverse_of(shape_of(vertex)));
     }

@@ -41,7 +41,8 @@ fn objective_along_correction(
         );
         let there = transformed(moved, map);
         sums[0] = pair_accumulate(sums[0], metric_model(here));
-        if !is_positive(doubled_area(here)) || is_broken(here, there) {
+        if !is_positive(doubled_area(here)) || is_broken(here, there)
+            || !keeps_altitude(a, b, moved.a, moved.b, 1.0) {
             sums[2].x += 1.0;
         } else {
             sums[1] = pair_accumulate(sums[1], metric_model(there));

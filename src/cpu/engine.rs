@@ -6,7 +6,9 @@ use std::borrow::Cow;
 
 use glam::{DVec2, Vec2};
 
-use crate::cpu::objective::{Along, broken, mean_excess, mean_excess_along, mean_model};
+use crate::cpu::along::{Along, broken};
+use crate::cpu::bounded::Tangents;
+use crate::cpu::objective::{mean_excess, mean_excess_along, mean_model};
 use crate::cpu::secants::{Levels, Secants, dot};
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
@@ -34,12 +36,12 @@ pub(crate) struct CpuEngine {
     /// Positions and objective of the best state so far. `None` if every sweep of the plan lowers f, so that the last
     /// state is the best.
     best: Option<(Vec<DVec2>, f64)>,
-    /// Whether each free vertex is held; empty if no vertex is held.
-    held: Vec<bool>,
     /// Scratch memory for sweeps.
     moved: Vec<DVec2>,
     hierarchy: Option<Hierarchy>,
     gradient: Vec<Vec2>,
+    /// Tangents of discs along which the last correction moves vertices.
+    tangents: Tangents,
     /// The last correction: a displacement of each free vertex at step length 1.
     direction: Vec<Vec2>,
     secants: Option<Secants>,
@@ -56,18 +58,18 @@ impl CpuEngine {
             step: plan.base_step(1.0),
             positions,
             best,
-            held: Vec::new(),
             moved: Vec::new(),
             hierarchy: None,
             gradient: Vec::new(),
+            tangents: Tangents::default(),
             direction: Vec::new(),
             secants: None,
         }
     }
 
     async fn sweep_now(&mut self, step: &SweepParams) {
-        let Self { problem, positions, held, moved, .. } = self;
-        sweep::sweep(problem, positions, held, moved, step).await;
+        let Self { problem, positions, moved, .. } = self;
+        sweep::sweep(problem, positions, moved, step).await;
     }
 
     /// Evaluates the tracked objectives. Copies the positions if the objective of the base metric is the lowest so far.
@@ -118,12 +120,12 @@ impl CpuEngine {
     }
 }
 
-/// Computes the correction by the coarser levels from the gradient at the free vertices. The gradient must be zero at
-/// `held` vertices; the correction is zero there too.
+/// Computes the correction by the coarser levels from the gradient at the free vertices. The gradient must be projected
+/// onto `tangents`; so is the correction.
 async fn correction(
     hierarchy: Option<&Hierarchy>,
     problem: &Problem,
-    held: &[bool],
+    tangents: &Tangents,
     gradient: &[Vec2],
 ) -> Vec<Vec2> {
     let mut correction = match hierarchy {
@@ -135,27 +137,20 @@ async fn correction(
         Some(hierarchy) => vcycle::correction(hierarchy, problem, gradient).await,
         None => vec![Vec2::ZERO; gradient.len()],
     };
-    set_to_zero(&mut correction, held);
+    tangents.project(&mut correction);
     correction
 }
 
-/// The levels, mesh and held vertices by which an engine corrects.
+/// The levels, mesh and tangents by which an engine corrects.
 struct Corrector<'a> {
     hierarchy: Option<&'a Hierarchy>,
     problem: &'a Problem,
-    held: &'a [bool],
+    tangents: &'a Tangents,
 }
 
 impl Levels for Corrector<'_> {
     async fn correction(&self, vector: &[Vec2]) -> Vec<Vec2> {
-        correction(self.hierarchy, self.problem, self.held, vector).await
-    }
-}
-
-/// Zeroes the vectors of free vertices that are held.
-fn set_to_zero(vectors: &mut [Vec2], held: &[bool]) {
-    for (vector, _) in vectors.iter_mut().zip(held).filter(|(_, held)| **held) {
-        *vector = Vec2::ZERO;
+        correction(self.hierarchy, self.problem, self.tangents, vector).await
     }
 }
 
@@ -209,14 +204,6 @@ impl Engine for CpuEngine {
         Ok(())
     }
 
-    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError> {
-        self.held.clear();
-        if held.contains(&true) {
-            self.held.extend_from_slice(held);
-        }
-        Ok(())
-    }
-
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
         if problem.has_local_maps() {
@@ -256,12 +243,13 @@ impl Engine for CpuEngine {
     ) -> Result<Proposal, GpuError> {
         self.sweep_now(step).await;
         (self.step.sharpness, self.step.penalty_guard) = (step.sharpness, step.penalty_guard);
-        let Self { base, problem, positions, held, gradient, secants, .. } = self;
+        let Self { base, problem, positions, gradient, tangents, secants, .. } = self;
         sweep::gradient(*base, problem, positions, step.smoothing(), gradient).await;
-        set_to_zero(gradient, held);
+        *tangents = Tangents::at(problem, positions, gradient).await;
+        tangents.project(gradient);
         // The new direction is allocated while the correction is computed, so the previous one is freed first.
         self.direction = Vec::new();
-        let levels = Corrector { hierarchy: self.hierarchy.as_ref(), problem, held };
+        let levels = Corrector { hierarchy: self.hierarchy.as_ref(), problem, tangents };
         self.direction = if accelerated {
             secants.get_or_insert_default().direction(positions, gradient, &levels).await
         } else {
@@ -278,8 +266,8 @@ impl Engine for CpuEngine {
     async fn exclude_broken(&mut self, length: f64, anew: bool) -> Result<Proposal, GpuError> {
         if anew {
             self.leave_out_broken(length).await;
-            let Self { hierarchy, problem, held, gradient, .. } = self;
-            self.direction = correction(hierarchy.as_ref(), problem, held, gradient).await;
+            let Self { hierarchy, problem, tangents, gradient, .. } = self;
+            self.direction = correction(hierarchy.as_ref(), problem, tangents, gradient).await;
         }
         for _ in 0..EXCLUSION_PASSES {
             self.leave_out_broken(length).await;
@@ -292,7 +280,11 @@ impl Engine for CpuEngine {
     }
 
     async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
-        let Self { positions, direction, .. } = self;
+        let Self { problem, positions, direction, .. } = self;
+        if problem.is_bounded() {
+            *positions = Along { positions, direction, length }.moved(problem).await;
+            return Ok(());
+        }
         let free = direction.len();
         paced::for_each_chunk(&mut positions[..free], CHUNK, |first, positions| {
             for (position, along) in positions.iter_mut().zip(&direction[first..]) {

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 
 use crate::cpu::differences;
-use crate::metric::{Dual, Formulas};
+use crate::metric::{Dual, Formulas, Properties};
 use crate::options::Derivatives;
 use crate::patch::lanes::{Lanes, Mask, Points};
 use crate::patch::{Direction, MetricObjective, Objective, Rings, SearchRule, newton_step};
@@ -23,17 +23,7 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
         metric: MetricObjective { patch: rings, formulas, smoothing, shape_guard },
         derivatives: step.derivatives,
     };
-    let properties = formulas.metric().properties();
-    let rule = SearchRule {
-        first_length: step.omega,
-        sufficient_decrease: match properties.quadratic {
-            true => None,
-            false => SearchRule::SWEEP.sufficient_decrease,
-        },
-        eigenvalue_floor: properties.eigenvalue_floor,
-        max_lengthening: properties.barrier.then_some(step.max_lengthening),
-        ..SearchRule::SWEEP
-    };
+    let rule = rule_of(formulas.metric().properties(), step);
     for _ in 0..step.newton_steps {
         let from = at;
         (at, going) = newton_step(&objective, at, going, &rule);
@@ -47,9 +37,29 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
     at
 }
 
+/// Returns the line search of a visit by `step`.
+pub(super) fn search_rule(step: &SweepParams) -> SearchRule {
+    rule_of(step.metric.properties(), step)
+}
+
+/// Returns the line search of a visit by `step`, given the properties of its metric.
+#[inline(always)]
+fn rule_of(properties: &Properties, step: &SweepParams) -> SearchRule {
+    SearchRule {
+        first_length: step.omega,
+        sufficient_decrease: match properties.quadratic {
+            true => None,
+            false => SearchRule::SWEEP.sufficient_decrease,
+        },
+        eigenvalue_floor: properties.eigenvalue_floor,
+        max_lengthening: properties.barrier.then_some(step.max_lengthening),
+        ..SearchRule::SWEEP
+    }
+}
+
 /// Returns the lanes whose step was so short that the visit ends; see [`line_search::SETTLED`].
 #[inline(always)]
-fn settled<S: Simd, const MAPPED: bool>(
+pub(super) fn settled<S: Simd, const MAPPED: bool>(
     rings: &Rings<S, MAPPED>,
     from: Points<S>,
     to: Points<S>,
@@ -60,9 +70,9 @@ fn settled<S: Simd, const MAPPED: bool>(
 }
 
 /// The objective of a sweep, differentiated by formulas or by finite differences.
-struct SweepObjective<'a, P, F> {
-    metric: MetricObjective<'a, P, F>,
-    derivatives: Derivatives,
+pub(super) struct SweepObjective<'a, P, F> {
+    pub(super) metric: MetricObjective<'a, P, F>,
+    pub(super) derivatives: Derivatives,
 }
 
 impl<S: Simd, const MAPPED: bool, F: Formulas> Objective<Lanes<S>>

@@ -1,13 +1,14 @@
 //! The objective over all triangles, on the CPU.
 
 use fearless_simd::prelude::*;
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 
+use crate::cpu::along::Along;
 use crate::layout::Problem;
 use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
 use crate::parallel::paced;
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, vertex_maps, with_lanes};
-use crate::patch::{is_kept, is_no_worse, is_positive, is_within};
+use crate::patch::{is_no_worse, is_positive, is_within};
 use crate::run::SweepParams;
 
 /// Number of triangles that one task evaluates.
@@ -57,22 +58,17 @@ async fn mean(
     sums.iter().sum::<f64>() / triangles.len() as f64
 }
 
-/// Positions with the free vertices moved by `length` times `direction`.
-pub(crate) struct Along<'a> {
-    pub(crate) positions: &'a [DVec2],
-    /// Displacement of each free vertex at length 1.
-    pub(crate) direction: &'a [Vec2],
-    pub(crate) length: f64,
-}
-
 /// Returns the mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model.
 /// `None` if the move breaks a triangle: inverts or flattens it, or makes its inverse mean ratio both worse than before
-/// and larger than the shape guard of the step.
+/// and larger than the shape guard of the step, or its altitude both lower than before and below the floor of the problem.
 pub(crate) async fn mean_excess_along(
     step: &SweepParams,
     problem: &Problem,
     along: &Along<'_>,
 ) -> Option<f64> {
+    if problem.is_bounded() {
+        return mean_excess_within(step, problem, along).await;
+    }
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem.targets(), step.metric, simd, formulas, MAPPED => {
             excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
@@ -84,19 +80,21 @@ pub(crate) async fn mean_excess_along(
     sum.map(|sum| sum / triangles.len() as f64)
 }
 
-/// Returns for each free vertex whether the move breaks a triangle around it: inverts or flattens it, or makes its
-/// inverse mean ratio both worse than before and larger than `guard`.
-pub(crate) async fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
-    paced::collect(along.direction.len(), |v| {
-        let ring = problem.ring_of(v as u32);
-        let mut before = ring[ring.len() - 1];
-        ring.iter().any(|&neighbor| {
-            let triangle = [v as u32, before, neighbor];
-            before = neighbor;
-            !along.keeps(problem, &triangle, guard)
-        })
-    })
-    .await
+/// Does the work of [`mean_excess_along`] on a problem with bounds, without loops of its own for each metric.
+async fn mean_excess_within(
+    step: &SweepParams,
+    problem: &Problem,
+    along: &Along<'_>,
+) -> Option<f64> {
+    let keeps = |_, triangles: &[[u32; 3]]| {
+        triangles.iter().all(|t| along.keeps(problem, t, step.shape_guard))
+    };
+    let kept = paced::map_parts(problem.judged_triangles().chunks(CHUNK), keeps).await;
+    if kept.contains(&false) {
+        return None;
+    }
+    let there = along.moved(problem).await;
+    Some(mean_model(step.metric, step.smoothing(), problem, &there).await)
 }
 
 /// Returns the sum of q² - ideal², or of its smooth model, over `triangles` at moved positions. `None` if the move
@@ -171,33 +169,6 @@ fn corner<S: Simd>(
     }
 }
 
-impl Along<'_> {
-    /// Returns the positions of four vertices, before and after the move.
-    #[inline(always)]
-    fn points<S: Simd>(&self, simd: S, vertices: [u32; LANES]) -> (Points<S>, Points<S>) {
-        let [x, y] = points(simd, self.positions, vertices);
-        let [a, b, c, d] = vertices;
-        let ([a, b], [c, d]) = ([self.step(a), self.step(b)], [self.step(c), self.step(d)]);
-        let dx = Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]);
-        let dy = Lanes::simd_from(simd, [a.y, b.y, c.y, d.y]);
-        ([x, y], [x + dx * self.length, y + dy * self.length])
-    }
-
-    /// Returns whether the move keeps a triangle acceptable; see [`is_kept`]. Compiled once for all metrics.
-    #[inline(never)]
-    fn keeps(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
-        let position = |v: u32| self.positions[v as usize];
-        let now = problem.corner(triangle, |v| position(v) + self.step(v) * self.length);
-        is_kept(&problem.corner(triangle, position), &now, guard)
-    }
-
-    /// Returns the displacement of a vertex at length 1; zero for a fixed vertex.
-    #[inline(always)]
-    fn step(&self, vertex: u32) -> DVec2 {
-        self.direction.get(vertex as usize).map_or(DVec2::ZERO, |step| step.as_dvec2())
-    }
-}
-
 /// Returns the sum of q² - ideal² over `triangles`, or of its smooth model if `smoothing` is given.
 #[inline(always)]
 fn excess<S: Simd, const MAPPED: bool>(
@@ -238,6 +209,8 @@ fn excess<S: Simd, const MAPPED: bool>(
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
     use crate::layout::prepare;
     use crate::mesh::Mesh;

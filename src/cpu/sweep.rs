@@ -3,14 +3,14 @@
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
-use crate::cpu::newton;
+use crate::cpu::{bounded, newton};
 use crate::layout::{DEGREE_BLOCK, Problem};
 use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Lanes, points, with_lanes};
-use crate::patch::{MetricObjective, Objective, Rings, Scratch};
+use crate::patch::lanes::{Lanes, points, with_lanes};
+use crate::patch::{MetricObjective, Objective, Rings, Scratch, batch_at};
 use crate::run::SweepParams;
 
 /// Number of vertices that one task visits.
@@ -52,12 +52,10 @@ enum VertexQuantity {
     StiffnessRoot,
 }
 
-/// Visits every free vertex once, color by color. Vertices for which `held` is true stay; an empty `held` holds no
-/// vertex. `moved` is scratch memory.
+/// Visits every free vertex once, color by color, within the bounds of the problem. `moved` is scratch memory.
 pub(crate) async fn sweep(
     problem: &Problem,
     positions: &mut [DVec2],
-    held: &[bool],
     moved: &mut Vec<DVec2>,
     step: &SweepParams,
 ) {
@@ -66,22 +64,26 @@ pub(crate) async fn sweep(
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of equal color are not neighbors, so no visit reads a position that another visit of the color
         // changes.
-        visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await;
-        let held = held.get(first..first + color.len()).unwrap_or_default();
+        visit_color(problem, positions, first, step, moved).await;
         let moved = &*moved;
         paced::for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
-            let moved = &moved[at..][..to.len()];
-            if held.is_empty() {
-                to.copy_from_slice(moved);
-                return;
-            }
-            for ((to, moved), held) in to.iter_mut().zip(moved).zip(&held[at..]) {
-                if !held {
-                    *to = *moved;
-                }
-            }
+            to.copy_from_slice(&moved[at..][..to.len()]);
         })
         .await;
+    }
+}
+
+/// Writes the new positions of the vertices from `first` on, all of one color, to `moved`.
+async fn visit_color(
+    problem: &Problem,
+    positions: &[DVec2],
+    first: usize,
+    step: &SweepParams,
+    moved: &mut [DVec2],
+) {
+    match problem.is_bounded() {
+        true => bounded::visit(problem, positions, first, step, moved).await,
+        false => visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await,
     }
 }
 
@@ -140,14 +142,8 @@ async fn find(
 /// edge.
 const HELD_BACK: f64 = 1e-3;
 
-/// Returns the number of free vertices that the shape guard of `step` holds back. Vertices whose `held` is true are not
-/// counted.
-pub(crate) async fn held_back(
-    problem: &Problem,
-    positions: &[DVec2],
-    held: &[bool],
-    step: &SweepParams,
-) -> usize {
+/// Returns the number of free vertices that the shape guard of `step` holds back, within the bounds of the problem.
+pub(crate) async fn held_back(problem: &Problem, positions: &[DVec2], step: &SweepParams) -> usize {
     let free = SweepParams { shape_guard: f64::INFINITY, ..*step };
     let (mut guarded, mut unguarded) = (Vec::new(), Vec::new());
     let mut count = 0;
@@ -155,12 +151,11 @@ pub(crate) async fn held_back(
         let first = color.start as usize;
         for (moved, step) in [(&mut guarded, step), (&mut unguarded, &free)] {
             moved.resize(color.len(), DVec2::ZERO);
-            visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await;
+            visit_color(problem, positions, first, step, moved).await;
         }
         let is_held = |&(v, (kept, wanted)): &(u32, (&DVec2, &DVec2))| {
             let edge = positions[problem.ring_of(v)[0] as usize] - positions[v as usize];
-            let is_free = !held.get(v as usize).is_some_and(|held| *held);
-            is_free && kept.distance(*wanted) > HELD_BACK * edge.length()
+            kept.distance(*wanted) > HELD_BACK * edge.length()
         };
         count += color.clone().zip(guarded.iter().zip(&unguarded)).filter(is_held).count();
         pause().await;
@@ -202,16 +197,8 @@ fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
     let mut scratch = Scratch::new();
     let mut done = 0;
     while done < found.len() {
-        let v = (first + done) as u32;
-        let degree = problem.ring_of(v).len();
-        let most = LANES.min(found.len() - done) as u32;
-        let mut count = 1;
-        while count < most && problem.ring_of(v + count).len() == degree {
-            count += 1;
-        }
-        // Lanes without a vertex of their own repeat the last vertex.
-        let last = v + count - 1;
-        let vertices = [v, last.min(v + 1), last.min(v + 2), last.min(v + 3)];
+        let (vertices, count) = batch_at(problem, first + done, found.len() - done);
+        let degree = problem.ring_of(vertices[0]).len();
         let rings = Rings::<S, MAPPED>::gather(simd, problem, positions, vertices, &mut scratch);
         let at = points(simd, positions, vertices);
         let [x, y] = match T::STEPS {
@@ -234,7 +221,6 @@ fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
                 }
             }
         };
-        let count = count as usize;
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
             *found = T::new([x[lane], y[lane]]);
         }

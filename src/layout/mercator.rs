@@ -57,9 +57,6 @@ pub(crate) struct MeshCoordinates {
 }
 
 impl MeshCoordinates {
-    /// The conversion for positions that equal the coordinates of the mesh.
-    pub(crate) const OF_POSITIONS: Self = Self { projection: None, center: 0.0, scale: 1.0 };
-
     /// Returns the conversion for positions (x - `center`) · `scale` of images x.
     pub(super) fn new(projection: Option<Mercator>, center: DVec2, scale: f64) -> Self {
         Self { projection, center: center.y, scale }

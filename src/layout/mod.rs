@@ -1,6 +1,7 @@
 //! Preparation of a mesh as the [`Problem`] of the engines: colors and renumbers the free vertices, and normalizes
 //! positions.
 
+mod bounds;
 mod coloring;
 mod conversion;
 mod curve;
@@ -13,6 +14,7 @@ mod problem;
 mod sizes;
 mod smallest_last;
 
+pub(crate) use bounds::Bounds;
 pub use coloring::Coloring;
 pub(crate) use mercator::{Mercator, MeshCoordinates};
 pub(crate) use numbering::DEGREE_BLOCK;

@@ -8,6 +8,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use glam::DVec2;
 
 use crate::layout::Coloring;
+use crate::layout::bounds::Bounds;
 use crate::layout::curve::along_curve;
 use crate::layout::mercator::Mercator;
 use crate::layout::normalization::normalization;
@@ -49,6 +50,8 @@ pub struct Problem {
     ideal: Ideal,
     /// Triangles over whose squared qualities the objective is the mean: all triangles, or those that can move.
     judged: Judged,
+    /// Bounds on the free vertices. `None` without bounds.
+    pub(super) bounds: Option<Arc<Bounds>>,
 }
 
 /// The triangles over which the objective is the mean: the first `count` of a list.
@@ -74,15 +77,9 @@ pub(crate) enum MapKind {
     Local,
 }
 
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "gpu", test))]
 impl MapKind {
-    #[cfg(test)]
     pub(crate) const ALL: [Self; 3] = [MapKind::None, MapKind::Targets, MapKind::Local];
-
-    /// Returns whether there are maps at the vertices.
-    pub(crate) fn is_some(self) -> bool {
-        self != MapKind::None
-    }
 }
 
 /// Layout of a [`Problem`]: positions, order and connectivity, independent of targets.
@@ -151,6 +148,7 @@ impl Problem {
             levels_in_plane: false,
             ideal: Ideal::of_area(mean_area),
             judged,
+            bounds: None,
         }
     }
 
@@ -328,9 +326,31 @@ impl Problem {
         }
     }
 
-    /// Returns whether the vertices have both target maps and local maps. A device has room for a single map per vertex.
+    /// Bounds the free vertices. [`Problem::positions`] are the centers of the discs.
+    pub(crate) fn set_bounds(&mut self, bounds: Bounds) {
+        self.bounds = (bounds.radii.is_some() || bounds.floor > 0.0).then(|| Arc::new(bounds));
+    }
+
+    /// Returns whether discs or a least altitude bound the free vertices.
+    pub(crate) fn is_bounded(&self) -> bool {
+        self.bounds.is_some()
+    }
+
+    /// Returns the radius of the disc of each free vertex, `None` without discs.
+    pub(crate) fn radii(&self) -> Option<&[f64]> {
+        self.bounds.as_ref()?.radii.as_deref()
+    }
+
+    /// Returns the lower limit of altitudes, 0 for no limit.
+    pub(crate) fn floor(&self) -> f64 {
+        self.bounds.as_ref().map_or(0.0, |bounds| bounds.floor)
+    }
+
+    /// Returns whether the vertices have both target maps and local maps, for which a device has no room, or bounds in the
+    /// coordinates of a sphere, which single precision does not test.
     pub(crate) fn is_for_cpu_alone(&self) -> bool {
-        self.targets.is_some() && self.local_maps.is_some()
+        let has_two_maps = self.targets.is_some() && self.local_maps.is_some();
+        has_two_maps || self.is_bounded() && self.projection.is_some()
     }
 
     /// Returns whether some map of the vertices is anisotropic. Coarse levels then work in coordinates transformed by

@@ -17,8 +17,6 @@ const ONE_METRIC: &str =
     "each of its periods must lower f, as one metric other than edge does, such as imr";
 const ANALYTIC: &str = "it needs analytic derivatives";
 const NO_SEARCH: &str = "its runs cannot search for the desired f; give the goal a value";
-const BETWEEN: &str =
-    "each of the two moves vertices by its own rule between sweeps; drop one of the two";
 const CHANGING: &str =
     "targets of places change during the run; drop one of the two, or take targets of vertices";
 const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
@@ -31,14 +29,7 @@ pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::TargetField, Feature::KeepAltitude, CHANGING),
     row(Feature::TargetField, Feature::Goal, CHANGING),
     row(Feature::TargetField, Feature::UnevenScheme, ONE_METRIC),
-    row(Feature::KeepAltitude, Feature::MaxMove, BETWEEN),
-    row(Feature::KeepAltitude, Feature::UnevenScheme, ONE_METRIC),
-    row(Feature::KeepAltitude, Feature::FiniteDifferences, ANALYTIC),
-    row(Feature::KeepAltitude, Feature::SearchedGoal, NO_SEARCH),
     row(Feature::KeepAltitude, Feature::Untangle, TANGLED),
-    row(Feature::MaxMove, Feature::UnevenScheme, ONE_METRIC),
-    row(Feature::MaxMove, Feature::FiniteDifferences, ANALYTIC),
-    row(Feature::MaxMove, Feature::SearchedGoal, NO_SEARCH),
     row(Feature::MaxMove, Feature::Untangle, TANGLED),
     row(Feature::Slide, Feature::UnevenScheme, ONE_METRIC),
     row(Feature::Slide, Feature::FiniteDifferences, ANALYTIC),

@@ -29,10 +29,10 @@ pub struct Options {
     /// A limit on the inverse mean ratio of triangles after a step. No step ever inverts a triangle.
     pub guard: Guard,
     /// Largest distance of a vertex from its position before the run, divided by the mean length of its edges before
-    /// the run. Above 0; `None` for no bound. Only for whole runs, by one metric other than edge.
+    /// the run. Above 0; `None` for no bound. Only for whole runs.
     pub max_move: Option<f64>,
     /// Whether every triangle must keep an altitude of at least the least altitude in the mesh before the run, which
-    /// bounds the time step of explicit solvers. Only for whole runs, by one metric other than edge.
+    /// bounds the time step of explicit solvers. Only for whole runs.
     pub keep_altitude: bool,
     /// Measure by which the worst triangles are improved after the last sweep, on the CPU; `None` for no improvement.
     /// Free vertices around the worst thousandth of the triangles (at least 10, at most 1000 triangles) move so that

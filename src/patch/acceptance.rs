@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::layout::MeshCoordinates;
+use crate::measure::altitude;
 use crate::metric::{Corner, Formulas, OfEdges};
 use crate::patch::numbers::Numbers;
 
@@ -42,6 +43,23 @@ pub(crate) fn is_no_worse<T: Numbers>(
 /// ratio `before` the move.
 pub(crate) fn is_kept(before: &Corner<f64>, now: &Corner<f64>, guard: f64) -> bool {
     is_positive(now) && (is_within(OfEdges, now, guard) || is_no_worse(OfEdges, before, now))
+}
+
+/// Distance of a vertex from the center of its disc, as a share of the radius, from which the vertex counts as at the
+/// circle.
+pub(crate) const AT_DISC: f64 = 1.0 - 1e-6;
+
+/// Least curvature along a circle, as a share of the largest curvature, by which a step along the circle is divided.
+pub(crate) const MIN_CIRCLE_CURVATURE: f64 = 1e-3;
+
+/// Least growth of an altitude below the floor in a move. A larger factor than the rounding of altitudes, so that a
+/// triangle below the floor cannot become lower in many moves.
+pub(crate) const GROWTH: f64 = 1.0 + 1e-12;
+
+/// Returns whether a moved triangle has an altitude of at least `floor`, or a larger altitude than before the move.
+pub(crate) fn keeps_altitude(floor: f64, before: [DVec2; 3], now: [DVec2; 3]) -> bool {
+    let now_high = altitude(now);
+    now_high >= floor || now_high >= altitude(before) * GROWTH || now == before
 }
 
 /// A circle that limits the moves of a vertex; an infinite radius stands for no limit.

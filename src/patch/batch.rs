@@ -13,3 +13,18 @@ pub(crate) fn batches(problem: &Problem, vertices: impl Iterator<Item = u32>) ->
     let batches = alike.flat_map(|alike| alike.chunks(LANES));
     batches.map(|batch| std::array::from_fn(|lane| batch[lane.min(batch.len() - 1)])).collect()
 }
+
+/// Returns up to four vertices of equal degree, from `first` on, and their number. At most `most` vertices, at least one,
+/// are left to visit. Lanes without a vertex of their own repeat the last vertex.
+#[inline(always)]
+pub(crate) fn batch_at(problem: &Problem, first: usize, most: usize) -> (VertexBatch, usize) {
+    let v = first as u32;
+    let degree = problem.ring_of(v).len();
+    let most = LANES.min(most) as u32;
+    let mut count = 1;
+    while count < most && problem.ring_of(v + count).len() == degree {
+        count += 1;
+    }
+    let last = v + count - 1;
+    ([v, last.min(v + 1), last.min(v + 2), last.min(v + 3)], count as usize)
+}

@@ -15,8 +15,11 @@ pub(crate) mod search_rule;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use acceptance::{Circle, is_kept, is_no_worse, is_positive, is_within};
-pub(crate) use batch::{VertexBatch, batches};
+pub(crate) use acceptance::{
+    AT_DISC, Circle, GROWTH, MIN_CIRCLE_CURVATURE, is_kept, is_no_worse, is_positive, is_within,
+    keeps_altitude,
+};
+pub(crate) use batch::{VertexBatch, batch_at, batches};
 pub(crate) use corners::{Corners, MetricObjective, is_acceptable};
 pub(crate) use direction::Direction;
 #[cfg(test)]

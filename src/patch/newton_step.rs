@@ -26,6 +26,13 @@ pub(crate) trait Objective<T: Numbers> {
         on_line
     }
 
+    /// Returns the change of the value that the gradient predicts for a trial at `to`. A trial is accepted only if the
+    /// prediction is negative. `None` for trials on the straight line, where the slope predicts the change.
+    #[inline(always)]
+    fn predicted(&self, _here: &Dual<T>, _to: [T; 2]) -> Option<T> {
+        None
+    }
+
     /// Returns the sum of q² over the patch, given the value, which is the sum of q² - ideal².
     #[inline(always)]
     fn squares(&self, value: T) -> T {
@@ -87,7 +94,14 @@ pub(crate) fn newton_step<T: Numbers>(
         trial += 1;
         let mut accepted = searching & feasible;
         if rule.sufficient_decrease.is_some() {
-            accepted = accepted & value.le(most + wanted * length);
+            let least = match objective.predicted(&here, to) {
+                None => wanted * length,
+                Some(predicted) => {
+                    accepted = accepted & predicted.lt(predicted.constant(0.0));
+                    predicted * rule.sufficient_decrease.unwrap_or(0.0)
+                }
+            };
+            accepted = accepted & value.le(most + least);
         }
         end = [T::select(accepted, to[0], end[0]), T::select(accepted, to[1], end[1])];
         stepped = stepped | accepted;

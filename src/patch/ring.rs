@@ -80,6 +80,12 @@ impl<'a, S: Simd, const MAPPED: bool> Rings<'a, S, MAPPED> {
         &self.inverse_map
     }
 
+    /// Returns the positions of the neighbors, counter-clockwise, with the first repeated at the end.
+    #[inline(always)]
+    pub(crate) fn neighbors(&self) -> &'a [Points<S>] {
+        self.ring
+    }
+
     /// Returns the squared length of the edge from each vertex to its first neighbor.
     #[inline(always)]
     pub(crate) fn squared_edge(&self, at: Points<S>) -> Lanes<S> {

@@ -1,7 +1,7 @@
 //! The constants of all line searches for the step of a vertex, side by side.
 
 /// Parameters of a line search: the lengths of trials, and the condition by which a trial is accepted. Sweeps, sliding,
-/// bounds, worst triangles and untangling have a constant each. Callers replace fields that depend on a metric or a
+/// worst triangles and untangling have a constant each. Callers replace fields that depend on a metric or a
 /// sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SearchRule {
@@ -42,11 +42,6 @@ impl SearchRule {
 
     /// Sliding along a curve. Only the CPU slides vertices, in double precision, so the slack is smaller than in sweeps.
     pub(crate) const CURVE: Self = Self { slack: 1e-12, ..Self::SWEEP };
-
-    /// Vertices at the limit of their moves. Trials are projected to the limit, where the slope along the unprojected
-    /// direction predicts no decrease. Any objective up to the present value is accepted.
-    pub(crate) const BOUND: Self =
-        Self { shorten_infeasible: 0.5, sufficient_decrease: Some(0.0), slack: 0.0, ..Self::SWEEP };
 
     /// Improvement of the worst triangles. The Hessians of p-norms are nearly singular, so the eigenvalue floor is low.
     pub(crate) const WORST: Self =

@@ -235,7 +235,6 @@ fn each_rule_tries_the_lengths_that_it_states_and_then_leaves_the_vertex() {
     for (rule, trials, infeasible) in [
         (SearchRule::SWEEP, 8, 0.25),
         (SearchRule::CURVE, 8, 0.25),
-        (SearchRule::BOUND, 8, 0.5),
         (SearchRule::WORST, 8, 0.5),
         (SearchRule::UNTANGLE, 10, 0.25),
     ] {

@@ -38,7 +38,7 @@ impl Checkpoint {
     /// First bytes of a checkpoint file in every version of the format.
     pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
     /// Version of the format that the library reads and writes. The version follows [`Self::MAGIC`], on the same line.
-    const VERSION: &str = "5";
+    const VERSION: &str = "6";
     /// Start of the second line. The rest of the line names the program and version that wrote the checkpoint.
     const WRITER: &str = "written by ";
     /// Name and version of this library.
@@ -102,12 +102,11 @@ impl Checkpoint {
                 out.bytes(bytes);
             });
         });
-        if let Some(PeriodState { began, before, f_before, held, stages }) = period {
+        if let Some(PeriodState { began, before, f_before, stages }) = period {
             out.record("period", |out| {
                 out.number((*began).into());
                 out.points(before);
                 out.real(*f_before);
-                out.bytes(&held.iter().map(|&held| held.into()).collect::<Vec<u8>>());
             });
             out.record("stages", |out| {
                 stages.iter().for_each(|(name, state)| out.record(name, |out| out.0.extend(state)));
@@ -177,7 +176,6 @@ impl Checkpoint {
                 began: from.count()?,
                 before: from.points()?,
                 f_before: from.real()?,
-                held: from.bytes()?.iter().map(|&held| held == 1).collect(),
                 stages: Vec::new(),
             })
         })?;
@@ -234,13 +232,8 @@ mod tests {
             best: points,
         };
         let stages = vec![("slide".to_owned(), vec![1, 2, 3]), ("move limit".to_owned(), vec![])];
-        let period = PeriodState {
-            began: 2,
-            before: engine.positions.clone(),
-            f_before: 1.5,
-            held: vec![true, false],
-            stages,
-        };
+        let period =
+            PeriodState { began: 2, before: engine.positions.clone(), f_before: 1.5, stages };
         Checkpoint {
             period: Some(period),
             about: RunFingerprint {

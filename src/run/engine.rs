@@ -45,9 +45,6 @@ pub(crate) trait Engine: Send {
     /// Moves all vertices to `positions`, between two sweeps. Drops the secant pairs of earlier corrections.
     fn set_positions(&mut self, positions: &[DVec2]) -> Result<(), GpuError>;
 
-    /// Holds free vertices. Later sweeps and corrections move exactly the vertices for which `held` is false.
-    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError>;
-
     /// Replaces the targets and local maps by those of `problem`. Its layout must equal that of the engine's problem.
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError>;
 

@@ -40,8 +40,6 @@ pub(crate) struct PeriodState {
     pub(crate) before: Vec<DVec2>,
     /// Base objective f before the period.
     pub(crate) f_before: f64,
-    /// For each free vertex, whether sweeps leave the vertex at its position.
-    pub(crate) held: Vec<bool>,
     /// Name and encoded state of each stage, in the order of their work.
     pub(crate) stages: Vec<(String, Vec<u8>)>,
 }

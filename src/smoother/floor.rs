@@ -111,7 +111,6 @@ impl Floor<'_> {
         &self,
         options: &Options,
         problem: &Problem,
-        bounds: Option<&[f64]>,
         positions: &[DVec2],
         points: &mut [[f64; 2]],
         goes_on: impl FnMut() -> bool,
@@ -123,7 +122,7 @@ impl Floor<'_> {
             step: Plan::new(options).base_step(1.0),
             shape: f64::INFINITY,
             floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
-            bounds,
+            bounds: problem.radii(),
         };
         self.descend(options, problem, &rules, positions, points, goes_on).await;
         self.bring_back(options, points).await?;

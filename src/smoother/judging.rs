@@ -60,8 +60,7 @@ impl Smoother<'_> {
             Some(_) => paced::copied(&ended.positions).await,
             None => Vec::new(),
         };
-        let mut improving =
-            Improvement::after(&mut ended, options, &problem, stages.bounds(), observe).await;
+        let mut improving = Improvement::after(&mut ended, options, &problem, observe).await;
         let (mut points, mut returned) = self.as_stored(options, &stages, &ended.positions).await?;
         if let Some(improving) = &mut improving {
             let without = self.as_stored(options, &stages, &before_stage).await?;
@@ -100,11 +99,9 @@ impl Smoother<'_> {
                 }
                 goes_on
             };
-            let bounds = stages.bounds();
             let swept = points.iter().zip(&self.mesh.points).filter(|(to, from)| to != from);
             all_moved = swept.count();
-            let raised =
-                floor.raise(options, problem, bounds, &judged, &mut points, goes_on).await?;
+            let raised = floor.raise(options, problem, &judged, &mut points, goes_on).await?;
             judged = self.problem.normalized(&points, judged).await;
             written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
             floored =

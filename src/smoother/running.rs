@@ -17,7 +17,7 @@ use crate::run::{
 };
 use crate::slide::Slide;
 use crate::targets::TargetField;
-use crate::whole::{Device, Live, Spec, drive};
+use crate::whole::{Device, Live, Spec, bounded, drive};
 
 use super::judging::JudgedBy;
 use super::over_all::OverAll;
@@ -60,7 +60,7 @@ impl Smoother<'_> {
         // Only the CPU slides vertices, so a mesh without free vertices needs no device.
         let device = device.filter(|_| self.problem.free_count() > 0);
         let (device, fault) = self.checked(device, policy).await?;
-        let problem = &self.judged_problem();
+        let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
         let mut about = self.about(problem, options).await;
         let resumed =
             from.map(|from| resume::check(&about, from, problem).map(|()| from)).transpose()?;

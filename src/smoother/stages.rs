@@ -8,22 +8,19 @@ use crate::mesh::Mesh;
 use crate::options::Options;
 use crate::outcome::Slid;
 use crate::run::Plan;
+use crate::slide::Sliding;
 use crate::targets::TargetField;
 use crate::topology::Topology;
 use crate::whole::altitude::least_of;
-use crate::whole::{
-    AltitudeStage, MoveLimitStage, SlideStage, Stage, TargetFieldStage, set_targets_of,
-};
+use crate::whole::{SlideStage, Stage, TargetFieldStage, radii, set_targets_of};
 
 use super::prepared::Smoother;
 
-/// The stages of a run with their state: sliding, move limit, least altitude, and targets that depend on the place.
+/// The stages of a run with their state: sliding, and targets that depend on the place.
 pub(super) struct Stages<'s> {
     mesh: &'s Mesh,
     topology: &'s Topology<'s>,
     field: Option<&'s TargetField>,
-    move_limit: Option<MoveLimitStage<'s>>,
-    altitude: Option<AltitudeStage<'s>>,
     slide: Option<SlideStage<'s>>,
     target_field: Option<TargetFieldStage<'s>>,
 }
@@ -32,12 +29,12 @@ impl<'s> Stages<'s> {
     /// Makes the stages required by the curves and targets of the smoother, and by the options.
     pub(super) fn new(smoother: &'s Smoother<'_>, options: &Options, plan: &Plan) -> Self {
         let Smoother { mesh, topology, problem, sliding, field, .. } = smoother;
-        let limit =
-            |most| MoveLimitStage::new(mesh, topology, problem, most, options.stored, plan.stop);
-        let move_limit = options.max_move.map(limit);
         let floor = if options.keep_altitude { least_of(problem) } else { 0.0 };
-        let slide = |sliding| {
-            let reach = move_limit.as_ref().map(|limit: &MoveLimitStage<'_>| limit.reach(sliding));
+        let slide = |sliding: &'s Sliding| {
+            let reach = options.max_move.map(|most| {
+                let all = radii(mesh, topology, most, options.stored);
+                sliding.for_each_vertex(|v| all[v as usize])
+            });
             SlideStage::new(sliding, reach, floor, plan.stop)
         };
         let slide = sliding.as_ref().map(slide);
@@ -46,8 +43,6 @@ impl<'s> Stages<'s> {
             mesh,
             topology,
             field,
-            move_limit,
-            altitude: options.keep_altitude.then(|| AltitudeStage::new(problem)),
             slide,
             target_field: field
                 .map(|field| TargetFieldStage::new(mesh, field, options.stopping.tolerance())),
@@ -56,18 +51,11 @@ impl<'s> Stages<'s> {
 
     /// Returns the stages in the order in which they act.
     pub(super) fn in_order(&mut self) -> Vec<&mut dyn Stage> {
-        let Self { move_limit, altitude, slide, target_field, .. } = self;
+        let Self { slide, target_field, .. } = self;
         let mut stages: Vec<&mut dyn Stage> = Vec::new();
-        stages.extend(move_limit.as_mut().map(|stage| stage as &mut dyn Stage));
-        stages.extend(altitude.as_mut().map(|stage| stage as &mut dyn Stage));
         stages.extend(slide.as_mut().map(|stage| stage as &mut dyn Stage));
         stages.extend(target_field.as_mut().map(|stage| stage as &mut dyn Stage));
         stages
-    }
-
-    /// Returns the largest normalized distance of each free vertex from its start, `None` without a bound.
-    pub(super) fn bounds(&self) -> Option<&[f64]> {
-        self.move_limit.as_ref().map(MoveLimitStage::bounds)
     }
 
     /// Overwrites the points of vertices that slid, as normalized positions do not hold all digits of these points.

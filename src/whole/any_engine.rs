@@ -56,10 +56,6 @@ impl Engine for AnyEngine<'_> {
         on!(self, engine => engine.set_positions(positions))
     }
 
-    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError> {
-        on!(self, engine => engine.hold(held))
-    }
-
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         on!(self, engine => engine.set_maps(problem))
     }

@@ -45,35 +45,19 @@ pub(crate) async fn drive(
             return Ok(live.end(swept_to, stop).await);
         }
         host.positions.clone_from(&swept_to);
-        let mut is_settled = true;
-        for k in 0..stages.len() {
-            let (earlier, rest) = stages.split_at_mut(k);
-            let Some(stage) = rest.first_mut() else { break };
-            let allows = |to: &[_]| earlier.iter().all(|stage| stage.allows(to));
-            let worked = stage.work(&mut host, &allows)?;
-            is_settled &= worked.is_settled;
-            if worked.has_moved_free {
-                earlier.iter_mut().for_each(|stage| stage.follow(&mut host));
-            }
+        for stage in stages.iter_mut() {
+            stage.work(&mut host)?;
         }
         let now = objectives(&host.problem, &plan, &host.positions).await;
         let f = now.of(plan.scheme.base()).unwrap_or(f64::NAN);
         let moved = Moved {
             positions: &host.positions,
             swept_to: &swept_to,
-            held: &host.held,
             targets: std::mem::take(&mut host.has_new_targets).then_some(&host.problem),
             now,
         };
         live.write_back(began, moved, checkpointer).await?;
-        let period = Period {
-            f: [host.f_before, f],
-            swept,
-            remaining: live.remaining(),
-            is_settled,
-            all_held: host.held.iter().all(|held| *held),
-            is_last: live.sweeps() >= max_sweeps,
-        };
+        let period = Period { f: [host.f_before, f], is_last: live.sweeps() >= max_sweeps };
         let judged = stages.last_mut().map(|stage| stage.judge(&period));
         let Judgment { stop, remaining } =
             judged.unwrap_or(Judgment { stop: None, remaining: None });
@@ -97,12 +81,11 @@ fn saved(host: &Host<'_>, stages: &[&mut dyn Stage], began: u32) -> PeriodState 
         stage.save(&mut out);
         (stage.name().to_owned(), out.0)
     };
-    let Host { before, f_before, held, .. } = host;
+    let Host { before, f_before, .. } = host;
     PeriodState {
         began,
         before: before.clone(),
         f_before: *f_before,
-        held: held.clone(),
         stages: stages.iter().map(state).collect(),
     }
 }
@@ -114,7 +97,6 @@ fn restore(period: &PeriodState, host: &mut Host<'_>, stages: &mut [&mut dyn Sta
     }
     host.before.clone_from(&period.before);
     host.positions.clone_from(&period.before);
-    host.held.clone_from(&period.held);
     host.f_before = period.f_before;
     for (stage, (name, state)) in stages.iter_mut().zip(&period.stages) {
         let mut from = Reader(state);

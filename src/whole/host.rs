@@ -5,6 +5,7 @@ use glam::DVec2;
 use crate::cpu::mean_excess;
 use crate::layout::Problem;
 use crate::parallel::map_parts;
+use crate::patch::{Circle, keeps_altitude};
 use crate::run::{Objectives, Plan};
 
 /// The state that stages change between sweeps. Positions are normalized and include fixed vertices.
@@ -18,19 +19,16 @@ pub(crate) struct Host<'r> {
     pub(crate) f_before: f64,
     /// Present positions: those at the end of the sweeps, until a stage moves vertices.
     pub(crate) positions: Vec<DVec2>,
-    /// For each free vertex, whether later sweeps leave the vertex at its position.
-    pub(crate) held: Vec<bool>,
     /// Whether a stage has changed targets since the last sweep.
     pub(crate) has_new_targets: bool,
 }
 
 impl<'r> Host<'r> {
-    /// Creates the state before the first sweep, with no vertex held.
+    /// Creates the state before the first sweep.
     pub(crate) async fn new(problem: Problem, plan: &'r Plan, positions: &[DVec2]) -> Self {
-        let held = vec![false; problem.free_count()];
         let f_before = f(&problem, plan, positions).await;
         let (before, positions) = (positions.to_vec(), positions.to_vec());
-        Self { problem, plan, before, f_before, positions, held, has_new_targets: false }
+        Self { problem, plan, before, f_before, positions, has_new_targets: false }
     }
 
     /// Begins a period at the present positions. `f` is the objective by the base metric there.
@@ -50,7 +48,7 @@ impl<'r> Host<'r> {
     }
 
     /// Returns whether a move from `from` to `to` is sound: no triangle may become inverted or flat, and none may have
-    /// an inverse mean ratio both above the guard and worse than before.
+    /// an inverse mean ratio both above the guard and worse than before. The bounds of the problem must hold too.
     pub(crate) fn is_sound(&self, from: &[DVec2], to: &[DVec2]) -> bool {
         let (problem, guard) = (&self.problem, self.guard());
         let ratio = |positions: &[DVec2], t: &[u32; 3]| {
@@ -62,8 +60,22 @@ impl<'r> Host<'r> {
         };
         let parts =
             map_parts(problem.triangles().chunks(4096), |_, part| part.iter().all(is_sound));
-        parts.into_iter().all(|is_sound| is_sound)
+        parts.into_iter().all(|is_sound| is_sound) && is_within_bounds(problem, from, to)
     }
+}
+
+/// Returns whether a move from `from` to `to` keeps the bounds of a problem.
+fn is_within_bounds(problem: &Problem, from: &[DVec2], to: &[DVec2]) -> bool {
+    let (coordinates, floor) = (problem.coordinates(), problem.floor());
+    let radii = problem.radii().unwrap_or_default().iter().zip(problem.positions()).zip(to);
+    let corners = |t: &[u32; 3], at: &[DVec2]| t.map(|v| coordinates.at(at[v as usize]));
+    radii.into_iter().all(|((&radius, &center), &at)| {
+        Circle { center: coordinates.at(center), radius }.contains(coordinates.at(at))
+    }) && (floor <= 0.0
+        || problem
+            .triangles()
+            .iter()
+            .all(|t| keeps_altitude(floor, corners(t, from), corners(t, to))))
 }
 
 /// Returns f by the base metric of a plan.

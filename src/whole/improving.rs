@@ -34,13 +34,12 @@ pub(crate) struct Improvement {
 
 impl Improvement {
     /// Improves the worst triangles of a mesh after a run. `None` if [`Options::improve_worst`] is `None`, or if the
-    /// run was canceled or failed. `bounds` limit the distance of each free vertex from the start of the run. If the
-    /// observer ends the stage, the run counts as canceled.
+    /// run was canceled or failed. If the observer ends the stage, the run counts as
+    /// canceled.
     pub(crate) async fn after(
         ended: &mut RunEnd,
         options: &Options,
         problem: &Problem,
-        bounds: Option<&[f64]>,
         observe: &mut dyn Observer,
     ) -> Option<Self> {
         let badness = Badness(options.improve_worst?);
@@ -57,7 +56,7 @@ impl Improvement {
             step: Plan::new(options).base_step(1.0),
             shape: worst_shape.sqrt() * (1.0 + ROUNDING),
             floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
-            bounds,
+            bounds: problem.radii(),
         };
         let mut passes = Passes::new(problem, &rules, positions).await;
         let mut f = before;

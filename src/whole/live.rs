@@ -58,7 +58,6 @@ pub(crate) struct Live<'s> {
     session: Option<Session<AnyEngine<'s>>>,
     /// State at the start of the run, or at the end of the latest stage that moved vertices.
     last: Point,
-    held: Vec<bool>,
     /// Tracked objectives of the given mesh, if the run begins at means of neighbors instead.
     given: Option<Objectives>,
     opened: Option<DoublePrelude>,
@@ -93,8 +92,9 @@ impl<'s> Live<'s> {
         checkpointer: &mut Checkpointer<'_>,
     ) -> Result<Self, SmoothError> {
         let mut problem = with_local_maps(&spec, from).await;
-        // Stages bound moves from the given positions, and plain sweeps are a sequence that the caller determines.
-        let relief = match spec.options.is_multilevel() && !spec.is_staged {
+        // Bounds hold from the given positions on, and plain sweeps are a sequence that the caller determines.
+        let may_begin_elsewhere = !spec.is_staged && !problem.is_bounded();
+        let relief = match spec.options.is_multilevel() && may_begin_elsewhere {
             true => relieved(spec.problem, &problem, &plan, from).await?,
             false => None,
         };
@@ -128,13 +128,12 @@ impl<'s> Live<'s> {
             about.on_cpu_from = on_cpu_from;
         }
         let period = resumed.and_then(|resumed| Some((resumed, resumed.period.as_ref()?)));
-        let (last, held) = match period {
+        let last = match period {
             Some((Checkpoint { saved, .. }, period)) => {
                 let log = saved.log[..=period.began as usize].to_vec();
-                let last = Point { log, positions: period.before.clone() };
-                (last, period.held.clone())
+                Point { log, positions: period.before.clone() }
             }
-            None => (Point { log: Vec::new(), positions }, Vec::new()),
+            None => Point { log: Vec::new(), positions },
         };
         Ok(Self {
             problem,
@@ -143,7 +142,6 @@ impl<'s> Live<'s> {
             device,
             session: None,
             last,
-            held,
             given,
             opened,
             on_cpu_from,
@@ -166,11 +164,6 @@ impl<'s> Live<'s> {
     /// Returns the positions at the start of the run, or at the end of the latest stage that moved vertices.
     pub(crate) fn start(&self) -> &[DVec2] {
         &self.last.positions
-    }
-
-    /// Returns the estimated remaining gain as a share of f, from the sweeps alone.
-    pub(crate) fn remaining(&self) -> Option<f64> {
-        self.session.as_ref().and_then(|session| session.history().remaining())
     }
 
     /// Sweeps until the run has done `until` sweeps, or ends before. Returns the best positions, and the reason if the
@@ -218,8 +211,7 @@ impl<'s> Live<'s> {
         if stop.is_none() && session.needs_double() {
             let positions = session.engine.best_positions().await?;
             let on_cpu = |problem: &Problem| {
-                let mut engine = CpuEngine::new(problem, positions, &self.plan);
-                engine.hold(&self.held)?;
+                let engine = CpuEngine::new(problem, positions, &self.plan);
                 Ok(AnyEngine::Cpu(Box::new(engine)))
             };
             session.continue_in_double(on_cpu).await?;
@@ -233,9 +225,9 @@ impl<'s> Live<'s> {
 
     /// Creates an engine in a saved state, or in the state that `last` has.
     async fn begun(&self, saved: Option<Saved>) -> Result<Session<AnyEngine<'s>>, DriveError> {
-        let Self { problem, plan, last: Point { log, positions }, held, .. } = self;
+        let Self { problem, plan, last: Point { log, positions }, .. } = self;
         let corrected = self.is_corrected();
-        let mut engine = match self.device {
+        let engine = match self.device {
             None => AnyEngine::Cpu(Box::new(CpuEngine::new(
                 problem,
                 paced::copied(positions).await,
@@ -249,9 +241,6 @@ impl<'s> Live<'s> {
                 AnyEngine::Device(device.engine(problem, positions, judged, steps).await?)
             }
         };
-        if !held.is_empty() {
-            engine.hold(held)?;
-        }
         let corrections = corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged));
         let mut session = Session::new(engine, plan, corrections, log);
         if let Some(saved) = saved {
@@ -301,31 +290,22 @@ impl<'s> Live<'s> {
         self.last.positions.clone()
     }
 
-    /// Records the changes of the stages after sweep `from`: the positions of vertices, the held vertices, and the
-    /// targets. Sends the changes to the engine.
+    /// Records the changes of the stages after sweep `from`: the positions of vertices and the targets. Sends the changes to the engine.
     pub(crate) async fn write_back(
         &mut self,
         from: u32,
         moved: Moved<'_>,
         checkpointer: &mut Checkpointer<'_>,
     ) -> Result<(), SmoothError> {
-        let Moved { positions, swept_to, held, targets, now } = moved;
+        let Moved { positions, swept_to, targets, now } = moved;
         let Some(mut session) = self.session.take() else { return Ok(()) };
         session.disturbed(from, now);
         // The state that was saved before belongs to other positions and stages.
         checkpointer.last = None;
         self.last = Point { log: session.history().log().to_vec(), positions: positions.to_vec() };
-        let is_held_anew = self.held != held;
-        if is_held_anew {
-            self.held.clear();
-            self.held.extend_from_slice(held);
-        }
         let mut changed = || -> Result<(), GpuError> {
             if let Some(problem) = targets {
                 session.set_targets(problem)?;
-            }
-            if is_held_anew {
-                session.engine.hold(held)?;
             }
             if positions != swept_to {
                 session.engine.set_positions(positions)?;
@@ -368,7 +348,7 @@ impl<'s> Live<'s> {
         let step = plan.base_step(1.0);
         let can_be_held = matches!(stop, Stop::Converged | Stop::MaxSweeps);
         if can_be_held && step.shape_guard.is_finite() && problem.free_count() > 0 {
-            held = held_back(&problem, &positions, &self.held, &step).await;
+            held = held_back(&problem, &positions, &step).await;
             if held > 0 && self.spec.options.guard == Guard::ByMetric && stop == Stop::Converged {
                 stop = Stop::HeldBack;
             }
@@ -419,8 +399,6 @@ pub(crate) struct Moved<'h> {
     pub(crate) positions: &'h [DVec2],
     /// Positions at the end of the sweeps, before the stages moved vertices.
     pub(crate) swept_to: &'h [DVec2],
-    /// For each free vertex, whether later sweeps hold it; empty if no vertex is held.
-    pub(crate) held: &'h [bool],
     /// The problem with new targets. `None` if the targets have not changed.
     pub(crate) targets: Option<&'h Problem>,
     /// Objectives at `positions`, by the present targets.

@@ -3,24 +3,23 @@
 
 pub(crate) mod altitude;
 mod any_engine;
+mod bounds;
 #[cfg_attr(not(feature = "gpu"), path = "no_device.rs")]
 mod device;
 mod driver;
 mod host;
 mod improving;
 mod live;
-mod move_limit;
 mod relief;
 mod slide;
 mod stage;
 mod target_field;
 
-pub(crate) use altitude::AltitudeStage;
+pub(crate) use bounds::{bounded, radii};
 pub(crate) use device::Device;
 pub(crate) use driver::drive;
 pub(crate) use improving::Improvement;
 pub(crate) use live::{Live, RunEnd, Spec};
-pub(crate) use move_limit::MoveLimitStage;
 pub(crate) use slide::SlideStage;
 pub(crate) use stage::Stage;
 pub(crate) use target_field::{TargetFieldStage, set_targets_of};

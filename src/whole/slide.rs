@@ -1,7 +1,5 @@
 //! The stage in which vertices slide: sweeps along curves, after some sweeps over the free vertices.
 
-use glam::DVec2;
-
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::outcome::Slid;
@@ -12,7 +10,7 @@ use crate::slide::{Acceleration, Params, Rule, Sliding, read_params, write_param
 use crate::topology::Topology;
 use crate::topology::predicates::orientation;
 use crate::whole::host::Host;
-use crate::whole::stage::{Judgment, Period, PeriodRule, Stage, Worked};
+use crate::whole::stage::{Judgment, Period, PeriodRule, Stage};
 
 /// Number of sweeps in a period. With two sweeps, a run takes more periods and as many sweeps; with four, more sweeps.
 const SWEEPS: u32 = 3;
@@ -101,11 +99,7 @@ impl Stage for SlideStage<'_> {
 
     /// Sweeps along the curves, then extrapolates the last periods. The extrapolated positions are taken if f is lower
     /// there and all bounds hold.
-    fn work(
-        &mut self,
-        host: &mut Host<'_>,
-        allows: &dyn Fn(&[DVec2]) -> bool,
-    ) -> Result<Worked, MeshError> {
+    fn work(&mut self, host: &mut Host<'_>) -> Result<(), MeshError> {
         self.count = self.count.saturating_add(1);
         let step = host.plan.base_step(1.0);
         let began = self.params.clone();
@@ -114,21 +108,19 @@ impl Stage for SlideStage<'_> {
             let Host { problem, positions, .. } = host;
             self.sliding.sweep(problem, &mut self.params, &self.reach, positions, rule);
         }
-        let mut worked = Worked { is_settled: true, has_moved_free: false };
         let change = self.sliding.change(&began, &self.params);
         let next = self.memory.next(change, &self.params, &host.positions);
-        let Some((mut params, mut there)) = next else { return Ok(worked) };
+        let Some((mut params, mut there)) = next else { return Ok(()) };
         let (safe, reach) = (&self.params, &self.reach);
         if self.sliding.place(&host.problem, &mut params, safe, reach, &mut there)
-            && allows(&there)
             && host.is_sound(&host.positions, &there)
             && now(host.f(&there)) < now(host.f(&host.positions))
         {
-            (self.params, host.positions, worked.has_moved_free) = (params, there, true);
+            (self.params, host.positions) = (params, there);
         } else {
             self.memory.forget();
         }
-        Ok(worked)
+        Ok(())
     }
 
     fn judge(&mut self, period: &Period) -> Judgment {

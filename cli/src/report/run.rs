@@ -29,7 +29,7 @@ pub(crate) struct Report {
     /// Number of sweeps corrected from coarser levels.
     pub(crate) corrections: u32,
     /// Number of first sweeps computed in double precision on the CPU, because triangles were too flat, too small, or too
-    /// stretched relative to their targets, for the GPU.
+    /// stretched relative to their targets, for the GPU, or because moves or altitudes in degrees are bounded.
     pub(crate) opening_sweeps: u32,
     /// Number of last sweeps computed in double precision on the CPU, because single precision did not suffice to end the
     /// run.

@@ -355,7 +355,7 @@ impl Report {
             let n = self.opening_sweeps;
             let _ = write!(
                 text,
-                "; the first {n} on the CPU, as triangles were too flat, small or stretched for the GPU"
+                "; the first {n} on the CPU, as triangles were too flat, small or stretched, or bounds in degrees too fine, for the GPU"
             );
         }
         if self.closing_sweeps > 0 {

@@ -123,23 +123,6 @@ fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
         ("--slide --fraction 0.9", "--slide does not go with --fraction"),
         ("--slide --desired auto", "give the goal a value (--desired F)"),
         (
-            "--max-move 1 --scheme edge+imr",
-            "--max-move does not go with --scheme edge+imr: each of its periods",
-        ),
-        ("--max-move 1 --scheme imr+imr", "--max-move does not go with --scheme imr+imr"),
-        ("--max-move 1 --derivatives finite-difference", "it needs analytic derivatives"),
-        ("--max-move 1 --fraction 0.9", "--max-move does not go with --fraction"),
-        ("--max-move 1 --desired auto", "give the goal a value (--desired F)"),
-        (
-            "--keep-altitude --scheme edge+imr",
-            "--keep-altitude does not go with --scheme edge+imr: each of its periods",
-        ),
-        ("--keep-altitude --scheme imr+imr", "--keep-altitude does not go with --scheme imr+imr"),
-        ("--keep-altitude --derivatives finite-difference", "it needs analytic derivatives"),
-        ("--keep-altitude --fraction 0.9", "--keep-altitude does not go with --fraction"),
-        ("--keep-altitude --desired auto", "give the goal a value (--desired F)"),
-        ("--keep-altitude --max-move 1", "--keep-altitude does not go with --max-move"),
-        (
             "--keep-altitude --untangle",
             "--keep-altitude does not go with --untangle: inverted triangles",
         ),

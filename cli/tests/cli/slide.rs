@@ -271,9 +271,11 @@ fn the_least_altitude_is_kept_and_certified() {
     let [before, after] = [0, 1].map(|i| number(&report["change"]["least_altitude"][i]));
     assert!(after >= before, "{before} {after}");
     assert!(number(&report["after"]["f"]["imr"]) < number(&report["before"]["f"]["imr"]));
-    let run = folder.line("in.mesh out.mesh --keep-altitude --max-move 1");
-    assert_eq!(run.code, Some(2));
-    assert_holds(&run.err, &["--keep-altitude does not go with --max-move"]);
+    let both = "in.mesh other.mesh --engine cpu --keep-altitude --max-move 0.1 --free-interfaces";
+    folder.line(&format!("{both} --scheme edge+imr --report r.json")).clean();
+    let change = &folder.json("r.json")["change"];
+    let [before, after] = [0, 1].map(|i| number(&change["least_altitude"][i]));
+    assert!(after >= before && number(&change["moved"]["most"]) <= 0.1, "{change}");
 }
 
 #[test]

@@ -28,11 +28,13 @@ pub(crate) struct MeshForm {
     pub(crate) positions: Positions,
     /// Kind of the maps that follow the positions in their buffer.
     pub(crate) maps: MapKind,
+    /// Whether discs or a least altitude bound the free vertices. The discs follow the maps.
+    pub(crate) is_bounded: bool,
 }
 
 impl From<Positions> for MeshForm {
-    /// Returns the form of a mesh without maps.
+    /// Returns the form of a mesh without maps and bounds.
     fn from(positions: Positions) -> Self {
-        Self { positions, maps: MapKind::None }
+        Self { positions, maps: MapKind::None, is_bounded: false }
     }
 }

@@ -162,7 +162,10 @@ mod tests {
 
     #[test]
     fn every_kernel_declares_the_bindings_of_its_layout() {
-        let form = |positions| MapKind::ALL.map(|maps| MeshForm { positions, maps });
+        let of_maps = |positions, is_bounded| {
+            MapKind::ALL.map(|maps| MeshForm { positions, maps, is_bounded })
+        };
+        let form = |positions| [false, true].map(|bounded| of_maps(positions, bounded)).concat();
         let forms = Positions::ALL.map(form).concat();
         let each =
             |kernel: Kernel| forms.clone().into_iter().map(move |form| (kernel.clone(), form));

@@ -14,6 +14,8 @@ pub(crate) struct Row {
     pub(crate) width: u32,
     /// Whether the kernel's source differs for meshes with maps at the vertices.
     pub(crate) sees_maps: bool,
+    /// Whether the kernel's source differs for meshes whose free vertices are bounded.
+    pub(crate) sees_bounds: bool,
     pub(crate) user: User,
     /// Sources of the kernel, appended to the files of its layout.
     pub(crate) source: &'static [Source],

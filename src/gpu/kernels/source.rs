@@ -6,13 +6,14 @@ use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::row::{Composition, Source};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
-    FINISH_WORKGROUP, HELD, HISTORY, INVERTED, MIN_NORMAL, NO_GUARD, SEARCH_TRIALS, SHARED_STRUCTS,
-    SLOT_VECTORS, SLOTS, WORKGROUP, WORST,
+    ALTITUDE_ERROR, AT_DISC, FINISH_WORKGROUP, HELD, HISTORY, INVERTED, MIN_NORMAL, NO_GUARD,
+    SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS, TINY, WORKGROUP, WORST,
 };
 use crate::layout::MapKind;
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
 use crate::options::Derivatives;
+use crate::patch::MIN_CIRCLE_CURVATURE;
 use crate::patch::search_rule::{
     FLAT_EXPONENT, FLAT_RATIO, MIN_FLAT_SUM, SUFFICIENT_DECREASE, SearchRule,
 };
@@ -28,6 +29,8 @@ const NO_MAPS: &str = include_str!("../../../shaders/no_maps.wgsl");
 const TARGET_MAPS: &str = include_str!("../../../shaders/target_maps.wgsl");
 const LOCAL_MAPS: &str = include_str!("../../../shaders/local_maps.wgsl");
 const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
+const NO_BOUNDS: &str = include_str!("../../../shaders/no_bounds.wgsl");
+const BOUNDS: &str = include_str!("../../../shaders/bounds.wgsl");
 const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
 const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
@@ -46,16 +49,21 @@ impl Kernel {
 
     /// Returns the complete WGSL module for a mesh with targets.
     pub fn wgsl_for_targets(&self) -> String {
-        self.composed(MeshForm { positions: Positions::Whole, maps: MapKind::Targets })
+        self.composed(MeshForm { maps: MapKind::Targets, ..Positions::Whole.into() })
     }
 
     /// Returns the complete WGSL module for a strongly stretched mesh.
     pub fn wgsl_for_stretched_meshes(&self) -> String {
-        self.composed(MeshForm { positions: Positions::Whole, maps: MapKind::Local })
+        self.composed(MeshForm { maps: MapKind::Local, ..Positions::Whole.into() })
+    }
+
+    /// Returns the complete WGSL module for a mesh whose free vertices are bounded.
+    pub fn wgsl_for_bounded_meshes(&self) -> String {
+        self.composed(MeshForm { is_bounded: true, ..Positions::Whole.into() })
     }
 
     /// Composes the WGSL module: constants, structs and bindings that Rust declares, then the files of the bind layout,
-    /// the access to positions and maps, and the sources of the kernel's row.
+    /// the access to positions, maps and bounds, and the sources of the kernel's row.
     pub(crate) fn composed(&self, form: MeshForm) -> String {
         let mut source = constants();
         let layout = self.layout();
@@ -76,6 +84,9 @@ impl Kernel {
                 MapKind::Local => LOCAL_MAPS,
             });
             source.push_str(MAPS);
+        }
+        if self.row().sees_bounds {
+            source.push_str(if form.is_bounded { BOUNDS } else { NO_BOUNDS });
         }
         let composition = self.composition();
         for part in self.row().source {
@@ -133,6 +144,10 @@ fn constants() -> String {
         ("SMOOTHING", SMOOTHING.into()),
         ("MIN_CURVATURE", MIN_CURVATURE),
         ("NO_GUARD", NO_GUARD),
+        ("AT_DISC", AT_DISC),
+        ("TINY", TINY),
+        ("MIN_CIRCLE_CURVATURE", MIN_CIRCLE_CURVATURE),
+        ("ALTITUDE_ERROR", ALTITUDE_ERROR),
         ("MIN_FIRST_LENGTH", MIN_FIRST_LENGTH),
         ("MAX_FIRST_LENGTH", MAX_FIRST_LENGTH),
         ("CLOSE", CLOSE),

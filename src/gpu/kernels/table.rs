@@ -32,6 +32,7 @@ macro_rules! kernels {
             layout: $layout:ident,
             width: $width:expr,
             sees_maps: $sees_maps:literal,
+            sees_bounds: $sees_bounds:literal,
             user: $user:ident,
             source: [$($source:tt),*],
         }
@@ -49,6 +50,7 @@ macro_rules! kernels {
                         layout: BindLayout::$layout,
                         width: $width,
                         sees_maps: $sees_maps,
+                        sees_bounds: $sees_bounds,
                         user: User::$user,
                         source: &[$(source!($source)),*],
                     } },)*
@@ -87,6 +89,7 @@ kernels! {
         layout: Run,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: true,
         user: Sweeps,
         source: ["patch.wgsl", "one_ring.wgsl", ActiveMetric, "descent.wgsl", "newton.wgsl"],
     }
@@ -97,6 +100,7 @@ kernels! {
         layout: Run,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: false,
         user: Sweeps,
         source: ["patch.wgsl", TrackedMetrics, "objective.wgsl"],
     }
@@ -107,6 +111,7 @@ kernels! {
         layout: Run,
         width: FINISH_WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: [TrackedSlots, "finish.wgsl"],
     }
@@ -117,6 +122,7 @@ kernels! {
         layout: Run,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["keep_best.wgsl"],
     }
@@ -127,6 +133,7 @@ kernels! {
         layout: Exchange,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["import.wgsl"],
     }
@@ -137,6 +144,7 @@ kernels! {
         layout: Exchange,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["export.wgsl"],
     }
@@ -147,6 +155,7 @@ kernels! {
         layout: WriteObjective,
         width: SLOTS as u32,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["write_objective.wgsl"],
     }
@@ -158,6 +167,7 @@ kernels! {
         layout: RestartIfChanged,
         width: 1,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["judged/restart_if_changed.wgsl"],
     }
@@ -168,6 +178,7 @@ kernels! {
         layout: RestartIfChanged,
         width: 1,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["judged/resume.wgsl"],
     }
@@ -178,6 +189,7 @@ kernels! {
         layout: Restore,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["restore.wgsl"],
     }
@@ -188,6 +200,7 @@ kernels! {
         layout: Mask,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["mask.wgsl"],
     }
@@ -199,6 +212,7 @@ kernels! {
         layout: Move,
         width: FINISH_WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["clamp/find_share.wgsl"],
     }
@@ -209,6 +223,7 @@ kernels! {
         layout: Move,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Sweeps,
         source: ["clamp/move_vertices.wgsl"],
     }
@@ -219,6 +234,7 @@ kernels! {
         layout: Untangle,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: false,
         user: Sweeps,
         source: ["untangle/find_inverted.wgsl"],
     }
@@ -229,6 +245,7 @@ kernels! {
         layout: Untangle,
         width: 1,
         sees_maps: true,
+        sees_bounds: false,
         user: Sweeps,
         source: ["untangle/regularize.wgsl"],
     }
@@ -239,6 +256,7 @@ kernels! {
         layout: Untangle,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: false,
         user: Sweeps,
         source: [
             UntanglingEnergy, "one_ring.wgsl", "descent.wgsl", "untangle/energy.wgsl",
@@ -252,6 +270,7 @@ kernels! {
         layout: Fine,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: true,
         user: Corrections,
         source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/gradient.wgsl"],
     }
@@ -262,6 +281,7 @@ kernels! {
         layout: Transfer,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/neighbors.wgsl", "levels/smooth_gradient.wgsl"],
     }
@@ -272,6 +292,7 @@ kernels! {
         layout: Transfer,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/restrict.wgsl"],
     }
@@ -282,6 +303,7 @@ kernels! {
         layout: Transfer,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/neighbors.wgsl", "levels/prolong.wgsl"],
     }
@@ -292,6 +314,7 @@ kernels! {
         layout: Coarse,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/matrix_vector.wgsl"],
     }
@@ -302,6 +325,7 @@ kernels! {
         layout: Coarse,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/chebyshev.wgsl"],
     }
@@ -312,6 +336,7 @@ kernels! {
         layout: Coarse,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/coarsest_solve.wgsl"],
     }
@@ -322,6 +347,7 @@ kernels! {
         layout: Fine,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: true,
         user: Corrections,
         source: [
             "one_ring.wgsl", ActiveMetric, "levels/along.wgsl", "levels/moved.wgsl",
@@ -335,6 +361,7 @@ kernels! {
         layout: Coarse,
         width: FINISH_WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/sum_along_correction.wgsl"],
     }
@@ -345,6 +372,7 @@ kernels! {
         layout: Fine,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: true,
         user: Corrections,
         source: ["levels/along.wgsl", "levels/move_along_correction.wgsl"],
     }
@@ -355,6 +383,7 @@ kernels! {
         layout: Fine,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: true,
         user: Corrections,
         source: [
             "one_ring.wgsl", "levels/along.wgsl", "levels/moved.wgsl", "levels/find_broken.wgsl"
@@ -367,6 +396,7 @@ kernels! {
         layout: Fine,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["levels/exclude_broken.wgsl"],
     }
@@ -377,6 +407,7 @@ kernels! {
         layout: Search,
         width: 1,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["search/begin_search.wgsl"],
     }
@@ -387,6 +418,7 @@ kernels! {
         layout: Search,
         width: 1,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["search/judge_trial.wgsl"],
     }
@@ -397,6 +429,7 @@ kernels! {
         layout: Fine,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: false,
         user: Corrections,
         source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/stiffness.wgsl"],
     }
@@ -407,6 +440,7 @@ kernels! {
         layout: Secants,
         width: WORKGROUP,
         sees_maps: true,
+        sees_bounds: false,
         user: Corrections,
         source: ["secants/complete_pair.wgsl"],
     }
@@ -417,6 +451,7 @@ kernels! {
         layout: Secants,
         width: FINISH_WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["secants/sum_secants.wgsl"],
     }
@@ -427,6 +462,7 @@ kernels! {
         layout: Secants,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["secants/bend_gradient.wgsl"],
     }
@@ -437,6 +473,7 @@ kernels! {
         layout: Secants,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["secants/multiply_correction.wgsl"],
     }
@@ -447,6 +484,7 @@ kernels! {
         layout: Secants,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Corrections,
         source: ["secants/begin_pair.wgsl"],
     }
@@ -457,6 +495,7 @@ kernels! {
         layout: Arithmetic,
         width: WORKGROUP,
         sees_maps: false,
+        sees_bounds: false,
         user: Check,
         source: ["check_arithmetic.wgsl"],
     }
@@ -481,7 +520,8 @@ impl Kernel {
     pub(crate) fn sees(&self, form: MeshForm) -> MeshForm {
         let positions = self.layout().sees(form.positions);
         let maps = if self.row().sees_maps { form.maps } else { MapKind::None };
-        MeshForm { positions, maps }
+        let is_bounded = form.is_bounded && self.row().sees_bounds;
+        MeshForm { positions, maps, is_bounded }
     }
 
     /// Returns the name of the entry point.

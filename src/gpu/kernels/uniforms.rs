@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 
 use crate::metric::{Metric, Smoothing};
+use crate::run::multilevel::NONE;
 
 /// Length of the history of evaluations on the device. The host reads entries before the device overwrites them.
 pub(crate) const HISTORY: u32 = 256;
@@ -28,6 +29,14 @@ pub(crate) const MIN_NORMAL: u32 = 0x0080_0000;
 pub(crate) const HELD: u32 = 1 << 31;
 /// Shape guard that allows any step: larger than any inverse mean ratio, and finite in single precision.
 pub(crate) const NO_GUARD: f64 = 1e38;
+/// Distance of a vertex from the center of its disc, as a share of the radius, from which the vertex counts as at the
+/// circle. In single precision, points of the circle are up to 3e-7 off.
+pub(crate) const AT_DISC: f64 = 1.0 - 1e-5;
+/// Error of an altitude in single precision, as a share of the longest edge. The error of an area is 3e-7 times the product
+/// of two edges.
+pub(crate) const ALTITUDE_ERROR: f64 = 1e-6;
+/// Replaces a radius of zero in divisions.
+pub(crate) const TINY: f64 = 1e-30;
 
 /// Number of lengths tried along each correction that an application encodes.
 pub(crate) const SEARCH_TRIALS: u32 = 3;
@@ -128,7 +137,13 @@ shared_structs! {
         levels_in_plane: u32,
         /// Factor of the terms of size in metrics.
         size_weight: f32,
+        /// Index in the positions of the first of two rows for each free vertex, which hold the center and the radius of the
+        /// vertex's disc; NONE without discs.
+        discs: u32,
+        /// Lower limit of altitudes; 0 for no limit.
+        floor: f32,
         padding: u32,
+        more_padding: vec2u,
     }
 
     /// The range of one dispatch: free vertices of one color, with the parameters of the sweep; or triangles; or free
@@ -429,7 +444,10 @@ impl Params {
             maps,
             levels_in_plane: 0,
             size_weight: 1.0,
+            discs: NONE,
+            floor: 0.0,
             padding: 0,
+            more_padding: [0; 2],
         }
     }
 }

@@ -11,8 +11,8 @@ use crate::gpu::device::buffers::{
 use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
 use crate::gpu::kernels::layouts::BoundPositions;
-use crate::gpu::kernels::uniforms::{HELD, split};
-use crate::gpu::mesh::{Changes, Parts, of_part};
+use crate::gpu::kernels::uniforms::split;
+use crate::gpu::mesh::{Changes, Parts, bounds, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::parallel::pace::now;
@@ -38,7 +38,8 @@ impl MeshBuffers {
         positions: &[DVec2],
     ) -> Result<Self, GpuError> {
         let parts = Parts::new(problem, &gpu.device.limits())?;
-        let positions = laid_out(positions, problem.maps(), parts.low_positions).await;
+        let positions =
+            laid_out(positions, problem.maps(), &bounds::discs(problem), parts.low_positions).await;
         let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
         let positions = filled_with_pauses(gpu, "positions", &[&positions], usage).await?;
         let (starts, usage) = (problem.ring_start(), Usage::STORAGE | Usage::COPY_DST);
@@ -60,7 +61,12 @@ impl MeshBuffers {
         problem: &Problem,
         positions: &[DVec2],
     ) -> Result<Self, GpuError> {
-        let positions = now(laid_out(positions, problem.maps(), self.parts.low_positions));
+        let positions = now(laid_out(
+            positions,
+            problem.maps(),
+            &bounds::discs(problem),
+            self.parts.low_positions,
+        ));
         scoped(&gpu.device, || {
             self.at(gpu, filled(gpu, "further positions", &positions, Usage::STORAGE))
         })
@@ -161,16 +167,6 @@ impl MeshBuffers {
         })
     }
 
-    /// Holds free vertices: sweeps and corrections move exactly those for which `held` is false.
-    pub(crate) fn hold(&self, gpu: &Gpu, problem: &Problem, held: &[bool]) -> Result<(), GpuError> {
-        let starts = problem.ring_start().iter().zip(held);
-        let starts: Vec<u32> =
-            starts.map(|(&start, &held)| start | if held { HELD } else { 0 }).collect();
-        scoped(&gpu.device, || {
-            write_by_pieces(gpu, &self.ring_start, 0, bytemuck::cast_slice(&starts));
-        })
-    }
-
     /// Returns the binding of the mesh's one-rings in one part.
     pub(crate) fn bind_ring(&self, part: usize) -> wgpu::BindingResource<'_> {
         rows(&self.ring, &of_part(&self.parts.rings, part).entries, NUMBER)
@@ -190,13 +186,15 @@ const PART: u64 = POSITION / 2;
 
 /// Returns the content of the buffer of positions. Without `low`, the low parts of each vertex follow its high parts.
 /// With `low`, all high parts come first, and all low parts start at byte `low`. Maps follow the positions in
-/// the same form.
+/// the same form, and then the rows of discs.
 async fn laid_out(
     positions: &[DVec2],
     maps: Option<&[[f32; 3]]>,
+    discs: &[[f32; 4]],
     low: Option<u64>,
 ) -> Vec<[f32; 2]> {
-    let count = positions.len() + maps.map_or(0, <[_]>::len);
+    let first_disc = positions.len() + maps.map_or(0, <[_]>::len);
+    let count = first_disc + discs.len();
     let (step, low, length) = match low {
         None => (2, 1, 2 * count),
         Some(low) => (1, (low / PART) as usize, (low / PART) as usize + count),
@@ -205,6 +203,7 @@ async fn laid_out(
     let maps = maps.unwrap_or_default();
     let row_of = |row: usize| match positions.get(row) {
         Some(&position) => split(position),
+        None if row >= first_disc => discs[row - first_disc],
         None => {
             let [xx, xy, yy] = maps[row - positions.len()];
             [xx, xy, yy, 0.0]

@@ -1,5 +1,6 @@
 //! A mesh on a device: buffers, the parts in which large buffers are bound, and counters of changes.
 
+pub(crate) mod bounds;
 mod buffers;
 mod changes;
 mod parts;

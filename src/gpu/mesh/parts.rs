@@ -13,6 +13,7 @@ use crate::gpu::device::size::{
 };
 use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::uniforms::WORKGROUP;
+use crate::gpu::mesh::bounds;
 use crate::layout::{MapKind, Problem};
 use crate::mesh::MeshSize;
 
@@ -23,6 +24,8 @@ pub(crate) struct Parts {
     pub(crate) low_positions: Option<u64>,
     /// Kind of the maps that follow the positions in their buffer.
     maps: MapKind,
+    /// Whether the free vertices are bounded. Discs follow the maps.
+    is_bounded: bool,
     /// Parts of the one-rings, cut between vertices.
     pub(crate) rings: Vec<RingPart>,
     /// Parts of the triangles, as ranges of triangle numbers.
@@ -54,7 +57,7 @@ impl Parts {
         let size = MeshSize { vertices: problem.positions().len(), triangles };
         size.check(limits)?;
         let maps = problem.map_kind();
-        let rows = if maps.is_some() { 2 * size.vertices } else { size.vertices };
+        let rows = bounds::rows(problem);
         check_rows(rows, limits)?;
         let free = problem.free_count() as u32;
         // A part consists of whole rounds of the objective's invocations, so that the sums do not depend on the parts.
@@ -64,6 +67,7 @@ impl Parts {
         Ok(Self {
             low_positions: low_positions(rows, limits),
             maps,
+            is_bounded: problem.is_bounded(),
             rings: rings(problem.ring_start(), limits)?,
             triangles: ranges(triangles as u32, TRIANGLE, round, limits),
             free: ranges(free, POSITION, WORKGROUP, limits),
@@ -81,7 +85,7 @@ impl Parts {
     pub(crate) fn form(&self) -> MeshForm {
         let in_two = self.low_positions.is_some();
         let positions = if in_two { Positions::InTwo } else { Positions::Whole };
-        MeshForm { positions, maps: self.maps }
+        MeshForm { positions, maps: self.maps, is_bounded: self.is_bounded }
     }
 }
 

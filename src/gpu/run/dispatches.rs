@@ -15,7 +15,7 @@ use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Control, NO_GUARD, Params, Part, WORKGROUP, pair};
 use crate::gpu::mesh::MeshBuffers;
-use crate::gpu::mesh::{Parts, of_part};
+use crate::gpu::mesh::{Parts, bounds, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Metric;
@@ -286,6 +286,9 @@ fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         maps: problem.positions().len() as u32,
         levels_in_plane: problem.are_levels_in_plane().into(),
         size_weight: problem.ideal().size_weight as f32,
+        discs: bounds::first_disc(problem),
+        floor: problem.floor() as f32,
         padding: 0,
+        more_padding: [0; 2],
     }
 }

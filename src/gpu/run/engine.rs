@@ -250,10 +250,6 @@ impl Engine for GpuEngine<'_> {
         Ok(())
     }
 
-    fn hold(&mut self, held: &[bool]) -> Result<(), GpuError> {
-        self.mesh.hold(self.gpu, &self.problem, held)
-    }
-
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
         self.mesh.write_maps(self.gpu, problem)?;

@@ -33,7 +33,7 @@ pub(crate) struct Levels {
     /// The dispatches that compute the correction from the gradient.
     correction: Vec<Dispatch>,
     /// The dispatches that exclude vertices of broken triangles from the correction, once. Empty for runs without a
-    /// shape guard.
+    /// shape guard and a least altitude.
     left_out: Vec<Dispatch>,
     objective: Vec<Dispatch>,
     sum: Dispatch,
@@ -68,7 +68,7 @@ impl Levels {
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
-        let has_guard = guard < NO_GUARD as f32;
+        let has_guard = guard < NO_GUARD as f32 || problem.floor() > 0.0;
         // Compiled here with pauses, so that the listing finds every kernel compiled.
         for kernel in kernels(metric, has_guard, hierarchy) {
             gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form())?;

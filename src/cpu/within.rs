@@ -1,0 +1,220 @@
+//! Newton steps of vertices whose moves and altitudes are bounded, four vertices at a time.
+
+use fearless_simd::prelude::*;
+use glam::DVec2;
+
+use crate::layout::{MeshCoordinates, Problem};
+use crate::metric::{Dual, Real};
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, numbers, points};
+use crate::patch::numbers::Numbers;
+use crate::patch::{AT_DISC, Circle, Direction, GROWTH, MIN_CIRCLE_CURVATURE, Objective, Rings};
+
+/// The bounds of four free vertices.
+#[derive(Clone, Copy)]
+pub(super) struct LaneBounds<S: Simd> {
+    coordinates: MeshCoordinates,
+    /// Center of the disc of each vertex in coordinates of the mesh, and its radius; infinite without discs.
+    center: Points<S>,
+    radius: Lanes<S>,
+    /// Lower limit of altitudes, 0 for no limit.
+    floor: f64,
+}
+
+impl<S: Simd> LaneBounds<S> {
+    #[inline(always)]
+    pub(super) fn gather(simd: S, problem: &Problem, vertices: [u32; LANES]) -> Self {
+        let coordinates = problem.coordinates();
+        let center = points(simd, problem.positions(), vertices);
+        let radius = match problem.radii() {
+            Some(radii) => numbers(simd, radii, vertices),
+            None => Lanes::splat(simd, f64::INFINITY),
+        };
+        let center = in_mesh(coordinates, center);
+        Self { coordinates, center, radius, floor: problem.floor() }
+    }
+}
+
+/// Returns points in coordinates of the mesh, given positions.
+#[inline(always)]
+fn in_mesh<S: Simd>(coordinates: MeshCoordinates, positions: Points<S>) -> Points<S> {
+    match coordinates.is_projected() {
+        true => each(positions, |position| coordinates.at(position)),
+        false => positions,
+    }
+}
+
+/// Returns the results of a function of each lane's point.
+fn each<S: Simd>(points: Points<S>, of: impl Fn(DVec2) -> DVec2) -> Points<S> {
+    let mut found = points;
+    for lane in 0..LANES {
+        let to = of(DVec2::new(points[0][lane], points[1][lane]));
+        (found[0][lane], found[1][lane]) = (to.x, to.y);
+    }
+    found
+}
+
+/// The objective of vertices at `at` that may leave neither their discs nor lower a triangle below the least altitude.
+/// Trials beyond a disc end at the nearest point of the disc. Steps of vertices at the circle of their disc that would lead
+/// outward are Newton steps along the circle.
+pub(super) struct Within<'a, S: Simd, O> {
+    pub(super) objective: O,
+    pub(super) rings: &'a Rings<'a, S, true>,
+    pub(super) at: Points<S>,
+    pub(super) bounds: LaneBounds<S>,
+}
+
+impl<S: Simd, O> Within<'_, S, O> {
+    /// Returns which triangles between two neighbors are acceptable in all lanes' patches; see
+    /// [`keeps_altitude`](crate::patch::keeps_altitude).
+    #[inline(always)]
+    fn keeps_altitudes(&self, to: Points<S>) -> Mask<S> {
+        let LaneBounds { coordinates, floor, .. } = self.bounds;
+        let (from, to) = (in_mesh(coordinates, self.at), in_mesh(coordinates, to));
+        let mut kept = to[0].mask(true);
+        let floor = to[0].constant(floor * floor);
+        let &[mut last, ref rest @ ..] = self.rings.neighbors() else { return kept };
+        last = in_mesh(coordinates, last);
+        for &next in rest {
+            let next = in_mesh(coordinates, next);
+            let (area, longest) = doubled_area_and_square([to, last, next]);
+            let squared = area * Numbers::abs(area);
+            let mut is_kept = (floor * longest).le(squared);
+            if !is_kept.all_true() {
+                let (before, longest_before) = doubled_area_and_square([from, last, next]);
+                let grown = before * Numbers::abs(before) * (GROWTH * GROWTH);
+                is_kept |= (grown * longest).le(squared * longest_before);
+            }
+            kept &= is_kept;
+            last = next;
+        }
+        kept
+    }
+}
+
+/// Returns twice the area of triangles, and the square of their longest edges.
+#[inline(always)]
+fn doubled_area_and_square<S: Simd>([p, q, r]: [Points<S>; 3]) -> (Lanes<S>, Lanes<S>) {
+    let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+    let c = [b[0] - a[0], b[1] - a[1]];
+    let square = |[x, y]: Points<S>| x * x + y * y;
+    let longest = Real::max(Real::max(square(a), square(b)), square(c));
+    (a[0] * b[1] - a[1] * b[0], longest)
+}
+
+impl<S: Simd, O: Objective<Lanes<S>>> Objective<Lanes<S>> for Within<'_, S, O> {
+    #[inline(always)]
+    fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
+        self.objective.expansion(at)
+    }
+
+    /// Returns Newton's direction. Where a vertex at the circle of its disc would go outward, returns the Newton direction
+    /// along the circle, with the curvature τᵀHτ - g·n / R for the tangent τ, the outward normal n and the radius R.
+    #[inline(always)]
+    fn direction(&self, here: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
+        let newton = self.objective.direction(here, eigenvalue_floor);
+        let LaneBounds { coordinates, center, radius, .. } = self.bounds;
+        let zero = radius.constant(0.0);
+        let from = in_mesh(coordinates, self.at);
+        let (x, y) = (from[0] - center[0], from[1] - center[1]);
+        let distance = Real::sqrt(x * x + y * y);
+        // Derivative of the mesh's second coordinate by the second coordinate of the positions.
+        let mut slope = radius.constant(1.0);
+        if coordinates.is_projected() {
+            let slopes = each(self.at, |at| DVec2::splat(coordinates.slopes(at)[0]));
+            slope = slopes[0];
+        }
+        let normal = [x / distance, y / distance];
+        let out = newton.vector[0] * normal[0] + newton.vector[1] * slope * normal[1];
+        let turns = (radius * AT_DISC).le(distance) & zero.lt(out);
+        let moves = zero.lt(radius);
+        if turns.all_false() {
+            return Direction { descends: newton.descends & moves, ..newton };
+        }
+        let [gx, gy] = [here.gradient[0], here.gradient[1] / slope];
+        let [xx, xy, yy] = here.hessian;
+        let (xy, yy) = (xy / slope, yy / (slope * slope));
+        let tangent = [zero - normal[1], normal[0]];
+        let along = gx * tangent[0] + gy * tangent[1];
+        let outward = gx * normal[0] + gy * normal[1];
+        let curvature = xx * tangent[0] * tangent[0]
+            + xy * tangent[0] * tangent[1] * 2.0
+            + yy * tangent[1] * tangent[1]
+            - outward / radius;
+        let (mean, half) = ((xx + yy) * 0.5, (xx - yy) * 0.5);
+        let most = Numbers::abs(mean) + Real::sqrt(half * half + xy * xy);
+        let stiffness = Real::max(Numbers::abs(curvature), most * MIN_CIRCLE_CURVATURE);
+        // A longer step along the tangent ends at nearly the same point of the circle.
+        let length = Real::max(Real::min((zero - along) / stiffness, radius), zero - radius);
+        let vector = [tangent[0] * length, tangent[1] * length / slope];
+        let decrease = along * length;
+        let select = |turned, straight| Lanes::select(turns, turned, straight);
+        let descends = (turns & decrease.lt(zero)) | (!turns & newton.descends & moves);
+        Direction {
+            vector: [select(vector[0], newton.vector[0]), select(vector[1], newton.vector[1])],
+            slope: select(decrease, newton.slope),
+            descends,
+        }
+    }
+
+    /// Returns the given point, or the nearest point of the disc if the given point is outside.
+    #[inline(always)]
+    fn point(&self, on_line: Points<S>) -> Points<S> {
+        let LaneBounds { coordinates, center, radius, .. } = self.bounds;
+        if coordinates.is_projected() {
+            return self.projected_point(on_line);
+        }
+        let (x, y) = (on_line[0] - center[0], on_line[1] - center[1]);
+        let distance = Real::sqrt(x * x + y * y);
+        let (is_inside, share) = (distance.le(radius), radius / distance);
+        [
+            Lanes::select(is_inside, on_line[0], center[0] + x * share),
+            Lanes::select(is_inside, on_line[1], center[1] + y * share),
+        ]
+    }
+
+    #[inline(always)]
+    fn predicted(&self, here: &Dual<Lanes<S>>, to: Points<S>) -> Option<Lanes<S>> {
+        let (x, y) = (to[0] - self.at[0], to[1] - self.at[1]);
+        Some(here.gradient[0] * x + here.gradient[1] * y)
+    }
+
+    #[inline(always)]
+    fn trial(&self, to: Points<S>, max_imr: Lanes<S>) -> (Lanes<S>, Mask<S>) {
+        let (value, feasible) = self.objective.trial(to, max_imr);
+        match self.bounds.floor > 0.0 {
+            true => (value, feasible & self.keeps_altitudes(to)),
+            false => (value, feasible),
+        }
+    }
+
+    #[inline(always)]
+    fn squares(&self, value: Lanes<S>) -> Lanes<S> {
+        self.objective.squares(value)
+    }
+
+    #[inline(always)]
+    fn shape_guard(&self) -> f64 {
+        self.objective.shape_guard()
+    }
+
+    #[inline(always)]
+    fn worst_shape(&self, at: Points<S>) -> Lanes<S> {
+        self.objective.worst_shape(at)
+    }
+}
+
+impl<S: Simd, O> Within<'_, S, O> {
+    /// Does the work of [`point`](Objective::point) for vertices that move in a projection, lane by lane.
+    fn projected_point(&self, on_line: Points<S>) -> Points<S> {
+        let LaneBounds { coordinates, center, radius, .. } = self.bounds;
+        let mut found = on_line;
+        for lane in 0..LANES {
+            let center = DVec2::new(center[0][lane], center[1][lane]);
+            let circle = Circle { center, radius: radius[lane] };
+            let to = DVec2::new(on_line[0][lane], on_line[1][lane]);
+            let nearest = circle.nearest_position(coordinates, to);
+            (found[0][lane], found[1][lane]) = (nearest.x, nearest.y);
+        }
+        found
+    }
+}
