@@ -19,7 +19,7 @@ pub use crate::run::{Plan, Stepwise, StopRule, SweepParams};
 
 /// Starts a run of sweeps on the CPU from `positions`, which are normalized and in the problem's order.
 pub fn run_on_cpu<'a>(problem: &'a Problem, positions: &[DVec2], plan: Plan) -> impl Stepwise + 'a {
-    StepwiseRun::new(CpuEngine::new(problem, positions.to_vec(), &plan), plan)
+    StepwiseRun::new(CpuEngine::new(problem, positions.to_vec(), None, &plan), plan)
 }
 
 /// Returns the energy that untangling lowers, for a triangle of desired area `target` spanned by two `edges` from a

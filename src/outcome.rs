@@ -24,6 +24,11 @@ pub struct Outcome {
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
+    /// Number of Newton steps of all vertices at once, each counted as a part of its sweep, with which a run on the CPU by a
+    /// smooth metric ends.
+    pub newton_steps: u32,
+    /// Number of iterations of conjugate gradients in all Newton steps.
+    pub newton_iterations: u32,
     /// Number of sweeps at the start of a run on a GPU that the CPU did. The CPU does the first sweeps if triangles are too
     /// flat or too small for single precision, and every sweep if its first sweeps left such triangles. The CPU also
     /// does every sweep of a run with coarser levels if triangles are strongly stretched relative to their targets, as
@@ -50,7 +55,8 @@ pub struct Outcome {
     /// as other triangles never change. Equal to the mean over all triangles if targets belong to places.
     pub movable_f: [f64; 2],
     /// Estimated gain of further sweeps, as a share of f over the triangles that can move (of 1e-6 if f is smaller). The estimate extrapolates the decay
-    /// of f in the last sweeps, but never beyond the ideal of f. After a run by EDGE with corrections, the estimate
+    /// of f in the last sweeps, but never beyond the ideal of f. After a Newton step of all vertices, the number is instead a
+    /// bound of the gain of the quadratic model, plus the discrepancy of model and f in that step. After a run by EDGE with corrections, the estimate
     /// includes the distance between the minima of f and of EDGE's p-norm.
     ///
     /// The estimate has lower bounds. If the estimate ended the run as converged, the bound is the tolerance. After more
@@ -163,8 +169,11 @@ pub struct Slid {
     pub pairs: usize,
     /// Number of pairs of vertices with equal coordinates that slide together, as on both sides of a crack.
     pub coincident: usize,
-    /// Number of periods. A period consists of sweeps over free vertices, then of sweeps along the curves.
-    pub rounds: u32,
+    /// Number of vertices, partners included, that a bound stopped for the rest of the run: the distance of the new edges from
+    /// the given vertices ([`Slide::hausdorff`](crate::Slide::hausdorff)), or
+    /// [`Options::max_move`](crate::Options::max_move). The remaining gain of a run does not count further moves of these
+    /// vertices.
+    pub frozen: usize,
     /// Largest distance between the edges of the lines before and after the run, in the unit of the mesh: of a given vertex
     /// from the new edges, or of a moved vertex from the given edges. Moved vertices themselves are on the curves.
     pub off: f64,

@@ -113,7 +113,6 @@ fn argument(feature: Feature) -> String {
         Feature::Multilevel => "method=\"multilevel\"".to_owned(),
         Feature::FiniteDifferences => "derivatives=\"finite-difference\"".to_owned(),
         Feature::Goal => "fraction or desired".to_owned(),
-        Feature::SearchedGoal => "fraction without desired".to_owned(),
         Feature::WorstGuard => "guard=\"worst\"".to_owned(),
         Feature::MaxMove => "max_move".to_owned(),
         Feature::KeepAltitude => "keep_altitude".to_owned(),

@@ -33,6 +33,7 @@ impl Outcome {
     ) -> Self {
         let engine = match backend {
             Backend::Cpu => "cpu".to_owned(),
+            Backend::Gpu(_) if prepared.smoother.slides() => "cpu".to_owned(),
             Backend::Gpu(gpu) => gpu.adapter().name.clone(),
         };
         Self { outcome, prepared, base, engine }

@@ -1,19 +1,18 @@
 //! The positions of vertices along a correction: straight, or within discs.
 
 use fearless_simd::prelude::*;
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Lanes, Points, points};
+use crate::patch::lanes::{LANES, Points, points};
 use crate::patch::{Circle, is_kept, keeps_altitude};
 
-/// Positions with the free vertices moved by `length` times `direction`.
+/// Positions before and after a move of the free vertices.
 pub(crate) struct Along<'a> {
     pub(crate) positions: &'a [DVec2],
-    /// Displacement of each free vertex at length 1.
-    pub(crate) direction: &'a [Vec2],
-    pub(crate) length: f64,
+    /// Position of each free vertex after the move.
+    pub(crate) moved: &'a [DVec2],
 }
 
 impl Along<'_> {
@@ -24,12 +23,10 @@ impl Along<'_> {
         simd: S,
         vertices: [u32; LANES],
     ) -> (Points<S>, Points<S>) {
-        let [x, y] = points(simd, self.positions, vertices);
         let [a, b, c, d] = vertices;
-        let ([a, b], [c, d]) = ([self.step(a), self.step(b)], [self.step(c), self.step(d)]);
-        let dx = Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]);
-        let dy = Lanes::simd_from(simd, [a.y, b.y, c.y, d.y]);
-        ([x, y], [x + dx * self.length, y + dy * self.length])
+        let moved = [self.to(a), self.to(b), self.to(c), self.to(d)];
+        let moved = points(simd, &moved, [0, 1, 2, 3]);
+        (points(simd, self.positions, vertices), moved)
     }
 
     /// Returns whether the move keeps a triangle acceptable; see [`is_kept`] and [`keeps_altitude`]. Compiled once for all
@@ -37,39 +34,34 @@ impl Along<'_> {
     #[inline(never)]
     pub(super) fn keeps(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
         let position = |v: u32| self.positions[v as usize];
-        let now = problem.corner(triangle, |v| self.to(problem, v));
+        let now = problem.corner(triangle, |v| self.to(v));
         let keeps_altitude = || {
             let at = |position: DVec2| problem.coordinates().at(position);
             let [before, now] =
-                [triangle.map(|v| at(position(v))), triangle.map(|v| at(self.to(problem, v)))];
+                [triangle.map(|v| at(position(v))), triangle.map(|v| at(self.to(v)))];
             keeps_altitude(problem.floor(), before, now)
         };
         is_kept(&problem.corner(triangle, position), &now, guard)
             && (problem.floor() <= 0.0 || keeps_altitude())
     }
 
-    /// Returns the position of a vertex after the move, within its disc.
-    pub(super) fn to(&self, problem: &Problem, vertex: u32) -> DVec2 {
-        let to = self.positions[vertex as usize] + self.step(vertex) * self.length;
-        nearest(problem, vertex as usize, to)
-    }
-
-    /// Returns the displacement of a vertex at length 1; zero for a fixed vertex.
+    /// Returns the position of a vertex after the move.
     #[inline(always)]
-    pub(super) fn step(&self, vertex: u32) -> DVec2 {
-        self.direction.get(vertex as usize).map_or(DVec2::ZERO, |step| step.as_dvec2())
+    pub(super) fn to(&self, vertex: u32) -> DVec2 {
+        let vertex = vertex as usize;
+        self.moved.get(vertex).copied().unwrap_or_else(|| self.positions[vertex])
     }
 
-    /// Returns the positions of all vertices after the move, within the discs.
-    pub(super) async fn moved(&self, problem: &Problem) -> Vec<DVec2> {
-        paced::collect(self.positions.len(), |v| self.to(problem, v as u32)).await
+    /// Returns the positions of all vertices after the move.
+    pub(super) async fn all_moved(&self) -> Vec<DVec2> {
+        paced::collect(self.positions.len(), |v| self.to(v as u32)).await
     }
 }
 
 /// Returns for each free vertex whether the move breaks a triangle around it, as defined at [`mean_excess_along`](super::objective::mean_excess_along), with
 /// the shape guard `guard`.
 pub(crate) async fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
-    paced::collect(along.direction.len(), |v| {
+    paced::collect(along.moved.len(), |v| {
         let ring = problem.ring_of(v as u32);
         let mut before = ring[ring.len() - 1];
         ring.iter().any(|&neighbor| {
@@ -88,6 +80,6 @@ pub(super) fn disc(problem: &Problem, vertex: usize) -> Option<Circle> {
 }
 
 /// Returns `to` as the position of a free vertex, or the nearest position within the disc of the vertex.
-fn nearest(problem: &Problem, vertex: usize, to: DVec2) -> DVec2 {
+pub(super) fn nearest(problem: &Problem, vertex: usize, to: DVec2) -> DVec2 {
     disc(problem, vertex).map_or(to, |disc| disc.nearest_position(problem.coordinates(), to))
 }

@@ -6,20 +6,23 @@ use std::borrow::Cow;
 
 use glam::{DVec2, Vec2};
 
-use crate::cpu::along::{Along, broken};
+use crate::cpu::along::{Along, broken, nearest};
 use crate::cpu::bounded::Tangents;
 use crate::cpu::objective::{mean_excess, mean_excess_along, mean_model};
 use crate::cpu::secants::{Levels, Secants, dot};
+use crate::cpu::truncated::Truncated;
 use crate::cpu::{sweep, vcycle};
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::{Metric, Smoothing, TargetMap};
 use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
+use crate::run::truncated::{NewtonStep, StepRequest};
 use crate::run::{
     CPU, EXCLUSION_PASSES, Engine, EngineState, History, NOISE, Objectives, Plan, Proposal,
     SweepParams,
 };
+use crate::slide::{OnCurves, Params};
 
 /// Number of vertices that one task handles.
 const CHUNK: usize = 1 << 12;
@@ -33,11 +36,14 @@ pub(crate) struct CpuEngine {
     /// [`Engine::sweep_and_propose`] updates for each correction.
     step: SweepParams,
     positions: Vec<DVec2>,
-    /// Positions and objective of the best state so far. `None` if every sweep of the plan lowers f, so that the last
-    /// state is the best.
-    best: Option<(Vec<DVec2>, f64)>,
-    /// Scratch memory for sweeps.
+    /// The vertices that slide along curves. `None` if no vertex slides.
+    curves: Option<OnCurves>,
+    /// The best state so far. `None` if every sweep of the plan lowers f, so that the last state is the best.
+    best: Option<Best>,
+    /// Scratch memory: positions of vertices after a visit or a trial.
     moved: Vec<DVec2>,
+    /// The mesh prepared for Newton steps of all vertices. `None` before the first step.
+    truncated: Option<Truncated>,
     hierarchy: Option<Hierarchy>,
     gradient: Vec<Vec2>,
     /// Tangents of discs along which the last correction moves vertices.
@@ -47,18 +53,38 @@ pub(crate) struct CpuEngine {
     secants: Option<Secants>,
 }
 
+/// The state with the lowest objective so far.
+struct Best {
+    positions: Vec<DVec2>,
+    /// Parameters of the sliding vertices.
+    params: Option<Params>,
+    f: f64,
+}
+
 impl CpuEngine {
-    /// Makes an engine for a run that starts at normalized `positions`, in the order of the problem.
-    pub(crate) fn new(problem: &Problem, positions: Vec<DVec2>, plan: &Plan) -> Self {
-        let best = (!plan.is_monotone()).then(|| (positions.clone(), f64::INFINITY));
+    /// Makes an engine for a run that starts at normalized `positions`, in the order of the problem, with the sliding vertices
+    /// `curves` at these positions.
+    pub(crate) fn new(
+        problem: &Problem,
+        positions: Vec<DVec2>,
+        curves: Option<OnCurves>,
+        plan: &Plan,
+    ) -> Self {
+        let best = (!plan.is_monotone()).then(|| Best {
+            positions: positions.clone(),
+            params: curves.as_ref().map(|curves| curves.params().clone()),
+            f: f64::INFINITY,
+        });
         Self {
             problem: problem.clone(),
             base: plan.scheme.base(),
             tracked: plan.tracked(),
             step: plan.base_step(1.0),
             positions,
+            curves,
             best,
             moved: Vec::new(),
+            truncated: None,
             hierarchy: None,
             gradient: Vec::new(),
             tangents: Tangents::default(),
@@ -68,8 +94,21 @@ impl CpuEngine {
     }
 
     async fn sweep_now(&mut self, step: &SweepParams) {
-        let Self { problem, positions, moved, .. } = self;
+        let Self { problem, positions, curves, moved, .. } = self;
         sweep::sweep(problem, positions, moved, step).await;
+        if let Some(curves) = curves {
+            curves.sweep(problem, positions, step);
+        }
+    }
+
+    /// Returns the sliding vertices of the state whose positions [`Engine::best_positions`] returns. `None` if no vertex
+    /// slides.
+    pub(crate) fn best_curves(&self) -> Option<OnCurves> {
+        let mut curves = self.curves.clone()?;
+        if let Some(Best { params: Some(params), .. }) = &self.best {
+            curves.set_params(params);
+        }
+        Some(curves)
     }
 
     /// Evaluates the tracked objectives. Copies the positions if the objective of the base metric is the lowest so far.
@@ -79,20 +118,21 @@ impl CpuEngine {
             let excess = mean_excess(metric, &self.problem, &self.positions).await;
             values.set(metric, metric.ideal_squared() + excess);
         }
-        if let Some((best, least)) = &mut self.best
+        if let Some(best) = &mut self.best
             && let Some(f) = values.of(self.base)
-            && f < *least
+            && f < best.f
         {
-            best.copy_from_slice(&self.positions);
-            *least = f;
+            best.positions.copy_from_slice(&self.positions);
+            best.params = self.curves.as_ref().map(|curves| curves.params().clone());
+            best.f = f;
         }
         values
     }
 
     /// Evaluates the objective at step length 0, its slope along the correction, and, if the slope is negative, the
     /// objective at `length`.
-    async fn proposal(&self, length: f64) -> Proposal {
-        let Self { base, step, problem, positions, gradient, direction, .. } = self;
+    async fn proposal(&mut self, length: f64) -> Proposal {
+        let Self { base, step, problem, positions, gradient, direction, .. } = &*self;
         let slope = dot(gradient, direction).await / problem.judged_triangles().len() as f64;
         let here = mean_model(*base, step.smoothing(), problem, positions).await;
         let there = if slope < 0.0 { self.try_length(length).await } else { None };
@@ -102,8 +142,9 @@ impl CpuEngine {
     /// Zeroes the correction and the gradient at the vertices of triangles that a move by `length` times the correction
     /// would invert, or push over the shape guard.
     async fn leave_out_broken(&mut self, length: f64) {
-        let Self { problem, positions, gradient, direction, .. } = self;
-        let along = Along { positions, direction, length };
+        self.write_moved(length).await;
+        let Self { problem, positions, moved, gradient, direction, .. } = self;
+        let along = Along { positions, moved };
         let broken = broken(problem, &along, self.step.shape_guard).await;
         for ((direction, gradient), broken) in direction.iter_mut().zip(gradient).zip(broken) {
             if broken {
@@ -113,10 +154,24 @@ impl CpuEngine {
     }
 
     /// Returns the mean excess after a move by `length` times the correction; see [`Engine::excess_along`].
-    async fn try_length(&self, length: f64) -> Option<f64> {
-        let Self { positions, direction, .. } = self;
-        let along = Along { positions, direction, length };
+    async fn try_length(&mut self, length: f64) -> Option<f64> {
+        self.write_moved(length).await;
+        let along = Along { positions: &self.positions, moved: &self.moved };
         mean_excess_along(&self.step, &self.problem, &along).await
+    }
+
+    /// Writes the positions of the free vertices, moved by `length` times the correction within their discs, to the scratch
+    /// memory.
+    async fn write_moved(&mut self, length: f64) {
+        let Self { problem, positions, direction, moved, .. } = self;
+        moved.resize(direction.len(), DVec2::ZERO);
+        paced::for_each_chunk(moved, CHUNK, |first, moved| {
+            for (v, moved) in (first..).zip(moved) {
+                let to = positions[v] + direction[v].as_dvec2() * length;
+                *moved = nearest(problem, v, to);
+            }
+        })
+        .await;
     }
 }
 
@@ -218,7 +273,7 @@ impl Engine for CpuEngine {
     }
 
     async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
-        let best = self.best.as_ref().map_or(&self.positions, |(best, _)| best);
+        let best = self.best.as_ref().map_or(&self.positions, |best| &best.positions);
         Ok(paced::copied(best).await)
     }
 
@@ -228,6 +283,7 @@ impl Engine for CpuEngine {
 
     async fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         self.hierarchy = Some(hierarchy);
+        self.truncated = None;
         Ok(())
     }
 
@@ -275,23 +331,28 @@ impl Engine for CpuEngine {
         Ok(self.proposal(length).await)
     }
 
+    async fn sweep_and_step(
+        &mut self,
+        step: &SweepParams,
+        request: &StepRequest,
+    ) -> Result<Option<NewtonStep>, GpuError> {
+        self.sweep_now(step).await;
+        let Self { problem, positions, curves, moved, truncated, .. } = self;
+        if truncated.is_none() {
+            *truncated = Some(Truncated::new(problem, curves.as_ref()).await);
+        }
+        let Some(truncated) = truncated else { return Ok(None) };
+        Ok(Some(truncated.step(step, problem, positions, curves.as_mut(), moved, request).await))
+    }
+
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
         Ok(self.try_length(length).await)
     }
 
     async fn move_along(&mut self, length: f64) -> Result<(), GpuError> {
-        let Self { problem, positions, direction, .. } = self;
-        if problem.is_bounded() {
-            *positions = Along { positions, direction, length }.moved(problem).await;
-            return Ok(());
-        }
-        let free = direction.len();
-        paced::for_each_chunk(&mut positions[..free], CHUNK, |first, positions| {
-            for (position, along) in positions.iter_mut().zip(&direction[first..]) {
-                *position += along.as_dvec2() * length;
-            }
-        })
-        .await;
+        self.write_moved(length).await;
+        let Self { positions, moved, .. } = self;
+        positions[..moved.len()].copy_from_slice(moved);
         Ok(())
     }
 
@@ -304,9 +365,12 @@ impl Engine for CpuEngine {
         let mut state = EngineState {
             engine: CPU.to_owned(),
             positions: self.positions.clone(),
-            best: self.best.as_ref().map(|(best, _)| best.clone()),
+            best: self.best.as_ref().map(|best| best.positions.clone()),
             ..EngineState::default()
         };
+        if let Some(curves) = &self.curves {
+            curves.save(self.best.as_ref().and_then(|best| best.params.as_ref()), &mut state);
+        }
         if whole {
             state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
             state.add_local_maps(&self.problem);
@@ -325,11 +389,17 @@ impl Engine for CpuEngine {
         if !fits(&state.positions) || !fits(best) {
             return Ok(false);
         }
+        let mut best_params = None;
+        if let Some(curves) = &mut self.curves {
+            let Some(params) = curves.restore(state) else { return Ok(false) };
+            best_params = params;
+        }
         self.positions.clone_from(&state.positions);
         state.restore_local_maps(&mut self.problem);
-        if let Some((kept, least)) = &mut self.best {
-            kept.clone_from(best);
-            *least = self.base.ideal_squared() + mean_excess(self.base, &self.problem, kept).await;
+        if let Some(kept) = &mut self.best {
+            kept.positions.clone_from(best);
+            let excess = mean_excess(self.base, &self.problem, &kept.positions).await;
+            (kept.params, kept.f) = (best_params, self.base.ideal_squared() + excess);
         }
         self.hierarchy = Hierarchy::of_build_log(&self.problem, &state.roots).await;
         self.secants = Secants::saved_in(state, self.problem.free_count());

@@ -8,6 +8,7 @@ mod newton;
 mod objective;
 mod secants;
 mod sweep;
+mod truncated;
 mod vcycle;
 mod within;
 

@@ -93,7 +93,7 @@ async fn mean_excess_within(
     if kept.contains(&false) {
         return None;
     }
-    let there = along.moved(problem).await;
+    let there = along.all_moved().await;
     Some(mean_model(step.metric, step.smoothing(), problem, &there).await)
 }
 
@@ -132,8 +132,7 @@ fn excess_along<S: Simd, const MAPPED: bool>(
     }
     let mut last = 0.0;
     for t in rest {
-        let position = |v: u32| along.positions[v as usize];
-        let now = problem.corner(t, |v| position(v) + along.step(v) * along.length);
+        let now = problem.corner(t, |v| along.to(v));
         borne &= Mask::splat(simd, along.keeps(problem, t, guard));
         last += formulas.model(&now, step.smoothing());
     }
@@ -209,8 +208,6 @@ fn excess<S: Simd, const MAPPED: bool>(
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec2;
-
     use super::*;
     use crate::layout::prepare;
     use crate::mesh::Mesh;
@@ -230,20 +227,20 @@ mod tests {
         for metric in [Metric::Imr, Metric::Rms, Metric::Edge] {
             let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });
             let step = SweepParams { sharpness: 6, shape_guard: 30.0, ..plan.base_step(1.0) };
-            let along = |direction: Vec2, length: f64| {
-                let direction = &[direction];
-                now(mean_excess_along(&step, &problem, &Along { positions, direction, length }))
+            let along = |direction: DVec2, length: f64| {
+                let moved = &[positions[0] + direction * length];
+                now(mean_excess_along(&step, &problem, &Along { positions, moved }))
             };
             let mut moved = positions.to_vec();
             moved[0] += DVec2::new(0.25, -0.5) * 0.3;
             let there = now(mean_model(metric, step.smoothing(), &problem, &moved));
-            assert_eq!(along(Vec2::new(0.25, -0.5), 0.3), Some(there));
+            assert_eq!(along(DVec2::new(0.25, -0.5), 0.3), Some(there));
             // Moves the vertex out of the hexagon through each side, then along a direction that is NaN.
             for k in 0..6 {
                 let (y, x) = ((f64::from(k) + 0.5) * std::f64::consts::FRAC_PI_3).sin_cos();
-                assert_eq!(along(DVec2::new(x, y).as_vec2(), 10.0), None, "{k}");
+                assert_eq!(along(DVec2::new(x, y), 10.0), None, "{k}");
             }
-            assert_eq!(along(Vec2::NAN, 1.0), None);
+            assert_eq!(along(DVec2::NAN, 1.0), None);
         }
     }
 }

@@ -4,6 +4,7 @@
 mod ar;
 mod area;
 mod corner;
+mod curvature;
 mod dual;
 mod edge;
 mod edge_slopes;
@@ -24,6 +25,7 @@ mod tmop_94;
 pub use corner::{Corner, Ideal};
 #[doc(hidden)]
 pub use corner::{InvariantSlopes, Invariants, Slopes};
+pub(crate) use curvature::{Curvature, Curved, H, OfImr};
 pub use dual::{Dual, Real};
 #[cfg(test)]
 pub(crate) use edge_slopes::Given;
@@ -33,6 +35,6 @@ pub(crate) use hinge::Hinge;
 pub use properties::Properties;
 pub use scheme::Scheme;
 pub(crate) use smoothing::Smoothing;
-pub(crate) use table::{AnyFormulas, Formulas, OfEdges, OfInvariants, with_each_metric};
+pub(crate) use table::{Formulas, OfEdges, OfInvariants, with_each_metric};
 pub use table::{Metric, UnknownMetric};
 pub(crate) use target::TargetMap;

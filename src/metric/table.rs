@@ -111,7 +111,7 @@ macro_rules! metrics {
 
             /// Returns q² - ideal² with its derivatives by the invariants.
             #[inline(always)]
-            fn slopes<T: Real>(self, t: &Invariants<T>) -> Slopes<T> {
+            pub(crate) fn slopes<T: Real>(self, t: &Invariants<T>) -> Slopes<T> {
                 match self {
                     $(Self::$variant => $file::slopes(t),)*
                     $(Self::$rare => $rare_file::slopes(t),)*

@@ -16,7 +16,6 @@ const fn row(a: Feature, b: Feature, why: &'static str) -> Conflict {
 const ONE_METRIC: &str =
     "each of its periods must lower f, as one metric other than edge does, such as imr";
 const ANALYTIC: &str = "it needs analytic derivatives";
-const NO_SEARCH: &str = "its runs cannot search for the desired f; give the goal a value";
 const CHANGING: &str =
     "targets of places change during the run; drop one of the two, or take targets of vertices";
 const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
@@ -31,9 +30,7 @@ pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::TargetField, Feature::UnevenScheme, ONE_METRIC),
     row(Feature::KeepAltitude, Feature::Untangle, TANGLED),
     row(Feature::MaxMove, Feature::Untangle, TANGLED),
-    row(Feature::Slide, Feature::UnevenScheme, ONE_METRIC),
     row(Feature::Slide, Feature::FiniteDifferences, ANALYTIC),
-    row(Feature::Slide, Feature::SearchedGoal, NO_SEARCH),
     row(Feature::Targets, Feature::FiniteDifferences, ANALYTIC),
     row(
         Feature::Multilevel,

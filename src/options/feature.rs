@@ -17,8 +17,6 @@ pub enum Feature {
     FiniteDifferences,
     /// [`Stopping::Goal`](crate::Stopping::Goal).
     Goal,
-    /// A [`Goal`](crate::Goal) whose desired objective is searched for.
-    SearchedGoal,
     /// [`Guard::Worst`](crate::Guard::Worst).
     WorstGuard,
     /// [`Options::max_move`](crate::Options::max_move).
@@ -49,13 +47,12 @@ impl Feature {
     }
 
     /// Every feature, in the order of the variants.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 15] = [
         Self::UnevenScheme,
         Self::UncorrectedScheme,
         Self::Multilevel,
         Self::FiniteDifferences,
         Self::Goal,
-        Self::SearchedGoal,
         Self::WorstGuard,
         Self::MaxMove,
         Self::KeepAltitude,
@@ -77,7 +74,6 @@ impl fmt::Display for Feature {
             Self::Multilevel => "Method::Multilevel",
             Self::FiniteDifferences => "Derivatives::FiniteDifference",
             Self::Goal => "Stopping::Goal",
-            Self::SearchedGoal => "a Goal without a desired f",
             Self::WorstGuard => "Guard::Worst",
             Self::MaxMove => "max_move",
             Self::KeepAltitude => "keep_altitude",

@@ -100,7 +100,6 @@ impl Options {
     /// Returns the features of these options for which the table of conflicts has rules.
     fn features(&self) -> Vec<Feature> {
         let goal = self.stopping.goal();
-        let searches = matches!(goal, Some(Goal { desired: None, .. }));
         let has_differences = self.method.paper().derivatives == Derivatives::FiniteDifference;
         let is_uneven = self.scheme.period() > 1 || !self.scheme.is_monotone();
         Feature::present([
@@ -109,7 +108,6 @@ impl Options {
             (Feature::Multilevel, self.method == Method::Multilevel),
             (Feature::FiniteDifferences, has_differences),
             (Feature::Goal, goal.is_some()),
-            (Feature::SearchedGoal, searches),
             (Feature::WorstGuard, self.guard == Guard::Worst),
             (Feature::MaxMove, self.max_move.is_some()),
             (Feature::KeepAltitude, self.keep_altitude),

@@ -10,7 +10,7 @@ use crate::topology::Topology;
 use crate::topology::predicates::is_positive;
 
 /// Vertex numbers of the triangles around one vertex. Each triangle starts with the common vertex.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Fan(Vec<[u32; 3]>);
 
 impl Fan {
@@ -27,6 +27,11 @@ impl Fan {
     /// Replaces every vertex index `v` by `number[v]`.
     pub(crate) fn renumber(&mut self, number: &[u32]) {
         self.0.as_flattened_mut().iter_mut().for_each(|v| *v = number[*v as usize]);
+    }
+
+    /// Returns the triangles, each with the common vertex first.
+    pub(crate) fn triangles(&self) -> &[[u32; 3]] {
+        &self.0
     }
 
     /// Returns the common vertex of the triangles, 0 if there are none.

@@ -240,6 +240,8 @@ impl<E: Engine> Session<E> {
             Strategy::Corrected(corrections) => Counts {
                 alternated: corrections.alternated().unwrap_or(sweeps),
                 corrections: corrections.taken(),
+                newton_steps: corrections.steps_taken()[0],
+                newton_iterations: corrections.steps_taken()[1],
                 levels_left_out: corrections.is_left_out(),
                 levels: corrections.levels_time(),
             },
@@ -254,6 +256,9 @@ pub(crate) struct Counts {
     /// correction.
     pub(crate) alternated: u32,
     pub(crate) corrections: u32,
+    /// Number of Newton steps of all vertices, and of iterations of conjugate gradients in all of them.
+    pub(crate) newton_steps: u32,
+    pub(crate) newton_iterations: u32,
     pub(crate) levels_left_out: bool,
     /// Time of building and fitting the coarser levels.
     pub(crate) levels: Duration,
@@ -261,8 +266,14 @@ pub(crate) struct Counts {
 
 impl Counts {
     /// The counts of a run without sweeps.
-    pub(crate) const NONE: Self =
-        Self { alternated: 0, corrections: 0, levels_left_out: false, levels: Duration::ZERO };
+    pub(crate) const NONE: Self = Self {
+        alternated: 0,
+        corrections: 0,
+        newton_steps: 0,
+        newton_iterations: 0,
+        levels_left_out: false,
+        levels: Duration::ZERO,
+    };
 }
 
 /// The reason why a run cannot continue.

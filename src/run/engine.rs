@@ -12,6 +12,7 @@ use crate::run::multilevel::Hierarchy;
 use crate::run::objectives::Objectives;
 use crate::run::saved::EngineState;
 use crate::run::sweep_params::SweepParams;
+use crate::run::truncated::{NewtonStep, StepRequest};
 
 /// Sweeps, objectives and corrections from coarser levels, on the CPU or a device. Positions are normalized and in the
 /// order of the [`Problem`].
@@ -81,6 +82,16 @@ pub(crate) trait Engine: Send {
         length: f64,
         accelerated: bool,
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
+
+    /// Sweeps once, and then takes a Newton step of all vertices from there: derivatives, conjugate gradients and a line
+    /// search. `None`, and nothing happens, if the engine takes no such steps.
+    fn sweep_and_step(
+        &mut self,
+        _step: &SweepParams,
+        _request: &StepRequest,
+    ) -> impl Future<Output = Result<Option<NewtonStep>, GpuError>> + Send {
+        std::future::ready(Ok(None))
+    }
 
     /// Drops the secant pairs, so that the next accelerated correction starts without any.
     fn forget(&mut self);

@@ -22,6 +22,7 @@ mod shape_guard;
 mod stop;
 mod sweep_params;
 pub(crate) mod sweeps;
+pub(crate) mod truncated;
 
 pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::RunFingerprint;

@@ -45,10 +45,6 @@ impl Writer {
         self.bytes(text.as_bytes());
     }
 
-    pub(crate) fn reals(&mut self, list: &[f64]) {
-        self.list(list, |out, number| out.real(*number));
-    }
-
     pub(crate) fn points(&mut self, points: &[DVec2]) {
         self.list(points, |out, p| p.to_array().iter().for_each(|x| out.real(*x)));
     }
@@ -136,10 +132,6 @@ impl<'b> Reader<'b> {
 
     pub(crate) fn text(&mut self) -> Option<String> {
         String::from_utf8(self.bytes()?.to_vec()).ok()
-    }
-
-    pub(crate) fn reals(&mut self) -> Option<Vec<f64>> {
-        self.list(8, Self::real)
     }
 
     pub(crate) fn points(&mut self) -> Option<Vec<DVec2>> {

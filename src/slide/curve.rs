@@ -38,6 +38,15 @@ pub(crate) struct Place {
     pub(crate) second: DVec2,
 }
 
+/// The bound on the distance of a given vertex from the line between two moved vertices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limit {
+    /// The distance as a share of the bound: above 1 where the line breaks the bound.
+    pub(crate) used: f64,
+    /// Derivatives of `used` by the parameters of both ends.
+    pub(crate) slopes: [f64; 2],
+}
+
 impl Curve {
     pub(crate) fn new(points: &[[f64; 2]], chain: &Chain, slide: &Slide) -> Self {
         let Chain { vertices, is_closed, straight, .. } = chain;
@@ -185,6 +194,36 @@ impl Curve {
         })
     }
 
+    /// Returns the limits of the line between the points at the parameters `low` and `high`: one for each given vertex between
+    /// the parameters. See [`at`](Self::at) for `near`.
+    pub(crate) fn limits(
+        &self,
+        low: f64,
+        high: f64,
+        near: usize,
+    ) -> impl Iterator<Item = Limit> + '_ {
+        let [from, to] = [low, high].map(|param| self.at(param, near));
+        let line = to.point - from.point;
+        let of_knot = move |(knot, _): (usize, f64)| {
+            let point = self.knots[knot];
+            let share = (point - from.point).dot(line) / line.length_squared();
+            let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
+            let off = point - (from.point + line * share);
+            let (distance, bound) = (off.length(), self.bounds[knot]);
+            // The nearest point of the line moves along the line too, which changes the distance in second order alone.
+            let toward = if distance > 0.0 { off / distance } else { off };
+            let slopes = [(1.0 - share, from.first), (share, to.first)];
+            let slopes = slopes.map(|(share, first)| -share * toward.dot(first) / bound);
+            Limit { used: distance / bound, slopes }
+        };
+        self.knots_between(low, high, near).map(of_knot)
+    }
+
+    /// Returns the limit that a line uses up most; see [`limits`](Self::limits). `None` without limits.
+    pub(crate) fn nearest_limit(&self, low: f64, high: f64, near: usize) -> Option<Limit> {
+        self.limits(low, high, near).max_by(|a, b| a.used.total_cmp(&b.used))
+    }
+
     /// Returns whether the line that joins two points of the curve passes near all given vertices between the parameters
     /// `low` and `high` of the points: within the largest allowed distance, plus `tolerance`. See [`at`](Self::at) for
     /// `near`.
@@ -315,6 +354,22 @@ mod tests {
         let [off, share] = curve.off(at(3), at(9), 3);
         let edge = at(9) - at(8);
         assert!(off > 0.2 && (share * edge - off).abs() < 1e-9, "{off} {share}");
+    }
+
+    #[test]
+    fn slopes_of_a_limit_are_those_of_the_distance() {
+        let (curve, _) = slot();
+        let at = |k: usize| curve.params()[k];
+        assert!(curve.nearest_limit(at(4), at(5), 4).is_none());
+        let (low, high, h) = (at(4) + 0.03, at(7) - 0.1, 1e-6);
+        let limit = curve.nearest_limit(low, high, 5).unwrap();
+        assert!(limit.used > 1.0 && !curve.is_near([low, high, high + 0.01], 5), "{limit:?}");
+        let used = |low, high| curve.nearest_limit(low, high, 5).unwrap().used;
+        let differences =
+            [used(low + h, high) - used(low - h, high), used(low, high + h) - used(low, high - h)];
+        for (slope, difference) in limit.slopes.iter().zip(differences) {
+            assert!((slope - difference / (2.0 * h)).abs() < 1e-6, "{limit:?}");
+        }
     }
 
     #[test]

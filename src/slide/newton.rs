@@ -1,12 +1,12 @@
 //! Visits of sliding vertices: safeguarded Newton steps along a curve.
 
+use std::cell::Cell;
+
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::{AnyFormulas, Dual, Smoothing};
-use crate::patch::{
-    Corners, Direction, FanPatch, MetricObjective, Objective, SearchRule, step_alone,
-};
+use crate::metric::Dual;
+use crate::patch::{Direction, Fan, FanPatch, MetricObjective, Objective, SearchRule, step_alone};
 use crate::run::SweepParams;
 use crate::slide::curve::{Curve, Place};
 use crate::slide::side::BoundaryCurve;
@@ -33,10 +33,24 @@ pub(crate) struct Visited<'a> {
     pub(crate) reach: Reach,
 }
 
-/// The objective and the bounds by which vertices slide.
+/// A function of the triangles around a vertex that visits lower.
+pub(crate) trait OfPatch: Sync {
+    /// Returns the function of a patch.
+    fn of<'p>(&'p self, patch: &'p FanPatch) -> Box<dyn Objective<f64> + 'p>;
+}
+
+impl OfPatch for SweepParams {
+    fn of<'p>(&'p self, patch: &'p FanPatch) -> Box<dyn Objective<f64> + 'p> {
+        let Self { metric, shape_guard, .. } = *self;
+        let (formulas, smoothing) = (metric.formulas(), self.smoothing());
+        Box::new(MetricObjective { patch, formulas, smoothing, shape_guard })
+    }
+}
+
+/// The function and the bounds by which vertices slide.
 #[derive(Clone, Copy)]
 pub(crate) struct Rule<'a> {
-    pub(crate) step: &'a SweepParams,
+    pub(crate) by: &'a dyn OfPatch,
     /// Lower limit of the altitudes of triangles, in normalized units; 0 for no limit.
     pub(crate) floor: f64,
 }
@@ -53,48 +67,61 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Returns whether the curve point at a parameter is in reach of the given position.
-    pub(crate) fn allows(self, curve: &Curve, at: f64) -> bool {
+    /// Returns the distance of the curve point at a parameter from the given position, as a share of the largest distance.
+    pub(crate) fn used(self, curve: &Curve, at: f64) -> f64 {
         let point = |param| curve.at(param, self.vertex).point;
-        self.most.is_infinite() || point(at).distance(point(self.start)) <= self.most
+        match self.most.is_infinite() {
+            true => 0.0,
+            false => point(at).distance(point(self.start)) / self.most,
+        }
     }
 
-    /// Returns a step `way` from the parameter `at`, shortened to end in reach if the curve is straight.
-    fn shortened(self, way: f64, at: f64) -> f64 {
-        if self.most.is_infinite() {
-            return way;
-        }
-        let most = self.most * (1.0 - ROUNDING);
-        (at + way).clamp(self.start - most, self.start + most) - at
+    /// Returns whether the curve point at a parameter is in reach of the given position.
+    pub(crate) fn allows(self, curve: &Curve, at: f64) -> bool {
+        self.used(curve, at) <= 1.0 - ROUNDING
     }
 }
 
 /// Share by which [`Reach::most`] is reduced, so that rounding cannot exceed the bound.
 const ROUNDING: f64 = 1e-9;
 
-/// Takes one Newton step along the curve by [`SearchRule::CURVE`]. Returns the new parameter, or `None` if the vertex
-/// stays. No altitude falls below the floor of `rule`. A step moves vertex `k` of a curve, or both vertices `k` of two
-/// curves with common parameters. For two curves, the objective is the sum over both patches, and both patches must
-/// allow the step.
+/// Number of halvings by which a step finds its end at a bound. The end is then within 1e-6 of the step.
+const HALVINGS: u32 = 20;
+
+/// The result of a visit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CurveStep {
+    /// The new parameter, `None` if the vertex stays.
+    pub(crate) to: Option<f64>,
+    /// 1 or -1 if the Newton step led beyond a bound, toward larger or smaller parameters, and was cut off there; 0
+    /// otherwise. Bounds are the distance of lines from given vertices, and the reach of the vertex.
+    pub(crate) pressed: i8,
+}
+
+/// Takes one Newton step along the curve by [`SearchRule::CURVE`]. No altitude falls below the floor of `rule`. A step moves
+/// vertex `k` of a curve, or both vertices `k` of two curves with common parameters. For two curves, the objective is the
+/// sum over both patches, and both patches must allow the step.
 pub(crate) fn visit(
     problem: &Problem,
     positions: &[DVec2],
     vertex: Visited<'_>,
     rule: Rule<'_>,
-) -> Option<f64> {
+) -> CurveStep {
     let Visited { sides, k, window, reach } = vertex;
-    let mut on_curves = Vec::new();
-    for side in sides {
-        if let Some(fan) = &side.fans[k] {
-            let (here, patch) =
-                (positions[fan.own() as usize], fan.patch(problem, positions, rule.floor));
-            on_curves.push(OnCurve { side, here, patch });
-        }
-    }
-    let objective = CurveObjective { problem, on_curves, k, window, reach, step: rule.step };
+    let fans = || sides.iter().filter_map(|side| Some((side, side.fans[k].as_ref()?)));
+    let patches: Vec<FanPatch> =
+        fans().map(|(_, fan)| fan.patch(problem, positions, rule.floor)).collect();
+    let on_curve = |((side, fan), patch)| {
+        let here = positions[Fan::own(fan) as usize];
+        OnCurve { side, here, objective: rule.by.of(patch) }
+    };
+    let on_curves = fans().zip(&patches).map(on_curve).collect();
+    let pressed = Cell::new(0);
+    let objective = CurveObjective { problem, on_curves, k, window, reach, pressed };
     let Window { low, at, high } = window;
     let ([to, _], has_stepped) = step_alone(&objective, [at, 0.0], &SearchRule::CURVE);
-    (has_stepped && to != at && low < to && to < high).then_some(to)
+    let to = (has_stepped && to != at && low < to && to < high).then_some(to);
+    CurveStep { to, pressed: objective.pressed.get() }
 }
 
 /// The visited vertex or its partner, with its curve and patch.
@@ -102,7 +129,7 @@ struct OnCurve<'a> {
     side: &'a BoundaryCurve,
     /// Present position of the vertex, normalized.
     here: DVec2,
-    patch: FanPatch,
+    objective: Box<dyn Objective<f64> + 'a>,
 }
 
 /// The summed objective of a vertex and its partner, as a function of the common curve parameter. The search works in
@@ -114,23 +141,46 @@ struct CurveObjective<'a> {
     k: usize,
     window: Window,
     reach: Reach,
-    step: &'a SweepParams,
+    /// See [`CurveStep::pressed`].
+    pressed: Cell<i8>,
 }
 
 impl CurveObjective<'_> {
-    fn metric<'p>(&self, patch: &'p FanPatch) -> MetricObjective<'p, FanPatch, AnyFormulas> {
-        let SweepParams { metric, sharpness, shape_guard, .. } = *self.step;
-        let smoothing = Smoothing::of(sharpness);
-        MetricObjective { patch, formulas: metric.formulas(), smoothing, shape_guard }
+    /// Returns whether the lines to both neighbors stay near the given vertices, and the vertices in reach, with the vertices
+    /// at the parameter `to`.
+    fn is_within_bounds(&self, to: f64) -> bool {
+        let Window { low, high, .. } = self.window;
+        self.on_curves.iter().all(|OnCurve { side, .. }| {
+            side.curve.is_near([low, to, high], self.k) && self.reach.allows(&side.curve, to)
+        })
+    }
+
+    /// Returns a step from the present parameter, cut off at the bounds. A search that shortens steps by a factor instead
+    /// would let vertices creep toward their bounds for hundreds of sweeps.
+    fn within_bounds(&self, way: f64) -> f64 {
+        let at = self.window.at;
+        if !way.is_finite() || self.is_within_bounds(at + way) {
+            return way;
+        }
+        self.pressed.set(if way > 0.0 { 1 } else { -1 });
+        let (mut inside, mut outside) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            match self.is_within_bounds(at + way * middle) {
+                true => inside = middle,
+                false => outside = middle,
+            }
+        }
+        way * inside
     }
 }
 
 impl Objective<f64> for CurveObjective<'_> {
     fn expansion(&self, [at, _]: [f64; 2]) -> Dual {
         let (mut value, mut slope, mut curvature) = (0.0, 0.0, 0.0);
-        for OnCurve { side, here, patch } in &self.on_curves {
+        for OnCurve { side, here, objective } in &self.on_curves {
             let Place { first, second, .. } = side.at(self.problem, at, self.k);
-            let transformed = self.metric(patch).expansion(here.to_array());
+            let transformed = objective.expansion(here.to_array());
             let gradient = DVec2::from(transformed.gradient);
             let [xx, xy, yy] = transformed.hessian;
             let hessian = DVec2::new(xx * first.x + xy * first.y, xy * first.x + yy * first.y);
@@ -147,21 +197,18 @@ impl Objective<f64> for CurveObjective<'_> {
         let ([slope, _], [curvature, ..]) = (here.gradient, here.hessian);
         let newton = -slope / curvature.abs();
         let way = newton.clamp(MAX_STEP_SHARE * (low - at), MAX_STEP_SHARE * (high - at));
-        let way = self.reach.shortened(way, at);
+        let way = self.within_bounds(way);
         Direction { vector: [way, 0.0], slope: slope * way, descends: newton.is_finite() }
     }
 
     fn trial(&self, [to, _]: [f64; 2], max_imr: f64) -> (f64, bool) {
         let mut sum = 0.0;
-        for OnCurve { side, patch, .. } in &self.on_curves {
-            let curve = &side.curve;
-            if !curve.is_near([self.window.low, to, self.window.high], self.k)
-                || !self.reach.allows(curve, to)
-            {
-                return (sum, false);
-            }
+        if !self.is_within_bounds(to) {
+            return (sum, false);
+        }
+        for OnCurve { side, objective, .. } in &self.on_curves {
             let point = side.at(self.problem, to, self.k).point.to_array();
-            let (value, is_feasible) = self.metric(patch).trial(point, max_imr);
+            let (value, is_feasible) = objective.trial(point, max_imr);
             if !is_feasible {
                 return (sum, false);
             }
@@ -171,16 +218,15 @@ impl Objective<f64> for CurveObjective<'_> {
     }
 
     fn squares(&self, value: f64) -> f64 {
-        let weight: f64 = self.on_curves.iter().map(|on| on.patch.total_weight()).sum();
-        value + weight * self.step.metric.ideal_squared()
+        value + self.on_curves.iter().map(|on| on.objective.squares(0.0)).sum::<f64>()
     }
 
     fn shape_guard(&self) -> f64 {
-        self.step.shape_guard
+        self.on_curves.iter().map(|on| on.objective.shape_guard()).fold(f64::INFINITY, f64::min)
     }
 
     fn worst_shape(&self, _: [f64; 2]) -> f64 {
         let shapes = self.on_curves.iter();
-        shapes.map(|on| self.metric(&on.patch).worst_shape(on.here.to_array())).fold(0.0, f64::max)
+        shapes.map(|on| on.objective.worst_shape(on.here.to_array())).fold(0.0, f64::max)
     }
 }

@@ -65,6 +65,15 @@ impl BoundaryCurve {
         Place { point, first, second }
     }
 
+    /// Returns the curve of a chain whose vertices, but for the ends of an open chain, slide without any triangles.
+    #[cfg(test)]
+    pub(crate) fn without_triangles(curve: Curve, chain: Chain) -> Self {
+        let last = chain.vertices.len() - 1;
+        let slides = |k: usize| chain.is_closed || k != 0 && k != last;
+        let fans = (0..=last).map(|k| slides(k).then(Fan::default)).collect();
+        Self { curve, vertices: chain.vertices, fans }
+    }
+
     /// Returns whether the vertex of index `k` slides.
     pub(crate) fn slides(&self, k: usize) -> bool {
         self.fans[k].is_some()

@@ -1,19 +1,14 @@
-//! The sliding vertices of a mesh, and sweeps of Newton steps along their curves.
-
-use glam::DVec2;
+//! The sliding vertices of a mesh.
 
 use crate::layout::Problem;
 use crate::patch::Fan;
 use crate::slide::chains::{Chain, Chains};
-use crate::slide::newton::{self, Rule, Visited, Window};
+use crate::slide::newton::Window;
 use crate::slide::options::Slide;
 use crate::slide::params::Params;
 use crate::slide::side::BoundaryCurve;
 use crate::slide::track::Track;
 use crate::topology::Topology;
-
-/// Largest number of rounds that reset vertices of a curve, as each reset may put a neighbor out of order.
-const RESET_PASSES: u32 = 5;
 
 /// All curves of a mesh on which vertices slide, alone or in pairs.
 #[derive(Clone, Debug)]
@@ -136,53 +131,6 @@ impl Sliding {
         self.tracks.iter().map(of_track).collect()
     }
 
-    /// Returns the change of each parameter, relative to the mean length of the two given edges at the vertex.
-    pub(crate) fn change(&self, before: &Params, after: &Params) -> Vec<f64> {
-        let of_track = |((track, before), after): ((&Track, &Vec<f64>), &Vec<f64>)| {
-            let start = track.start();
-            let edge = |k: usize| {
-                let window = track.window(start, k);
-                0.5 * (window.high - window.low)
-            };
-            (0..start.len()).map(|k| (after[k] - before[k]) / edge(k)).collect::<Vec<_>>()
-        };
-        self.tracks.iter().zip(before).zip(after).flat_map(of_track).collect()
-    }
-
-    /// Writes the curve points of the parameters `params` to `positions`. Before, at most [`RESET_PASSES`] rounds reset
-    /// vertices to their parameter in `safe`: each vertex that would pass a neighbor, leave the tolerance of the given
-    /// lines, or exceed its reach. Returns false if some vertex still does.
-    pub(crate) fn place(
-        &self,
-        problem: &Problem,
-        params: &mut Params,
-        safe: &Params,
-        reach: &Params,
-        positions: &mut [DVec2],
-    ) -> bool {
-        let mut all = self.tracks.iter().zip(params).zip(safe.iter().zip(reach));
-        all.all(|((track, params), (safe, reach))| {
-            let sliding = || (0..track.count()).filter(|&k| track.slides(k));
-            let is_sound = |params: &[f64], k: usize| {
-                let Window { low, at, high } = track.window(params, k);
-                let is_sound = |side: &BoundaryCurve| {
-                    side.curve.is_near([low, at, high], k)
-                        && track.reach(reach, k).allows(&side.curve, at)
-                };
-                low < at && at < high && track.sides.iter().all(is_sound)
-            };
-            for _ in 0..RESET_PASSES {
-                let bad: Vec<usize> = sliding().filter(|&k| !is_sound(params, k)).collect();
-                if bad.is_empty() {
-                    break;
-                }
-                bad.into_iter().for_each(|k| params[k] = safe[k]);
-            }
-            (0..track.count()).for_each(|k| track.follow(problem, k, params[k], positions));
-            sliding().all(|k| is_sound(params, k))
-        })
-    }
-
     /// Returns whether every sliding vertex is strictly between its neighbors on the curve, and every other vertex at
     /// its given parameter.
     pub(crate) fn is_in_order(&self, params: &Params) -> bool {
@@ -212,29 +160,5 @@ impl Sliding {
             offs.fold([0.0; 2], larger)
         };
         self.tracks.iter().zip(params).map(of_track).fold([0.0; 2], larger)
-    }
-
-    /// Visits every sliding vertex, curve by curve, forward and then back, with one safeguarded Newton step along the
-    /// curve. Every vertex stays within `reach` of its given position, in the unit of the mesh. No altitude falls below
-    /// the floor of `rule`. Partners move together.
-    pub(crate) fn sweep(
-        &self,
-        problem: &Problem,
-        params: &mut Params,
-        reach: &Params,
-        positions: &mut [DVec2],
-        rule: Rule<'_>,
-    ) {
-        for ((track, params), reach) in self.tracks.iter().zip(params).zip(reach) {
-            let count = params.len();
-            for k in (0..count).chain((0..count).rev()).filter(|&k| track.slides(k)) {
-                let (window, reach) = (track.window(params, k), track.reach(reach, k));
-                let vertex = Visited { sides: &track.sides, k, window, reach };
-                if let Some(param) = newton::visit(problem, positions, vertex, rule) {
-                    params[k] = param;
-                    track.follow(problem, k, param, positions);
-                }
-            }
-        }
     }
 }

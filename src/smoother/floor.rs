@@ -11,7 +11,7 @@ use crate::options::{Options, WorstBy};
 use crate::outcome::Floored;
 use crate::parallel::paced;
 use crate::run::Plan;
-use crate::slide::Sliding;
+use crate::slide::{OnCurves, Sliding};
 use crate::targets::Surface;
 use crate::whole::altitude;
 use crate::worst::{Badness, MoveConstraints, Penalties, WorstShapes, floor};
@@ -57,7 +57,7 @@ impl Smoother<'_> {
         let is_on_sphere = self.problem.is_projected();
         let surface = if is_on_sphere { Surface::Sphere } else { Surface::Plane };
         let mut may_move = Cow::Borrowed(self.topology.free());
-        for v in self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default() {
+        for v in self.sliding.as_deref().map(Sliding::vertices).unwrap_or_default() {
             may_move.to_mut()[self.problem.vertices()[v as usize] as usize] = true;
         }
         let worst = [WorstShapes::NONE; 2];
@@ -103,14 +103,16 @@ impl Floor<'_> {
         beyond.await.concat()
     }
 
-    /// Raises the worst shapes to those before the run. Vertices around triangles beyond them take Newton steps by
+    /// Raises the worst shapes to those before the run. Free vertices, and vertices that slide on `curves`, around triangles beyond them take Newton steps by
     /// penalties, from `positions`, which are those of `points`, in rounds until no shape is worse, `goes_on` returns
     /// false, or the largest number of visits is reached. Then the vertices of triangles that are still worse go back to
     /// their places in the mesh.
+    #[allow(clippy::too_many_arguments)]
     pub(super) async fn raise(
         &self,
         options: &Options,
         problem: &Problem,
+        curves: Option<&mut OnCurves>,
         positions: &[DVec2],
         points: &mut [[f64; 2]],
         goes_on: impl FnMut() -> bool,
@@ -124,7 +126,7 @@ impl Floor<'_> {
             floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
             bounds: problem.radii(),
         };
-        self.descend(options, problem, &rules, positions, points, goes_on).await;
+        self.descend(options, problem, &rules, curves, positions, points, goes_on).await;
         self.bring_back(options, points).await?;
         let bits = |point: [f64; 2]| point.map(f64::to_bits);
         let (mut moved, mut returned) = (0, 0);
@@ -146,11 +148,13 @@ impl Floor<'_> {
     }
 
     /// Does the rounds of [`raise`](Self::raise).
+    #[allow(clippy::too_many_arguments)]
     async fn descend(
         &self,
         options: &Options,
         problem: &Problem,
         rules: &MoveConstraints<'_>,
+        mut curves: Option<&mut OnCurves>,
         positions: &[DVec2],
         points: &mut [[f64; 2]],
         mut goes_on: impl FnMut() -> bool,
@@ -180,6 +184,11 @@ impl Floor<'_> {
             }
             visits -= in_round;
             let penalties = penalties.in_round(round);
+            let mut near = vec![false; positions.len()];
+            let seeds = beyond.iter().flat_map(|&t| topology.triangles()[t as usize]);
+            seeds.for_each(|v| near[number[v as usize] as usize] = true);
+            let around = regions.iter().flatten().flat_map(|&v| problem.ring_of(v));
+            around.for_each(|&v| near[v as usize] = true);
             let moves = floor::round(problem, rules, penalties, &positions, regions).await;
             for (v, to) in moves {
                 positions[v as usize] = to;
@@ -187,12 +196,17 @@ impl Floor<'_> {
                 points[at as usize] = problem.point(to).map(|x| options.stored.rounded(x));
                 beyond.extend_from_slice(topology.star(at));
             }
+            let slid = curves.as_mut().map(|curves| {
+                curves.visit_by(&penalties, problem, &mut positions, |v| near[v as usize])
+            });
+            for (at, point) in slid.into_iter().flatten() {
+                points[at as usize] = point.map(|x| options.stored.rounded(x));
+                beyond.extend_from_slice(topology.star(at));
+            }
             beyond.sort_unstable();
             beyond.dedup();
             beyond.retain(|&t| self.is_beyond(penalties.limits(), points, t));
-            let is_worse =
-                |&t: &u32| topology.can_move(t as usize) && self.is_beyond(aim, points, t);
-            if !beyond.iter().any(is_worse) {
+            if !beyond.iter().any(|&t| self.is_beyond(aim, points, t)) {
                 return;
             }
         }

@@ -10,10 +10,18 @@ use crate::outcome::GoalOutcome;
 use crate::run::{
     CheckpointPolicy, Checkpointer, NOISE, Observer, Phase, Plan, ROUNDING, Stop, set_guards,
 };
+use crate::slide::OnCurves;
 use crate::whole::{Device, Live, RunEnd, Spec, drive};
 
 use super::over_all::OverAll;
 use super::prepared::{Smoother, objective};
+
+/// The start of a search run: normalized positions, and the sliding vertices there.
+#[derive(Clone)]
+struct Start {
+    positions: Vec<DVec2>,
+    curves: Option<OnCurves>,
+}
 
 impl Smoother<'_> {
     /// Returns the desired objective of a goal over the triangles by which the run is judged. If the goal has no desired
@@ -43,15 +51,18 @@ impl Smoother<'_> {
             ..Options::default()
         };
         let start = problem.positions();
-        let mut starts = vec![(format!("{base} alone"), start.to_vec())];
+        let curves = self.on_curves(options);
+        let from_start = Start { positions: start.to_vec(), curves };
+        let mut starts = vec![(format!("{base} alone"), from_start.clone())];
         if !base.properties().is_inverse_mean_ratio {
             let imr = Options { stopping: Stopping::Tolerance(1e-6), ..full(Metric::Imr) };
             let after_imr =
-                self.search_reference(problem, &imr, start, device, policy, observe).await?;
+                self.search_reference(problem, &imr, &from_start, device, policy, observe).await?;
             if after_imr.stop == Stop::Canceled {
                 return Ok(None);
             }
-            starts.push((format!("imr, then {base}"), after_imr.positions));
+            let RunEnd { positions, curves, .. } = after_imr;
+            starts.push((format!("imr, then {base}"), Start { positions, curves }));
         }
         let mut describe = Vec::new();
         let mut desired = f64::INFINITY;
@@ -78,21 +89,23 @@ impl Smoother<'_> {
         Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }))
     }
 
-    /// Runs to convergence from the given positions, with progress reported as [`Phase::Reference`].
+    /// Runs to convergence from the given start, with progress reported as [`Phase::Reference`].
     async fn search_reference(
         &self,
         problem: &Problem,
         options: &Options,
-        start: &[DVec2],
+        start: &Start,
         device: Option<Device<'_>>,
         policy: &mut dyn CheckpointPolicy,
         observe: &mut dyn Observer,
     ) -> Result<RunEnd, SmoothError> {
+        let Start { positions, curves } = start;
         let mut plan = Plan::toward(options, None);
-        set_guards(&mut plan, options.guard, problem, start).await;
-        let spec = Spec { problem, device, options, phase: Phase::Reference, is_staged: false };
+        set_guards(&mut plan, options.guard, problem, positions).await;
+        let (phase, curves) = (Phase::Reference, curves.as_ref());
+        let spec = Spec { problem, device, options, phase, is_staged: false, curves };
         let mut checkpointer = Checkpointer::new(policy);
-        let live = Live::new(spec, plan, start, None, &mut checkpointer).await?;
+        let live = Live::new(spec, plan, positions, None, &mut checkpointer).await?;
         drive(live, &mut [], &mut checkpointer, observe, None).await
     }
 }

@@ -8,15 +8,16 @@ use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
 use crate::metric::{Corner, Ideal, Metric};
 use crate::options::Options;
-use crate::outcome::{Floored, GoalOutcome, Improved, Outcome};
+use crate::outcome::{Floored, GoalOutcome, Improved, Outcome, Slid};
 use crate::parallel::paced;
 use crate::precision::Precision;
 use crate::quality::Quality;
 use crate::run::{
     JITTER, MIN_SCALE, NOISE, Observer, Phase, Plan, Progress, ROUNDING, Stop, set_guards,
 };
-use crate::slide::Sliding;
+use crate::slide::{OnCurves, Sliding};
 use crate::targets::Surface;
+use crate::topology::predicates::orientation;
 use crate::whole::{Improvement, RunEnd, altitude};
 
 use super::over_all::OverAll;
@@ -61,9 +62,11 @@ impl Smoother<'_> {
             None => Vec::new(),
         };
         let mut improving = Improvement::after(&mut ended, options, &problem, observe).await;
-        let (mut points, mut returned) = self.as_stored(options, &stages, &ended.positions).await?;
+        let mut curves = ended.curves.take();
+        let (mut points, mut returned) =
+            self.as_stored(options, curves.as_ref(), &ended.positions).await?;
         if let Some(improving) = &mut improving {
-            let without = self.as_stored(options, &stages, &before_stage).await?;
+            let without = self.as_stored(options, curves.as_ref(), &before_stage).await?;
             let [old, new] = [&without.0, &points];
             let old = self.problem.normalized(old, Vec::new()).await;
             let new = self.problem.normalized(new, Vec::new()).await;
@@ -101,7 +104,9 @@ impl Smoother<'_> {
             };
             let swept = points.iter().zip(&self.mesh.points).filter(|(to, from)| to != from);
             all_moved = swept.count();
-            let raised = floor.raise(options, problem, &judged, &mut points, goes_on).await?;
+            let raised = floor
+                .raise(options, problem, curves.as_mut(), &judged, &mut points, goes_on)
+                .await?;
             judged = self.problem.normalized(&points, judged).await;
             written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
             floored =
@@ -129,11 +134,11 @@ impl Smoother<'_> {
             Some(_) => 0.0,
         };
         let projection_error = self.projection_error(&points).await;
-        let slid = stages.slid(&points);
+        let slid = curves.as_ref().map(|curves| self.slid(curves, &points));
         let best = if gains { written } else { initial };
         let least = base.least_objective(problem.targets().is_some());
         let possible = (best - least).max(0.0) / best.max(MIN_SCALE);
-        let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
+        let slides = self.sliding.as_deref().map(Sliding::vertices).unwrap_or_default();
         let improved = match improving {
             Some(improving) => {
                 let positions = if gains { &judged } else { self.problem.positions() };
@@ -157,6 +162,8 @@ impl Smoother<'_> {
             sweeps: evaluations as u32 - 1,
             alternated: ended.counts.alternated,
             corrections: ended.counts.corrections,
+            newton_steps: ended.counts.newton_steps,
+            newton_iterations: ended.counts.newton_iterations,
             opening_sweeps: ended.opening_sweeps,
             closing_sweeps: ended.closing_sweeps,
             levels_left_out: ended.counts.levels_left_out,
@@ -186,11 +193,14 @@ impl Smoother<'_> {
     async fn as_stored(
         &self,
         options: &Options,
-        stages: &Stages<'_>,
+        curves: Option<&OnCurves>,
         positions: &[DVec2],
     ) -> Result<(Vec<[f64; 2]>, usize), MeshError> {
         let mut points = self.problem.in_unit_of(&self.mesh, positions).await;
-        stages.slide_into(&mut points);
+        // Normalized positions do not hold all digits of the points on curves.
+        for (v, point) in curves.iter().flat_map(|curves| curves.moved()) {
+            points[v as usize] = point;
+        }
         if !matches!(options.stored, Precision::Double) {
             paced::for_each_chunk(points.as_flattened_mut(), CHUNK, |_, coordinates| {
                 coordinates.iter_mut().for_each(|x| *x = options.stored.rounded(*x));
@@ -207,6 +217,28 @@ impl Smoother<'_> {
             returned += low + self.certified(&mut points, stored).await?;
         }
         Ok((points, returned))
+    }
+
+    /// Returns the result of sliding in a run that ended at `points`.
+    fn slid(&self, curves: &OnCurves, points: &[[f64; 2]]) -> Slid {
+        let (before, free) = (&self.mesh.points, self.topology.free());
+        let moved = (0..free.len()).filter(|&v| !free[v] && points[v] != before[v]).count();
+        let area = |points: &[[f64; 2]]| {
+            let of = |t: &[u32; 3]| orientation(points, t);
+            self.topology.triangles().iter().map(of).sum::<f64>()
+        };
+        let sliding = curves.sliding();
+        let [off, off_share] = sliding.off(&sliding.with_returned(curves.params(), before, points));
+        Slid {
+            vertices: sliding.count(),
+            moved,
+            pairs: sliding.pairs()[0],
+            coincident: sliding.coincident()[0],
+            frozen: curves.frozen(),
+            off,
+            off_share,
+            area: area(points) / area(before) - 1.0,
+        }
     }
 
     /// Returns whether f by a metric, with the areas of the vertices at `points`, is lower than f of the mesh. A run

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt;
+use std::sync::Arc;
 use std::time::Duration;
 
 use glam::DVec2;
@@ -30,7 +31,7 @@ pub struct Smoother<'a> {
     pub(super) problem: Problem,
     /// The curves that the caller set, for the fingerprint in checkpoints; `None` if no vertex slides.
     pub(super) slide: Option<Slide>,
-    pub(super) sliding: Option<Sliding>,
+    pub(super) sliding: Option<Arc<Sliding>>,
     /// The boundary layers that runs keep.
     layers: Layers,
     /// Whether all free vertices are in boundary layers. Runs then have no sweeps, and no vertex is fixed or slides.
@@ -280,9 +281,14 @@ impl<'a> Smoother<'a> {
         self.topology.forget_stars();
         let count = sliding.count();
         (self.pairs, self.coincident) = (sliding.pairs(), sliding.coincident());
-        self.sliding = (count > 0).then_some(sliding);
+        self.sliding = (count > 0).then(|| Arc::new(sliding));
         self.slide = self.sliding.is_some().then(|| slide.clone());
         Ok(count)
+    }
+
+    /// Returns whether vertices slide in runs; see [`Self::set_slide`]. Such runs are on the CPU, whatever their backend is.
+    pub fn slides(&self) -> bool {
+        self.sliding.is_some()
     }
 
     fn stop_sliding(&mut self) {
@@ -390,7 +396,7 @@ impl<'a> Smoother<'a> {
         if self.field.is_some() {
             return self.problem.clone();
         }
-        let slides = self.sliding.as_ref().map(Sliding::vertices).unwrap_or_default();
+        let slides = self.sliding.as_deref().map(Sliding::vertices).unwrap_or_default();
         self.problem.judged_by_movable(&slides)
     }
 }

@@ -57,8 +57,8 @@ impl Smoother<'_> {
         let began = Instant::now();
         options.check_with(&self.features())?;
         self.check_movable()?;
-        // Only the CPU slides vertices, so a mesh without free vertices needs no device.
-        let device = device.filter(|_| self.problem.free_count() > 0);
+        // Only the CPU slides vertices.
+        let device = device.filter(|_| self.sliding.is_none() && self.problem.free_count() > 0);
         let (device, fault) = self.checked(device, policy).await?;
         let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
         let mut about = self.about(problem, options).await;
@@ -112,11 +112,12 @@ impl Smoother<'_> {
         let mut plan = Plan::toward(options, target);
         let start = problem.positions();
         set_guards(&mut plan, options.guard, problem, start).await;
-        let mut stages = Stages::new(self, options, &plan);
+        let mut stages = Stages::new(self, options);
+        let curves = self.on_curves(options);
         let mut in_order = stages.in_order();
         checkpointer.about = Some(about);
         let (phase, is_staged) = (Phase::Smoothing, !in_order.is_empty());
-        let spec = Spec { problem, device, options, phase, is_staged };
+        let spec = Spec { problem, device, options, phase, is_staged, curves: curves.as_ref() };
         let period = resumed.and_then(|resumed| resumed.period.as_ref());
         if period.is_some() && !is_staged {
             return Err(resume::foreign());
@@ -182,6 +183,8 @@ impl Smoother<'_> {
             sweeps: 0,
             alternated: 0,
             corrections: 0,
+            newton_steps: 0,
+            newton_iterations: 0,
             opening_sweeps: 0,
             closing_sweeps: 0,
             levels_left_out: false,

@@ -1,4 +1,4 @@
-//! The stages of a run, which work on the host between sweeps.
+//! The stages of a run, which work on the host between sweeps, and the sliding vertices of a run.
 
 use glam::DVec2;
 
@@ -6,63 +6,32 @@ use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
 use crate::options::Options;
-use crate::outcome::Slid;
-use crate::run::Plan;
-use crate::slide::Sliding;
+use crate::slide::OnCurves;
 use crate::targets::TargetField;
-use crate::topology::Topology;
 use crate::whole::altitude::least_of;
-use crate::whole::{SlideStage, Stage, TargetFieldStage, radii, set_targets_of};
+use crate::whole::{Stage, TargetFieldStage, radii, set_targets_of};
 
 use super::prepared::Smoother;
 
-/// The stages of a run with their state: sliding, and targets that depend on the place.
+/// The stages of a run with their state: targets that depend on the place.
 pub(super) struct Stages<'s> {
     mesh: &'s Mesh,
-    topology: &'s Topology<'s>,
     field: Option<&'s TargetField>,
-    slide: Option<SlideStage<'s>>,
     target_field: Option<TargetFieldStage<'s>>,
 }
 
 impl<'s> Stages<'s> {
-    /// Makes the stages required by the curves and targets of the smoother, and by the options.
-    pub(super) fn new(smoother: &'s Smoother<'_>, options: &Options, plan: &Plan) -> Self {
-        let Smoother { mesh, topology, problem, sliding, field, .. } = smoother;
-        let floor = if options.keep_altitude { least_of(problem) } else { 0.0 };
-        let slide = |sliding: &'s Sliding| {
-            let reach = options.max_move.map(|most| {
-                let all = radii(mesh, topology, most, options.stored);
-                sliding.for_each_vertex(|v| all[v as usize])
-            });
-            SlideStage::new(sliding, reach, floor, plan.stop)
-        };
-        let slide = sliding.as_ref().map(slide);
+    /// Makes the stages required by the targets of the smoother.
+    pub(super) fn new(smoother: &'s Smoother<'_>, options: &Options) -> Self {
+        let Smoother { mesh, field, .. } = smoother;
         let field = field.as_ref();
-        Self {
-            mesh,
-            topology,
-            field,
-            slide,
-            target_field: field
-                .map(|field| TargetFieldStage::new(mesh, field, options.stopping.tolerance())),
-        }
+        let stage = |field| TargetFieldStage::new(mesh, field, options.stopping.tolerance());
+        Self { mesh, field, target_field: field.map(stage) }
     }
 
     /// Returns the stages in the order in which they act.
     pub(super) fn in_order(&mut self) -> Vec<&mut dyn Stage> {
-        let Self { slide, target_field, .. } = self;
-        let mut stages: Vec<&mut dyn Stage> = Vec::new();
-        stages.extend(slide.as_mut().map(|stage| stage as &mut dyn Stage));
-        stages.extend(target_field.as_mut().map(|stage| stage as &mut dyn Stage));
-        stages
-    }
-
-    /// Overwrites the points of vertices that slid, as normalized positions do not hold all digits of these points.
-    pub(super) fn slide_into(&self, points: &mut [[f64; 2]]) {
-        for (v, point) in self.slide.iter().flat_map(SlideStage::moved) {
-            points[v as usize] = point;
-        }
+        self.target_field.iter_mut().map(|stage| stage as &mut dyn Stage).collect()
     }
 
     /// Evaluates the field of targets with the vertices at normalized `positions`. Does nothing without a field.
@@ -74,10 +43,17 @@ impl<'s> Stages<'s> {
         let set = |field| set_targets_of(field, self.mesh, problem, positions);
         self.field.map_or(Ok(()), set)
     }
+}
 
-    /// Returns the result of sliding with the vertices at `points`, `None` if no vertex may slide.
-    pub(super) fn slid(&self, points: &[[f64; 2]]) -> Option<Slid> {
-        let slide = self.slide.as_ref()?;
-        Some(slide.slid(self.mesh, self.topology, points))
+impl Smoother<'_> {
+    /// Returns the sliding vertices at the start of a run, within the bounds of the options. `None` if no vertex slides.
+    pub(super) fn on_curves(&self, options: &Options) -> Option<OnCurves> {
+        let sliding = self.sliding.clone()?;
+        let floor = if options.keep_altitude { least_of(&self.problem) } else { 0.0 };
+        let reach = options.max_move.map(|most| {
+            let all = radii(&self.mesh, &self.topology, most, options.stored);
+            sliding.for_each_vertex(|v| all[v as usize])
+        });
+        Some(OnCurves::new(sliding, reach, floor))
     }
 }

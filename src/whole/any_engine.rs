@@ -9,7 +9,9 @@ use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
+use crate::run::truncated::{NewtonStep, StepRequest};
 use crate::run::{Engine, EngineState, History, Objectives, Proposal, SweepParams};
+use crate::slide::OnCurves;
 use crate::whole::device::DeviceEngine;
 
 /// The CPU engine or the engine of a device, by one interface.
@@ -29,6 +31,17 @@ macro_rules! on {
             AnyEngine::Device(none) => match **none {},
         }
     };
+}
+
+impl AnyEngine<'_> {
+    /// Returns the sliding vertices of the state whose positions [`Engine::best_positions`] returns. `None` if no vertex
+    /// slides, as on devices.
+    pub(crate) fn best_curves(&self) -> Option<OnCurves> {
+        match self {
+            AnyEngine::Cpu(engine) => engine.best_curves(),
+            AnyEngine::Device(_) => None,
+        }
+    }
 }
 
 impl Engine for AnyEngine<'_> {
@@ -87,6 +100,14 @@ impl Engine for AnyEngine<'_> {
         accelerated: bool,
     ) -> Result<Proposal, GpuError> {
         on!(self, engine => engine.sweep_and_propose(step, length, accelerated).await)
+    }
+
+    async fn sweep_and_step(
+        &mut self,
+        step: &SweepParams,
+        request: &StepRequest,
+    ) -> Result<Option<NewtonStep>, GpuError> {
+        on!(self, engine => engine.sweep_and_step(step, request).await)
     }
 
     fn forget(&mut self) {

@@ -37,11 +37,7 @@ pub(crate) async fn drive(
         let until = began.saturating_add(period).min(max_sweeps);
         let state = || saved(&host, stages, began);
         let (swept_to, swept) = live.sweep(until, Some(&state), checkpointer, observe).await?;
-        // The stages would move vertices in a run that has nothing to do.
-        let has_nothing_to_do = swept == Some(Stop::Reached)
-            && live.sweeps() == began
-            && stages.iter().any(|stage| stage.moves_without_sweeps());
-        if let Some(stop) = swept.filter(|stop| has_nothing_to_do || *stop == Stop::NotFinite) {
+        if let Some(stop) = swept.filter(|stop| *stop == Stop::NotFinite) {
             return Ok(live.end(swept_to, stop).await);
         }
         host.positions.clone_from(&swept_to);

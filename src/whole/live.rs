@@ -18,6 +18,7 @@ use crate::run::{
     CPU, Checkpoint, Checkpointer, Corrections, Counts, DriveError, Engine, History, Leg,
     Objectives, Observer, PeriodSource, Phase, Plan, Saved, Session, Stop, steps,
 };
+use crate::slide::OnCurves;
 use crate::whole::any_engine::AnyEngine;
 use crate::whole::device::Device;
 use crate::whole::host::objectives;
@@ -36,6 +37,8 @@ pub(crate) struct Spec<'s> {
     pub(crate) phase: Phase,
     /// Whether stages on the host move vertices between sweeps.
     pub(crate) is_staged: bool,
+    /// The sliding vertices at the start of the run, `None` if no vertex slides. Such a run has no device.
+    pub(crate) curves: Option<&'s OnCurves>,
 }
 
 /// A state to which a run can return, between two sweeps.
@@ -44,6 +47,8 @@ struct Point {
     log: Vec<Objectives>,
     /// Normalized positions of all vertices after the last sweep.
     positions: Vec<DVec2>,
+    /// The sliding vertices at these positions.
+    curves: Option<OnCurves>,
 }
 
 /// A run in progress, on a single engine unless that engine fails.
@@ -58,6 +63,8 @@ pub(crate) struct Live<'s> {
     session: Option<Session<AnyEngine<'s>>>,
     /// State at the start of the run, or at the end of the latest stage that moved vertices.
     last: Point,
+    /// The sliding vertices at the best positions so far.
+    curves: Option<OnCurves>,
     /// Tracked objectives of the given mesh, if the run begins at means of neighbors instead.
     given: Option<Objectives>,
     opened: Option<DoublePrelude>,
@@ -72,6 +79,8 @@ pub(crate) struct Live<'s> {
 pub(crate) struct RunEnd {
     pub(crate) history: Vec<Objectives>,
     pub(crate) positions: Vec<DVec2>,
+    /// The sliding vertices at these positions. `None` if no vertex slides.
+    pub(crate) curves: Option<OnCurves>,
     pub(crate) counts: Counts,
     pub(crate) opening_sweeps: u32,
     pub(crate) closing_sweeps: u32,
@@ -93,7 +102,7 @@ impl<'s> Live<'s> {
     ) -> Result<Self, SmoothError> {
         let mut problem = with_local_maps(&spec, from).await;
         // Bounds hold from the given positions on, and plain sweeps are a sequence that the caller determines.
-        let may_begin_elsewhere = !spec.is_staged && !problem.is_bounded();
+        let may_begin_elsewhere = !spec.is_staged && !problem.is_bounded() && spec.curves.is_none();
         let relief = match spec.options.is_multilevel() && may_begin_elsewhere {
             true => relieved(spec.problem, &problem, &plan, from).await?,
             false => None,
@@ -131,9 +140,9 @@ impl<'s> Live<'s> {
         let last = match period {
             Some((Checkpoint { saved, .. }, period)) => {
                 let log = saved.log[..=period.began as usize].to_vec();
-                Point { log, positions: period.before.clone() }
+                Point { log, positions: period.before.clone(), curves: None }
             }
-            None => Point { log: Vec::new(), positions },
+            None => Point { log: Vec::new(), positions, curves: spec.curves.cloned() },
         };
         Ok(Self {
             problem,
@@ -142,6 +151,7 @@ impl<'s> Live<'s> {
             device,
             session: None,
             last,
+            curves: spec.curves.cloned(),
             given,
             opened,
             on_cpu_from,
@@ -211,7 +221,7 @@ impl<'s> Live<'s> {
         if stop.is_none() && session.needs_double() {
             let positions = session.engine.best_positions().await?;
             let on_cpu = |problem: &Problem| {
-                let engine = CpuEngine::new(problem, positions, &self.plan);
+                let engine = CpuEngine::new(problem, positions, None, &self.plan);
                 Ok(AnyEngine::Cpu(Box::new(engine)))
             };
             session.continue_in_double(on_cpu).await?;
@@ -219,18 +229,20 @@ impl<'s> Live<'s> {
             stop = session.advance(leg, checkpointer, observe).await?;
         }
         let positions = session.engine.best_positions().await?;
+        self.curves = session.engine.best_curves();
         self.session = Some(session);
         Ok((positions, stop))
     }
 
     /// Creates an engine in a saved state, or in the state that `last` has.
     async fn begun(&self, saved: Option<Saved>) -> Result<Session<AnyEngine<'s>>, DriveError> {
-        let Self { problem, plan, last: Point { log, positions }, .. } = self;
+        let Self { problem, plan, last: Point { log, positions, curves }, .. } = self;
         let corrected = self.is_corrected();
         let engine = match self.device {
             None => AnyEngine::Cpu(Box::new(CpuEngine::new(
                 problem,
                 paced::copied(positions).await,
+                curves.clone(),
                 plan,
             ))),
             Some(device) => {
@@ -241,7 +253,9 @@ impl<'s> Live<'s> {
                 AnyEngine::Device(device.engine(problem, positions, judged, steps).await?)
             }
         };
-        let corrections = corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged));
+        let slides = curves.is_some();
+        let corrections =
+            corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged, slides));
         let mut session = Session::new(engine, plan, corrections, log);
         if let Some(saved) = saved {
             session.restore(saved).await?;
@@ -281,12 +295,18 @@ impl<'s> Live<'s> {
     /// Returns the positions of this state.
     async fn undone(&mut self, saved: Option<Saved>) -> Vec<DVec2> {
         if let Some(Saved { log, engine, .. }) = saved {
-            self.last = Point { log, positions: engine.best.unwrap_or(engine.positions) };
+            let mut curves = self.last.curves.take();
+            let best = curves.as_mut().and_then(|curves| curves.restore(&engine)).flatten();
+            if let (Some(curves), Some(best)) = (&mut curves, best) {
+                curves.set_params(&best);
+            }
+            self.last = Point { log, positions: engine.best.unwrap_or(engine.positions), curves };
         }
         if self.last.log.is_empty() {
             self.last.log = vec![objectives(&self.problem, &self.plan, &self.last.positions).await];
         }
         self.session = None;
+        self.curves.clone_from(&self.last.curves);
         self.last.positions.clone()
     }
 
@@ -302,7 +322,11 @@ impl<'s> Live<'s> {
         session.disturbed(from, now);
         // The state that was saved before belongs to other positions and stages.
         checkpointer.last = None;
-        self.last = Point { log: session.history().log().to_vec(), positions: positions.to_vec() };
+        self.last = Point {
+            log: session.history().log().to_vec(),
+            positions: positions.to_vec(),
+            curves: self.curves.clone(),
+        };
         let mut changed = || -> Result<(), GpuError> {
             if let Some(problem) = targets {
                 session.set_targets(problem)?;
@@ -333,7 +357,7 @@ impl<'s> Live<'s> {
 
     /// Ends the run for the reason `stop`, with the vertices at `positions`.
     pub(crate) async fn end(self, positions: Vec<DVec2>, mut stop: Stop) -> RunEnd {
-        let Self { plan, problem, last, session, .. } = self;
+        let Self { plan, problem, last, session, curves, .. } = self;
         let (counts, remaining, history) = match session {
             Some(session) => {
                 let history = session.history();
@@ -374,6 +398,7 @@ impl<'s> Live<'s> {
         RunEnd {
             history,
             positions,
+            curves,
             counts: Counts { alternated: opened + counts.alternated, ..counts },
             opening_sweeps,
             closing_sweeps,
@@ -436,7 +461,7 @@ async fn opened<'s>(
         Obstacle::Flat => {}
         Obstacle::Small => return Ok((None, None)),
     }
-    let engine = CpuEngine::new(problem, paced::copied(from).await, plan);
+    let engine = CpuEngine::new(problem, paced::copied(from).await, None, plan);
     Ok(match opening::open(problem, engine, plan).await? {
         Some(opened) => (device, Some(opened)),
         None => (None, None),

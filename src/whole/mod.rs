@@ -11,7 +11,6 @@ mod host;
 mod improving;
 mod live;
 mod relief;
-mod slide;
 mod stage;
 mod target_field;
 
@@ -20,6 +19,5 @@ pub(crate) use device::Device;
 pub(crate) use driver::drive;
 pub(crate) use improving::Improvement;
 pub(crate) use live::{Live, RunEnd, Spec};
-pub(crate) use slide::SlideStage;
 pub(crate) use stage::Stage;
 pub(crate) use target_field::{TargetFieldStage, set_targets_of};

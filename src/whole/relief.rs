@@ -58,7 +58,7 @@ pub(super) async fn relieved(
         return Ok(None);
     }
     let trial = plan.clone().endless();
-    let mut engine = CpuEngine::new(with_maps, paced::copied(from).await, &trial);
+    let mut engine = CpuEngine::new(with_maps, paced::copied(from).await, None, &trial);
     let mut history = History::new(&trial);
     let period = trial.scheme.period();
     for _ in 0..TRIAL.div_ceil(period) {

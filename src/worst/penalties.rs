@@ -1,7 +1,8 @@
 //! The penalties that bring triangles back within limits of angle and inverse mean ratio.
 
-use crate::metric::{Corner, Dual, Hinge, Real};
-use crate::patch::{FanCorner, FanPatch, Objective};
+use crate::metric::{Corner, Dual, Hinge, OfEdges, Real};
+use crate::patch::{FanCorner, FanPatch, Objective, is_acceptable};
+use crate::slide::OfPatch;
 use crate::worst::shapes::WorstShapes;
 
 /// Factor of the least angle, and share of the worst squared inverse mean ratio's excess over 1, that give the limits of
@@ -97,6 +98,29 @@ impl Objective<f64> for FloorObjective<'_> {
 
     fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
         (self.corners(to).map(|corner| self.penalties.of(&corner)).sum(), true)
+    }
+}
+
+/// The penalties for vertices that slide, whose trials keep triangles positive.
+impl OfPatch for Penalties {
+    fn of<'p>(&'p self, patch: &'p FanPatch) -> Box<dyn Objective<f64> + 'p> {
+        Box::new(Feasible(FloorObjective { patch, penalties: *self }))
+    }
+}
+
+/// An objective whose trials are accepted only if no triangle is inverted, flat or below the floor of the patch.
+struct Feasible<'a>(FloorObjective<'a>);
+
+impl Objective<f64> for Feasible<'_> {
+    fn expansion(&self, at: [f64; 2]) -> Dual {
+        self.0.expansion(at)
+    }
+
+    fn trial(&self, to: [f64; 2], max_imr: f64) -> (f64, bool) {
+        match is_acceptable(self.0.patch, OfEdges, to, f64::INFINITY) {
+            true => self.0.trial(to, max_imr),
+            false => (f64::INFINITY, false),
+        }
     }
 }
 

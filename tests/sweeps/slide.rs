@@ -2,8 +2,11 @@
 
 use crate::{backends, history, name, plate, run};
 use gpu_smooth::{
-    Backend, Goal, Mesh, MeshError, Metric, OptionError, Options, Slide, SmoothError, Smoother,
-    Stop, Stopping, Targets, Topology, options::Feature, precision::Precision, topology,
+    Backend, Goal, Mesh, MeshError, Method, Metric, OptionError, Options, Slide, SmoothError,
+    Smoother, Stop, Stopping, Targets, Topology,
+    options::{Derivatives, Feature, Paper, Relaxed},
+    precision::Precision,
+    topology,
 };
 use support::SplitMix64;
 
@@ -222,20 +225,110 @@ fn options_that_cannot_be_combined_with_sliding_are_refused() {
         smoother.set_slide(Some(&Slide { corner_angle: 0.0, ..Slide::default() })).unwrap(),
         2 * 10 + 2 * 5
     );
+    let options = Options {
+        method: Method::Paper(Paper {
+            derivatives: Derivatives::FiniteDifference,
+            ..Paper::default()
+        }),
+        ..Options::default()
+    };
+    let error = smoother.run(&options).on(&Backend::Cpu).block().unwrap_err();
+    assert!(
+        matches!(
+            error,
+            SmoothError::Option(OptionError::Conflict { features: [Feature::Slide, _], .. })
+        ),
+        "{error}"
+    );
+}
+
+/// Vertices on curves are visited in every sweep, by the metric of the sweep. So alternating metrics, `edge` and searched
+/// goals go with sliding.
+#[test]
+fn vertices_slide_by_alternating_metrics_by_edge_and_toward_a_searched_goal() {
+    let mesh = worn();
+    let slide = Slide::default();
+    let (smoother, _) = sliding(&mesh, &slide);
+    let still = Smoother::new(&mesh).unwrap();
     let searched = Stopping::Goal(Goal { fraction: 0.95, desired: None });
+    let by = |scheme: &str| Options { scheme: scheme.parse().unwrap(), ..Options::default() };
     for options in [
-        Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() },
-        Options { scheme: Metric::Edge.into(), ..Options::default() },
+        by("imr+edge"),
+        by("rms+edge"),
+        by("edge"),
+        Options { method: Method::Relaxed(Relaxed::default()), ..by("imr+rms") },
         Options { stopping: searched, ..Options::default() },
     ] {
-        let error = smoother.run(&options).on(&Backend::Cpu).block().unwrap_err();
+        let base = options.scheme.base();
+        let label = format!("{} {:?}", options.scheme, options.stopping);
+        let outcome = run(&smoother, &options, &Backend::Cpu);
+        let f = |points: &[[f64; 2]]| smoother.f(base, points).unwrap();
         assert!(
-            matches!(
-                error,
-                SmoothError::Option(OptionError::Conflict { features: [Feature::Slide, _], .. })
-            ),
-            "{error}"
+            matches!(outcome.stop, Stop::Converged | Stop::Reached | Stop::HeldBack),
+            "{label}: {:?}",
+            outcome.stop
         );
+        assert!(outcome.slid.unwrap().moved > 0, "{label}");
+        let (before, after) = (f(&mesh.points), f(&outcome.points));
+        let fixed = f(&run(&still, &options, &Backend::Cpu).points);
+        assert!(
+            after < before && after < fixed * (1.0 + 1e-3),
+            "{label}: {before} {after}, {fixed}"
+        );
+        let misplaced =
+            slide.misplaced(smoother.topology(), &mesh.points, &outcome.points, Precision::Double);
+        assert!(misplaced.is_empty(), "{label}: {misplaced:?}");
+        if let Some(goal) = outcome.goal {
+            assert!(goal.best_fraction >= 0.95 && goal.desired < fixed, "{label}");
+        }
+    }
+}
+
+/// Makes a ring of 60 by 10 cells whose boundaries are turned against each other.
+fn twisted() -> Mesh {
+    let (around, rings) = (60_u32, 10_u32);
+    let at = |k: u32| {
+        let (column, ring) = (k % around, k / around);
+        let (share, turn) = (f64::from(ring) / 10.0, f64::from(column) / 60.0);
+        let (sin, cos) = (std::f64::consts::TAU * turn + 0.7 * share).sin_cos();
+        [(1.0 + share) * cos, (1.0 + share) * sin]
+    };
+    let cell = |k: u32| {
+        let (ring, next) = (k / around * around, (k + 1) % around);
+        let [a, b] = [k, ring + next];
+        [[a, a + around, b + around], [a, b + around, b]]
+    };
+    Mesh {
+        points: (0..around * (rings + 1)).map(at).collect(),
+        triangles: (0..around * rings).flat_map(cell).collect(),
+        fixed: Vec::new(),
+    }
+}
+
+/// Makes a channel of 60 by 12 cells with wavy walls, whose vertices are unevenly spaced.
+fn wavy() -> Mesh {
+    let mut mesh = support::lattice(60, 12);
+    let [width, height] =
+        [0, 1].map(|axis| mesh.points.iter().map(|point| point[axis]).fold(0.0, f64::max));
+    for point in &mut mesh.points {
+        let (x, y) = (point[0] / width, point[1] / height);
+        let x = x + 0.4 * (std::f64::consts::TAU * x).sin() / std::f64::consts::TAU;
+        *point = [5.0 * x, y * (1.0 + 0.2 * (6.0 * std::f64::consts::PI * x).sin())];
+    }
+    mesh
+}
+
+/// Vertices that slide are unknowns of the Newton steps of all vertices, so a run on curves takes few sweeps.
+#[test]
+fn runs_on_curves_take_few_sweeps() {
+    for mesh in [twisted(), wavy()] {
+        let (smoother, count) = sliding(&mesh, &Slide::default());
+        let options = Options { stopping: Stopping::Tolerance(1e-8), ..Options::default() };
+        let outcome = run(&smoother, &options, &Backend::Cpu);
+        assert_eq!(outcome.stop, Stop::Converged);
+        assert!(outcome.sweeps <= 40, "{} sweeps for {count} vertices", outcome.sweeps);
+        let f = history(&outcome, Metric::Imr);
+        assert!(f.windows(2).all(|pair| pair[1] <= pair[0]), "{f:?}");
     }
 }
 

@@ -28,6 +28,9 @@ pub(crate) struct Report {
     pub(crate) sweeps: u32,
     /// Number of sweeps corrected from coarser levels.
     pub(crate) corrections: u32,
+    /// Number of sweeps with a Newton step of all vertices, and of iterations in all of these steps.
+    pub(crate) newton_steps: u32,
+    pub(crate) newton_iterations: u32,
     /// Number of first sweeps computed in double precision on the CPU, because triangles were too flat, too small, or too
     /// stretched relative to their targets, for the GPU, or because moves or altitudes in degrees are bounded.
     pub(crate) opening_sweeps: u32,
@@ -184,8 +187,8 @@ pub(crate) struct SlideReport {
     /// Whether pairs are across weirs and not periodic.
     #[serde(skip)]
     pub(crate) has_weirs: bool,
-    /// Number of rounds of sweeps, each followed by sweeps along the lines.
-    pub(crate) rounds: u32,
+    /// Number of vertices that a bound stopped for the rest of the run.
+    pub(crate) frozen: usize,
     /// Largest distance between the lines of output and input, in units of the mesh.
     pub(crate) off: f64,
     /// Largest of these distances, as a share of the local edge length.
@@ -196,7 +199,7 @@ pub(crate) struct SlideReport {
 
 impl From<Slid> for SlideReport {
     fn from(slid: Slid) -> Self {
-        let Slid { vertices, moved, pairs, coincident, rounds, off, off_share, area } = slid;
+        let Slid { vertices, moved, pairs, coincident, frozen, off, off_share, area } = slid;
         let (ends, has_weirs, area_change) = (0, false, area);
         Self {
             vertices,
@@ -205,7 +208,7 @@ impl From<Slid> for SlideReport {
             pairs,
             has_weirs,
             coincident,
-            rounds,
+            frozen,
             off,
             off_share,
             area_change,

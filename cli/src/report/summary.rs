@@ -223,6 +223,11 @@ impl Report {
             1 => ", a pair at the same place together",
             n => &format!(", {n} pairs at the same place together"),
         };
+        let frozen = match slid.frozen {
+            0 => "",
+            1 => "; the bound on their distance from the lines of IN stopped one",
+            n => &format!("; the bound on their distance from the lines of IN stopped {n}"),
+        };
         let area = match 100.0 * area_change {
             change if change.abs() < 1e-9 => "stayed the same".to_owned(),
             change if change.abs() >= 0.005 => format!("changed by {change:+.2} %"),
@@ -239,7 +244,7 @@ impl Report {
             ),
         };
         Some(format!(
-            "{moved} of {vertices} vertices on lines slid along them{pairs}{coincident}{ends}; {lines}; the area of the mesh {area}"
+            "{moved} of {vertices} vertices on lines slid along them{pairs}{coincident}{ends}{frozen}; {lines}; the area of the mesh {area}"
         ))
     }
 
@@ -275,9 +280,18 @@ impl Report {
             1 => "1 sweep".to_owned(),
             n => format!("{n} sweeps"),
         };
-        let sweeps = match self.corrections {
-            0 => sweeps,
-            n => format!("{sweeps} ({n} corrected from coarser levels)"),
+        let newton = match self.newton_steps {
+            0 => None,
+            n => Some(format!("{n} with a Newton step")),
+        };
+        let corrected = match self.corrections {
+            0 => None,
+            n => Some(format!("{n} corrected from coarser levels")),
+        };
+        let with: Vec<String> = newton.into_iter().chain(corrected).collect();
+        let sweeps = match with.is_empty() {
+            true => sweeps,
+            false => format!("{sweeps} ({})", with.join(", ")),
         };
         let held = match self.held_back {
             1 => "1 vertex".to_owned(),

@@ -123,7 +123,6 @@ pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
             let [a, b] = features.map(|feature| flag(feature, args));
             let remedy = match features {
                 _ if features.contains(&Feature::TargetField) => " (--target-of vertex)",
-                _ if features.contains(&Feature::SearchedGoal) => " (--desired F)",
                 _ => "",
             };
             Some(format!("{a} does not go with {b}: {why}{remedy}"))
@@ -140,9 +139,8 @@ fn flag(feature: Feature, args: &SmoothArgs) -> String {
         Feature::UnevenScheme | Feature::UncorrectedScheme => format!("--scheme {}", args.scheme()),
         Feature::Multilevel => "--method multilevel".into(),
         Feature::FiniteDifferences => "--derivatives finite-difference".into(),
-        Feature::Goal | Feature::SearchedGoal if args.desired.is_none() => "--fraction".into(),
+        Feature::Goal if args.desired.is_none() => "--fraction".into(),
         Feature::Goal => "--desired".into(),
-        Feature::SearchedGoal => "--desired auto".into(),
         Feature::WorstGuard => "--guard worst".into(),
         Feature::MaxMove => "--max-move".into(),
         Feature::KeepAltitude => "--keep-altitude".into(),

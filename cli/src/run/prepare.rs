@@ -99,8 +99,8 @@ fn prepared<'a>(
     }
 }
 
-/// Sets targets and sliding vertices of a prepared mesh, and measures its quality. If no vertex is free, the CPU
-/// replaces `taken`.
+/// Sets targets and sliding vertices of a prepared mesh, and measures its quality. If vertices slide, the CPU replaces
+/// `taken`.
 pub(super) fn set_up<'a>(
     input: &Input<'a>,
     subject: Subject<'a>,
@@ -110,13 +110,6 @@ pub(super) fn set_up<'a>(
     let Subject { mut smoother, mended } = subject;
     let (request, file, mesh) = (input.request(), input.file, input.file.mesh());
     let surface = request.surface;
-    let taken = match smoother.topology().free_count() {
-        0 => OpenEngine::new(
-            Backend::Cpu,
-            Some("no vertex is free, and sliding is on the CPU".into()),
-        ),
-        _ => taken,
-    };
     let points = mended.map_or(&mesh.points, |mended| &mended.mesh.points);
     if surface == Surface::Sphere {
         smoother.project_from_sphere().map_err(|error| explain::mesh_error(file, &error))?;
@@ -148,6 +141,10 @@ pub(super) fn set_up<'a>(
         follow.remark(&vertices.remark);
         sliding = Some(vertices);
     }
+    let taken = match smoother.slides() {
+        true => OpenEngine::new(Backend::Cpu, Some("vertices slide on the CPU alone".into())),
+        false => taken,
+    };
     let before = Quality::on(surface, &mesh.points, smoother.topology())?;
     Ok(Ready { smoother, mended, taken, before, size_weight, sliding, at: Instant::now() })
 }

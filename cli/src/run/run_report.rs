@@ -57,6 +57,8 @@ pub(super) fn report(
         scheme: request.scheme().to_string(),
         sweeps: outcome.sweeps,
         corrections: outcome.corrections,
+        newton_steps: outcome.newton_steps,
+        newton_iterations: outcome.newton_iterations,
         opening_sweeps: outcome.opening_sweeps,
         closing_sweeps: outcome.closing_sweeps,
         levels_left_out: outcome.levels_left_out,

@@ -114,14 +114,7 @@ fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
             "--target keep-shape --target-of place --scheme edge",
             "--target-of place does not go with --scheme edge: each of its periods",
         ),
-        (
-            "--slide --scheme edge+imr",
-            "--slide does not go with --scheme edge+imr: each of its periods",
-        ),
-        ("--slide --scheme imr+imr", "--slide does not go with --scheme imr+imr"),
         ("--slide --derivatives finite-difference", "it needs analytic derivatives"),
-        ("--slide --fraction 0.9", "--slide does not go with --fraction"),
-        ("--slide --desired auto", "give the goal a value (--desired F)"),
         (
             "--keep-altitude --untangle",
             "--keep-altitude does not go with --untangle: inverted triangles",

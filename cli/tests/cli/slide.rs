@@ -196,8 +196,7 @@ fn vertices_that_slid_are_shown_in_the_page_and_in_pictures() {
 fn options_that_do_not_go_with_sliding_are_refused() {
     let folder = Folder::new(&[("in.mesh", &medit())]);
     for (options, told) in [
-        ("--slide --scheme edge+imr", "one metric other than edge"),
-        ("--slide --fraction 0.95", "give the goal a value"),
+        ("--slide --derivatives finite-difference", "analytic derivatives"),
         ("--slide --corner-angle 200", "from 0 to 180"),
         ("--slide --hausdorff 0", "above 0"),
         ("--hausdorff 1", "--slide"),

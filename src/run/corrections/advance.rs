@@ -75,6 +75,10 @@ impl Corrections {
             let objectives = match self.stage {
                 Stage::Before { until } => self.sweep_before(engine, history, until).await?,
                 Stage::Correcting(state) => self.sweep_and_correct(engine, history, state).await?,
+                Stage::Stepping { .. } => match self.sweep_and_step(engine, history).await? {
+                    Some(objectives) => objectives,
+                    None => self.correct_instead(engine, history).await?,
+                },
                 Stage::Without { .. } => self.sweep_without(engine).await?,
             };
             let before = self.sharpness;
@@ -129,10 +133,29 @@ impl Corrections {
                 self.alternated = done as u32;
             }
             self.attempts += 1;
+            if self.can_step {
+                self.stage = Stage::Stepping { left: None };
+                return Ok(objectives);
+            }
             self.begin_correcting(done, 1.0);
             self.lowered.extend(self.metric().is_smooth().then_some(f));
         }
         Ok(objectives)
+    }
+
+    /// Begins corrections on an engine that takes no Newton steps of all vertices, with a sweep and the first correction.
+    async fn correct_instead(
+        &mut self,
+        engine: &mut impl Engine,
+        history: &History,
+    ) -> Result<Objectives, GpuError> {
+        self.can_step = false;
+        self.begin_correcting(history.f().len() - 1, 1.0);
+        self.lowered.push(history.last());
+        match self.stage {
+            Stage::Correcting(state) => self.sweep_and_correct(engine, history, state).await,
+            _ => self.sweep_without(engine).await,
+        }
     }
 
     /// Sweeps once in the stage after the last correction.

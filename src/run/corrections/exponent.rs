@@ -54,7 +54,7 @@ impl Corrections {
     /// Returns whether the last sweep and its correction lowered the objective too little for the present exponent.
     pub(super) fn gains_little(&self, history: &History) -> bool {
         let of_stage = match self.stage {
-            Stage::Before { .. } => return false,
+            Stage::Before { .. } | Stage::Stepping { .. } => return false,
             Stage::Correcting(_) => &self.lowered[..],
             Stage::Without { since } => &history.f()[since..],
         };
@@ -70,7 +70,7 @@ impl Corrections {
         self.sharpness += 1;
         self.settled = false;
         match self.stage {
-            Stage::Before { .. } => {}
+            Stage::Before { .. } | Stage::Stepping { .. } => {}
             Stage::Correcting(Correcting { length, .. }) => self.begin_correcting(last, length),
             // The guard may accept corrections with the next exponent that it refuses with the present one.
             Stage::Without { .. } if self.has_levels => self.begin_correcting(last, 1.0),

@@ -8,6 +8,7 @@ mod record;
 mod reopening;
 mod slow_decay;
 mod state;
+mod stepping;
 mod words;
 
 pub(crate) use state::Corrections;

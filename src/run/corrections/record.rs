@@ -57,6 +57,9 @@ impl Corrections {
         let whole = history.rule();
         // Corrections may lower another objective than f, but the goal and the number of sweeps refer to f.
         let of_f = StopRule { tolerance: 0.0, ..whole }.judge(history.f(), 0, NO_ESTIMATE);
+        if let Stage::Stepping { left } = self.stage {
+            return self.judge_step(left, of_f, history);
+        }
         let rule = StopRule {
             target: whole.target.map(|_| f64::NEG_INFINITY),
             tolerance: self.tolerance_of_norm(whole.tolerance),
@@ -197,7 +200,7 @@ impl Corrections {
     /// extrapolates their decay. With corrections, a window of one sweep is enough, as corrections leave no slow modes.
     fn values_of_stage(&self, history: &History) -> (Vec<f64>, usize) {
         let (values, window) = match self.stage {
-            Stage::Before { .. } => (history.f(), NO_ESTIMATE),
+            Stage::Before { .. } | Stage::Stepping { .. } => (history.f(), NO_ESTIMATE),
             // A refused correction gains little, even if much is left to gain.
             Stage::Correcting(Correcting { refused: 1.., .. }) => (&self.lowered[..], NO_ESTIMATE),
             Stage::Correcting(_) => (&self.lowered[..], 1),

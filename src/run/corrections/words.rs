@@ -2,6 +2,7 @@
 
 use super::plan_steps::exponents;
 use super::state::{Correcting, Corrections, ESTIMATES, Stage};
+use crate::run::truncated::Tail;
 
 impl Corrections {
     /// Returns the state that determines how the run continues, as words for [`restore`](Self::restore).
@@ -12,6 +13,7 @@ impl Corrections {
                 (1, since, length, proposed, refused)
             }
             Stage::Without { since } => (2, since, 0.0, 0, 0),
+            Stage::Stepping { .. } => (3, 0, 0.0, 0, 0),
         };
         let counts = [self.attempts, self.taken, proposed, refused].map(u64::from);
         let levels = [self.built as u64, self.fitted as u64];
@@ -26,7 +28,8 @@ impl Corrections {
         words.extend(self.estimates.map(f64::to_bits));
         words.extend([self.alternated, self.sharpness].map(u64::from));
         words.extend(levels);
-        words.push(self.needs_double.into());
+        words.extend([self.needs_double, self.can_step].map(u64::from));
+        words.extend(self.tail.words());
         words.extend(self.lowered.iter().map(|f| f.to_bits()));
         words
     }
@@ -55,9 +58,17 @@ impl Corrections {
                 built,
                 fitted,
                 needs_double,
+                can_step,
+                least_ritz,
+                forcing,
+                idle,
+                is_exact,
+                agreed,
+                steps,
+                iterations,
             ],
             lowered,
-        )) = rest.split_first_chunk::<{ 13 + ESTIMATES }>()
+        )) = rest.split_first_chunk::<{ 21 + ESTIMATES }>()
         else {
             return false;
         };
@@ -103,6 +114,7 @@ impl Corrections {
                 Stage::Correcting(Correcting { since, length, proposed, refused })
             }
             2 if since < evaluations => Stage::Without { since },
+            3 if can_step != 0 && self.can_step => Stage::Stepping { left: None },
             _ => return false,
         };
         (self.attempts, self.alternated, self.taken) = (attempts, alternated, taken);
@@ -111,6 +123,13 @@ impl Corrections {
         (self.was_left_out, self.has_levels) = (left_out != 0, has_levels);
         (self.was_reopened, self.from_end) = (was_reopened != 0, from_end != 0);
         self.needs_double = needs_double != 0;
+        self.can_step &= can_step != 0;
+        let Some(tail) =
+            Tail::of_words([least_ritz, forcing, idle, is_exact, agreed, steps, iterations])
+        else {
+            return false;
+        };
+        self.tail = tail;
         if in_plane != 0 {
             self.problem.set_levels_in_plane();
         }

@@ -76,6 +76,14 @@ impl Aggregates {
         self
     }
 
+    /// Makes an aggregate of its own of each unknown without an aggregate.
+    pub(crate) fn add_lone(&mut self) {
+        for group in self.of.iter_mut().filter(|group| **group == NONE) {
+            *group = self.count as u32;
+            self.count += 1;
+        }
+    }
+
     /// Returns the members of all aggregates as compressed rows. The first list has the offset of each aggregate in the
     /// second list, followed by the length of the second list.
     pub(crate) async fn members(&self) -> (Vec<u32>, Vec<u32>) {
@@ -144,8 +152,10 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_without_neighbors_is_in_no_aggregate() {
-        let groups = path(1);
-        assert_eq!((groups.of, groups.count), (vec![NONE], 0));
+    fn a_vertex_without_neighbors_is_in_no_aggregate_or_alone_in_one() {
+        let mut groups = path(1);
+        assert_eq!((&groups.of[..], groups.count), (&[NONE][..], 0));
+        groups.add_lone();
+        assert_eq!((groups.of, groups.count), (vec![0], 1));
     }
 }

@@ -6,6 +6,8 @@ use crate::run::multilevel::sparse::Sparse;
 ///
 /// If rounding has made a pivot small or negative, the row and the column of its unknown are zero in the inverse.
 pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
+    /// Share of its diagonal entry below which a pivot is small.
+    const LEAST_PIVOT: f64 = 1e-6;
     let n = matrix.rows();
     let mut lower = vec![0.0f64; n * n];
     for row in 0..n {
@@ -13,11 +15,21 @@ pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
             lower[row * n + column] = f64::from(value);
         }
     }
+    let mut scratch = vec![0.0; n * n];
+    invert(&mut lower, &mut scratch, n, LEAST_PIVOT);
+    lower.into_iter().map(|entry| entry as f32).collect()
+}
+
+/// Inverts a symmetric positive definite matrix of `n` rows in place, in row-major order. `columns` is scratch memory of
+/// equal length. A pivot is small if it is at most `least_pivot` times its diagonal entry; the row and the column of its
+/// unknown are then zero in the inverse.
+#[inline]
+pub(crate) fn invert(lower: &mut [f64], columns: &mut [f64], n: usize, least_pivot: f64) {
     // Computes the Cholesky factor in place.
     for j in 0..n {
         let diagonal = lower[j * n + j];
         let square = diagonal - (0..j).map(|k| lower[j * n + k].powi(2)).sum::<f64>();
-        let pivot = if square > 1e-6 * diagonal { square.sqrt() } else { f64::INFINITY };
+        let pivot = if square > least_pivot * diagonal { square.sqrt() } else { f64::INFINITY };
         lower[j * n + j] = pivot;
         for i in j + 1..n {
             let (upper_rows, row_i) = lower.split_at_mut(i * n);
@@ -27,7 +39,7 @@ pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
         }
     }
     // The inverse L⁻¹ of the factor, in column-major order. The inverse of the matrix is L⁻ᵀ L⁻¹.
-    let mut columns = vec![0.0f64; n * n];
+    columns.fill(0.0);
     for c in 0..n {
         columns[c * n + c] = 1.0 / lower[c * n + c];
         for r in c + 1..n {
@@ -36,13 +48,12 @@ pub(crate) fn inverse(matrix: &Sparse) -> Vec<f32> {
             columns[c * n + r] = -dot / lower[r * n + r];
         }
     }
-    let entry = |at: usize| {
+    for (at, entry) in lower.iter_mut().enumerate() {
         let (i, j) = (at / n, at % n);
         let from = i.max(j);
         let (a, b) = (&columns[i * n + from..(i + 1) * n], &columns[j * n + from..(j + 1) * n]);
-        a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() as f32
-    };
-    (0..n * n).map(entry).collect()
+        *entry = a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    }
 }
 
 #[cfg(test)]

@@ -16,7 +16,8 @@ mod hierarchy;
 pub(crate) mod search;
 mod sparse;
 
-pub(crate) use aggregate::NONE;
+pub(crate) use aggregate::{Aggregates, NONE};
+pub(crate) use dense::invert;
 pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level, SMOOTHING};
 pub(crate) use search::{MIN_FIRST_LENGTH, Search};
 pub(crate) use sparse::Sparse;

@@ -55,6 +55,7 @@ struct Row {
     waiting_seconds: f64,
     sweeps: u32,
     corrections: u32,
+    newton_steps: u32,
     /// f by the first metric, before and after.
     f: [f64; 2],
     /// The work given to a device; zeros for the CPU.
@@ -232,6 +233,7 @@ fn row(
         waiting_seconds: seconds(|work| work.waiting),
         sweeps: run.outcome.sweeps,
         corrections: run.outcome.corrections,
+        newton_steps: run.outcome.newton_steps,
         f: [f(0), f(run.outcome.history.len() - 1)],
         dispatches: count(|work| work.dispatches),
         submissions: count(|work| work.submissions),

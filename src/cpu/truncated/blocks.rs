@@ -1,0 +1,271 @@
+//! The vertices that move and their triangles in blocks, from the connectivity alone.
+//!
+//! Vertices are numbered aggregate by aggregate, and a block has the vertices of successive aggregates. A triangle belongs
+//! to the block of its first free corner. Its other corners may belong to other blocks, so each block has a local list of
+//! vertices: its own, those of other blocks, and fixed ones. Sums over triangles are formed in the local lists, and the
+//! own vertices of a block then receive the sums of other blocks in a fixed order. So the sums have equal bits on any
+//! number of threads.
+
+use std::ops::Range;
+
+use super::movers::Movers;
+use crate::layout::Problem;
+use crate::parallel::paced;
+use crate::run::multilevel::{Aggregates, NONE};
+
+/// Number of vertices from which on a block ends. The vectors of a block then fit the first cache of a processor.
+const VERTICES: u32 = 2048;
+/// Largest product of the numbers of neighbors of two vertices that may share an aggregate as neighbors. A hub with all
+/// its neighbors would be an aggregate of unlike vertices.
+pub(super) const MOST_DEGREES: usize = 144;
+
+/// The blocks of a mesh.
+pub(super) struct Blocks {
+    /// Index in the problem of each vertex that moves, aggregate by aggregate.
+    pub(super) order: Vec<u32>,
+    /// Index of the first vertex of each aggregate, and the number of vertices at the end.
+    pub(super) group_start: Vec<u32>,
+    /// Index in the order of each sliding vertex.
+    pub(super) slides_at: Vec<u32>,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// The places of the vertices of a problem in the order of the blocks.
+struct Ranks<'a> {
+    movers: &'a Movers<'a>,
+    rank: Vec<u32>,
+}
+
+impl Ranks<'_> {
+    /// Returns the place of a vertex, [`NONE`] for a fixed vertex.
+    fn of(&self, vertex: u32) -> u32 {
+        self.rank.get(self.movers.of(vertex) as usize).copied().unwrap_or(NONE)
+    }
+}
+
+/// Vertices and triangles that one task handles.
+pub(super) struct Block {
+    /// The own vertices, in the order of [`Blocks::order`].
+    pub(super) own: Range<usize>,
+    /// The aggregates of the own vertices.
+    pub(super) groups: Range<usize>,
+    /// The local list of vertices: index in the problem of the own vertices, of those of other blocks, and of fixed ones.
+    pub(super) vertices: Vec<u32>,
+    /// Index of each vertex of other blocks in the order of [`Blocks::order`].
+    pub(super) others: Vec<u32>,
+    /// For each vertex of the local list, the index among the sliding vertices, or [`NONE`]. Empty if no vertex of the list
+    /// slides.
+    pub(super) slides: Vec<u32>,
+    /// The corners of each triangle, counter-clockwise, as indices of the local list.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The vertices of this block in the local lists of other blocks.
+    pub(super) received: Vec<Received>,
+    /// Range of the local list in the local lists of all blocks.
+    pub(super) locals: Range<usize>,
+}
+
+/// A vertex of a block in the local list of another block.
+pub(super) struct Received {
+    /// Index in the local lists of all blocks.
+    pub(super) from: u32,
+    /// Index among the own vertices of the block.
+    pub(super) to: u32,
+}
+
+impl Blocks {
+    pub(super) async fn new(problem: &Problem, movers: &Movers<'_>) -> Self {
+        let count = movers.count();
+        let degree = |mover: usize| movers.neighbors(mover).len();
+        let neighbors = |mover: usize| {
+            let is_near = move |&other: &u32| {
+                other != NONE && degree(mover) * degree(other as usize) <= MOST_DEGREES
+            };
+            movers.neighbors(mover).iter().map(|&v| movers.of(v)).filter(is_near)
+        };
+        let mut aggregates = Aggregates::new(count, neighbors).await;
+        aggregates.add_lone();
+        let (group_start, mut order) = aggregates.members().await;
+        let mut rank = vec![NONE; count];
+        for (new, &mover) in (0..).zip(&order) {
+            rank[mover as usize] = new;
+        }
+        let slides_at = rank[count - movers.sliding()..].to_vec();
+        order.iter_mut().for_each(|mover| *mover = movers.vertex(*mover));
+        let ranks = Ranks { movers, rank };
+        let ranges = ranges(&group_start);
+        let mut block_of = Vec::with_capacity(count);
+        for (block, (own, _)) in (0..).zip(&ranges) {
+            block_of.extend(own.clone().map(|_| block));
+        }
+        let lists = triangles_of_blocks(problem, &ranks, &block_of, ranges.len());
+        let made = paced::map_parts(ranges.into_iter().zip(lists), |_, ((own, groups), list)| {
+            Block::new(own, groups, &order, &ranks, list)
+        });
+        let mut blocks = made.await;
+        receive(&mut blocks, &block_of);
+        Self { order, group_start, slides_at, blocks }
+    }
+
+    /// Returns the length of the local lists of all blocks together.
+    pub(super) fn locals(&self) -> usize {
+        self.blocks.last().map_or(0, |block| block.locals.end)
+    }
+
+    /// Returns the number of aggregates.
+    pub(super) fn groups(&self) -> usize {
+        self.group_start.len() - 1
+    }
+
+    /// Splits a list over the vertices at the ends of the blocks.
+    pub(super) fn split<'a, X>(&'a self, list: &'a mut [X]) -> impl Iterator<Item = &'a mut [X]> {
+        split(list, self.blocks.iter().map(|block| block.own.len()))
+    }
+
+    /// Splits a list over the local lists at the ends of the blocks.
+    pub(super) fn split_locals<'a, X>(
+        &'a self,
+        list: &'a mut [X],
+    ) -> impl Iterator<Item = &'a mut [X]> {
+        split(list, self.blocks.iter().map(|block| block.locals.len()))
+    }
+
+    /// Splits a list over the aggregates at the ends of the blocks.
+    pub(super) fn split_groups<'a, X>(
+        &'a self,
+        list: &'a mut [X],
+    ) -> impl Iterator<Item = &'a mut [X]> {
+        split(list, self.blocks.iter().map(|block| block.groups.len()))
+    }
+}
+
+/// Splits a list into parts of the given lengths, which must not exceed the list.
+pub(super) fn split<X>(
+    mut list: &mut [X],
+    lengths: impl Iterator<Item = usize>,
+) -> impl Iterator<Item = &mut [X]> {
+    lengths.map(move |length| {
+        let (part, rest) = std::mem::take(&mut list).split_at_mut(length);
+        list = rest;
+        part
+    })
+}
+
+/// Returns the vertices and the aggregates of each block.
+fn ranges(group_start: &[u32]) -> Vec<(Range<usize>, Range<usize>)> {
+    let (mut ranges, mut first) = (Vec::new(), 0);
+    for group in 1..group_start.len() {
+        let (from, to) = (group_start[first], group_start[group]);
+        if to - from >= VERTICES || group + 1 == group_start.len() {
+            ranges.push((from as usize..to as usize, first..group));
+            first = group;
+        }
+    }
+    ranges
+}
+
+/// Returns the triangles of each block with a free corner, by their vertices in the problem.
+fn triangles_of_blocks(
+    problem: &Problem,
+    ranks: &Ranks<'_>,
+    block_of: &[u32],
+    count: usize,
+) -> Vec<Vec<[u32; 3]>> {
+    let mut lists = vec![Vec::new(); count];
+    for triangle in problem.triangles() {
+        let [a, b, c] = triangle.map(|v| ranks.of(v));
+        if let Some(&block) = block_of.get(a.min(b).min(c) as usize) {
+            lists[block as usize].push(*triangle);
+        }
+    }
+    lists
+}
+
+impl Block {
+    fn new(
+        own: Range<usize>,
+        groups: Range<usize>,
+        order: &[u32],
+        ranks: &Ranks<'_>,
+        mut triangles: Vec<[u32; 3]>,
+    ) -> Self {
+        // A vertex that moves has its rank as its key, and a fixed vertex a number above all ranks.
+        let (free, sliding) = (ranks.rank.len() as u32, ranks.movers.sliding() as u32);
+        let key = |v: u32| match ranks.of(v) {
+            NONE => v + sliding,
+            rank => rank,
+        };
+        let is_own = |key: u32| own.contains(&(key as usize));
+        let keys = triangles.as_flattened().iter().map(|&v| key(v));
+        let mut beyond: Vec<u32> = keys.filter(|&key| !is_own(key)).collect();
+        beyond.sort_unstable();
+        beyond.dedup();
+        let others = beyond[..beyond.partition_point(|&key| key < free)].to_vec();
+        for v in triangles.as_flattened_mut() {
+            let key = key(*v);
+            *v = match is_own(key) {
+                true => key - own.start as u32,
+                false => (own.len() + beyond.partition_point(|&k| k < key)) as u32,
+            };
+        }
+        let mut vertices = order[own.clone()].to_vec();
+        let vertex = |&key: &u32| order.get(key as usize).copied().unwrap_or_else(|| key - sliding);
+        vertices.extend(beyond.iter().map(vertex));
+        let slide = |&v: &u32| ranks.movers.slide(v);
+        let mut slides: Vec<u32> = Vec::new();
+        if sliding > 0 && vertices.iter().any(|v| slide(v) != NONE) {
+            slides.extend(vertices.iter().map(slide));
+        }
+        let (received, locals) = (Vec::new(), 0..0);
+        Self { own, groups, vertices, others, slides, triangles, received, locals }
+    }
+
+    /// Returns the index among the sliding vertices of a vertex of the local list, [`NONE`] if the vertex does not slide.
+    #[inline(always)]
+    pub(super) fn slide(&self, vertex: u32) -> u32 {
+        self.slides.get(vertex as usize).copied().unwrap_or(NONE)
+    }
+
+    /// Returns whether a corner of a triangle slides.
+    #[inline(always)]
+    pub(super) fn has_sliding_corner(&self, triangle: &[u32; 3]) -> bool {
+        !self.slides.is_empty() && triangle.iter().any(|&v| self.slide(v) != NONE)
+    }
+
+    /// Returns the vertices of other blocks in the local list.
+    pub(super) fn foreign(&self) -> Range<usize> {
+        self.own.len()..self.own.len() + self.others.len()
+    }
+
+    /// Adds the sums that other blocks have formed for the vertices of this block to `own`.
+    #[inline(always)]
+    pub(super) fn receive<X: Copy + std::ops::AddAssign, const N: usize>(
+        &self,
+        own: &mut [[X; N]],
+        sums: &[[X; N]],
+    ) {
+        for Received { from, to } in &self.received {
+            let sum = &sums[*from as usize];
+            for (own, sum) in own[*to as usize].iter_mut().zip(sum) {
+                *own += *sum;
+            }
+        }
+    }
+}
+
+/// Lists the vertices that each block receives from the local lists of others, in the order of these lists.
+fn receive(blocks: &mut [Block], block_of: &[u32]) {
+    let mut start = 0;
+    for at in 0..blocks.len() {
+        let foreign = blocks[at].foreign();
+        let others = std::mem::take(&mut blocks[at].others);
+        for (k, &vertex) in foreign.zip(&others) {
+            let owner = &mut blocks[block_of[vertex as usize] as usize];
+            let to = vertex - owner.own.start as u32;
+            owner.received.push(Received { from: (start + k) as u32, to });
+        }
+        let block = &mut blocks[at];
+        block.others = others;
+        block.locals = start..start + block.vertices.len();
+        start = block.locals.end;
+    }
+}

@@ -1,0 +1,64 @@
+//! The Newton steps of all vertices at the end of a run, and the return to sweeps if the steps stay short.
+
+use super::plan_steps::OMEGA_BETWEEN;
+use super::state::{Corrections, Stage};
+use crate::error::GpuError;
+use crate::run::engine::Engine;
+use crate::run::history::History;
+use crate::run::objectives::Objectives;
+use crate::run::stop::{MIN_SCALE, NOISE, Stop};
+use crate::run::truncated::Tail;
+
+/// Number of sweeps alone, after steps that stay short, before corrections begin.
+const SWEEPS_AFTER: usize = 5;
+
+impl Corrections {
+    /// Sweeps once, and takes a Newton step of all vertices. `None`, and nothing happens, on an engine that takes none.
+    pub(super) async fn sweep_and_step(
+        &mut self,
+        engine: &mut impl Engine,
+        history: &History,
+    ) -> Result<Option<Objectives>, GpuError> {
+        let request = self.tail.request(history.rule().tolerance);
+        let Some(step) = engine.sweep_and_step(&self.step(OMEGA_BETWEEN), &request).await? else {
+            return Ok(None);
+        };
+        let f = step.excess + self.metric().ideal_squared();
+        let tolerance = history.rule().tolerance;
+        let (left, is_whole) = self.tail.record(&step, f.max(MIN_SCALE), tolerance);
+        let above = [history.last(), f].map(|f| f - self.least_objective());
+        self.stage = match self.tail.is_stuck(&step, is_whole, above) {
+            true => {
+                self.can_step = false;
+                Stage::Before { until: history.f().len() + SWEEPS_AFTER }
+            }
+            false => Stage::Stepping { left },
+        };
+        if self.plan.track_all || !self.plan.is_monotone() {
+            return Ok(Some(engine.objectives().await?));
+        }
+        let mut objectives = Objectives::empty();
+        objectives.set(self.metric(), f);
+        Ok(Some(objectives))
+    }
+
+    /// Applies the stop rule of a run that takes Newton steps: the run has converged once the gain that remains is within
+    /// the tolerance. `of_f` is the reason for which f or the number of sweeps ends the run.
+    pub(super) fn judge_step(&self, left: Option<f64>, of_f: Option<Stop>, history: &mut History) {
+        let rule = history.rule();
+        let scale = history.last().max(MIN_SCALE);
+        let at_most = ((history.last() - self.least_objective()) / scale).max(NOISE);
+        let at_most = Some(at_most).filter(|left| *left <= rule.tolerance);
+        let remaining = left.into_iter().chain(at_most).reduce(f64::min);
+        let is_within = |limit: f64| remaining.is_some_and(|left| left <= limit);
+        let end = match rule.target {
+            _ if rule.tolerance > 0.0 && is_within(Tail::tolerance(rule.tolerance)) => {
+                Some(Stop::Converged)
+            }
+            Some(_) if is_within(NOISE) => Some(Stop::Stalled),
+            _ => None,
+        };
+        let stop = if of_f == Some(Stop::Reached) { of_f } else { end.or(of_f) };
+        history.end(stop, remaining);
+    }
+}
