@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::along::{Along, broken, nearest};
-use crate::cpu::bounded::Tangents;
+use crate::cpu::disc_tangents::DiscTangents;
 use crate::cpu::objective::{mean_excess, mean_excess_along, mean_model};
 use crate::cpu::secants::{Levels, Secants, dot};
 use crate::cpu::truncated::Truncated;
@@ -46,8 +46,8 @@ pub(crate) struct CpuEngine {
     truncated: Option<Truncated>,
     hierarchy: Option<Hierarchy>,
     gradient: Vec<Vec2>,
-    /// Tangents of discs along which the last correction moves vertices.
-    tangents: Tangents,
+    /// DiscTangents of discs along which the last correction moves vertices.
+    tangents: DiscTangents,
     /// The last correction: a displacement of each free vertex at step length 1.
     direction: Vec<Vec2>,
     secants: Option<Secants>,
@@ -87,7 +87,7 @@ impl CpuEngine {
             truncated: None,
             hierarchy: None,
             gradient: Vec::new(),
-            tangents: Tangents::default(),
+            tangents: DiscTangents::default(),
             direction: Vec::new(),
             secants: None,
         }
@@ -180,7 +180,7 @@ impl CpuEngine {
 async fn correction(
     hierarchy: Option<&Hierarchy>,
     problem: &Problem,
-    tangents: &Tangents,
+    tangents: &DiscTangents,
     gradient: &[Vec2],
 ) -> Vec<Vec2> {
     let mut correction = match hierarchy {
@@ -200,7 +200,7 @@ async fn correction(
 struct Corrector<'a> {
     hierarchy: Option<&'a Hierarchy>,
     problem: &'a Problem,
-    tangents: &'a Tangents,
+    tangents: &'a DiscTangents,
 }
 
 impl Levels for Corrector<'_> {
@@ -301,7 +301,7 @@ impl Engine for CpuEngine {
         (self.step.sharpness, self.step.penalty_guard) = (step.sharpness, step.penalty_guard);
         let Self { base, problem, positions, gradient, tangents, secants, .. } = self;
         sweep::gradient(*base, problem, positions, step.smoothing(), gradient).await;
-        *tangents = Tangents::at(problem, positions, gradient).await;
+        *tangents = DiscTangents::at(problem, positions, gradient).await;
         tangents.project(gradient);
         // The new direction is allocated while the correction is computed, so the previous one is freed first.
         self.direction = Vec::new();

@@ -1,8 +1,8 @@
 //! The CPU engine: all cores, in double precision, four vertices at a time.
 
 mod along;
-mod bounded;
 mod differences;
+mod disc_tangents;
 mod engine;
 mod newton;
 mod objective;

@@ -3,30 +3,40 @@
 use fearless_simd::prelude::*;
 
 use crate::cpu::differences;
+use crate::cpu::within::{LaneBounds, Within};
 use crate::metric::{Dual, Formulas, Properties};
 use crate::options::Derivatives;
 use crate::patch::lanes::{Lanes, Mask, Points};
 use crate::patch::{Direction, MetricObjective, Objective, Rings, SearchRule, newton_step};
 use crate::run::{SweepParams, line_search};
 
-/// Visits four vertices at `at`, and returns their new positions.
+/// Visits four vertices at `at` within their bounds, and returns their new positions. Only copies of the code for rings
+/// with maps know bounds.
 #[inline(always)]
-pub(crate) fn visit<S: Simd, const MAPPED: bool>(
+pub(crate) fn visit<S: Simd, const GENERAL: bool>(
     formulas: impl Formulas,
-    rings: &Rings<S, MAPPED>,
+    rings: &Rings<S, GENERAL>,
     mut at: Points<S>,
+    bounds: Option<LaneBounds<S>>,
     step: &SweepParams,
 ) -> Points<S> {
     let mut going = Mask::splat(at[0].simd, true);
     let (smoothing, shape_guard) = (step.smoothing(), step.shape_guard);
-    let objective = SweepObjective {
-        metric: MetricObjective { patch: rings, formulas, smoothing, shape_guard },
-        derivatives: step.derivatives,
-    };
-    let rule = rule_of(formulas.metric().properties(), step);
+    let metric = MetricObjective { patch: rings, formulas, smoothing, shape_guard };
+    let objective = SweepObjective { metric, derivatives: step.derivatives };
+    let mut rule = rule_of(formulas.metric().properties(), step);
+    if GENERAL && bounds.is_some() {
+        // A projected step need not end at the least value of a quadratic metric.
+        rule.sufficient_decrease = SearchRule::SWEEP.sufficient_decrease;
+    }
     for _ in 0..step.newton_steps {
         let from = at;
-        (at, going) = newton_step(&objective, at, going, &rule);
+        (at, going) = match GENERAL {
+            true => {
+                newton_step(&Within { objective: &objective, rings, at, bounds }, at, going, &rule)
+            }
+            false => newton_step(&objective, at, going, &rule),
+        };
         if step.newton_steps > 1 && step.derivatives == Derivatives::Analytic {
             going &= !settled(rings, from, at);
         }
@@ -35,11 +45,6 @@ pub(crate) fn visit<S: Simd, const MAPPED: bool>(
         }
     }
     at
-}
-
-/// Returns the line search of a visit by `step`.
-pub(super) fn search_rule(step: &SweepParams) -> SearchRule {
-    rule_of(step.metric.properties(), step)
 }
 
 /// Returns the line search of a visit by `step`, given the properties of its metric.
@@ -59,7 +64,7 @@ fn rule_of(properties: &Properties, step: &SweepParams) -> SearchRule {
 
 /// Returns the lanes whose step was so short that the visit ends; see [`line_search::SETTLED`].
 #[inline(always)]
-pub(super) fn settled<S: Simd, const MAPPED: bool>(
+fn settled<S: Simd, const MAPPED: bool>(
     rings: &Rings<S, MAPPED>,
     from: Points<S>,
     to: Points<S>,
@@ -70,9 +75,9 @@ pub(super) fn settled<S: Simd, const MAPPED: bool>(
 }
 
 /// The objective of a sweep, differentiated by formulas or by finite differences.
-pub(super) struct SweepObjective<'a, P, F> {
-    pub(super) metric: MetricObjective<'a, P, F>,
-    pub(super) derivatives: Derivatives,
+struct SweepObjective<'a, P, F> {
+    metric: MetricObjective<'a, P, F>,
+    derivatives: Derivatives,
 }
 
 impl<S: Simd, const MAPPED: bool, F: Formulas> Objective<Lanes<S>>

@@ -50,7 +50,7 @@ async fn mean(
     positions: &[DVec2],
 ) -> f64 {
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(problem.targets(), metric, simd, formulas, MAPPED => {
+        with_lanes!(problem.targets(), false, metric, simd, formulas, MAPPED => {
             excess::<_, MAPPED>(simd, formulas, smoothing, problem, positions, chunk)
         })
     };
@@ -70,7 +70,7 @@ pub(crate) async fn mean_excess_along(
         return mean_excess_within(step, problem, along).await;
     }
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(problem.targets(), step.metric, simd, formulas, MAPPED => {
+        with_lanes!(problem.targets(), false, step.metric, simd, formulas, MAPPED => {
             excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
         })
     };

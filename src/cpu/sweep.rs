@@ -3,7 +3,8 @@
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
-use crate::cpu::{bounded, newton};
+use crate::cpu::newton;
+use crate::cpu::within::LaneBounds;
 use crate::layout::{DEGREE_BLOCK, Problem};
 use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
@@ -64,26 +65,12 @@ pub(crate) async fn sweep(
         moved.resize(color.len(), DVec2::ZERO);
         // Vertices of equal color are not neighbors, so no visit reads a position that another visit of the color
         // changes.
-        visit_color(problem, positions, first, step, moved).await;
+        visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await;
         let moved = &*moved;
         paced::for_each_chunk(&mut positions[first..][..color.len()], COPY, |at, to| {
             to.copy_from_slice(&moved[at..][..to.len()]);
         })
         .await;
-    }
-}
-
-/// Writes the new positions of the vertices from `first` on, all of one color, to `moved`.
-async fn visit_color(
-    problem: &Problem,
-    positions: &[DVec2],
-    first: usize,
-    step: &SweepParams,
-    moved: &mut [DVec2],
-) {
-    match problem.is_bounded() {
-        true => bounded::visit(problem, positions, first, step, moved).await,
-        false => visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await,
     }
 }
 
@@ -151,7 +138,7 @@ pub(crate) async fn held_back(problem: &Problem, positions: &[DVec2], step: &Swe
         let first = color.start as usize;
         for (moved, step) in [(&mut guarded, step), (&mut unguarded, &free)] {
             moved.resize(color.len(), DVec2::ZERO);
-            visit_color(problem, positions, first, step, moved).await;
+            visit(problem, positions, first, step, VertexQuantity::Gradient, moved).await;
         }
         let is_held = |&(v, (kept, wanted)): &(u32, (&DVec2, &DVec2))| {
             let edge = positions[problem.ring_of(v)[0] as usize] - positions[v as usize];
@@ -174,8 +161,9 @@ async fn visit<T: VisitOutput>(
 ) {
     paced::for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
-        with_lanes!(problem.maps(), step.metric, simd, formulas, MAPPED => {
-            visit_all::<_, _, MAPPED>(simd, formulas, problem, positions, first, step, sought, found);
+        let bounded = T::STEPS && problem.is_bounded();
+        with_lanes!(problem.maps(), bounded, step.metric, simd, formulas, GENERAL => {
+            visit_all::<_, _, GENERAL>(simd, formulas, problem, positions, first, step, sought, found);
         });
     })
     .await;
@@ -184,7 +172,7 @@ async fn visit<T: VisitOutput>(
 /// Visits the vertices from `first` on, and writes their new positions, or the quantity `sought`, to `found`.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
+fn visit_all<S: Simd, T: VisitOutput, const GENERAL: bool>(
     simd: S,
     formulas: impl Formulas,
     problem: &Problem,
@@ -199,10 +187,13 @@ fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
     while done < found.len() {
         let (vertices, count) = batch_at(problem, first + done, found.len() - done);
         let degree = problem.ring_of(vertices[0]).len();
-        let rings = Rings::<S, MAPPED>::gather(simd, problem, positions, vertices, &mut scratch);
+        let rings = Rings::<S, GENERAL>::gather(simd, problem, positions, vertices, &mut scratch);
         let at = points(simd, positions, vertices);
         let [x, y] = match T::STEPS {
-            true => newton::visit(formulas, &rings, at, step),
+            true => {
+                let bounds = GENERAL.then(|| LaneBounds::gather(simd, problem, vertices)).flatten();
+                newton::visit(formulas, &rings, at, bounds, step)
+            }
             false => {
                 let (smoothing, shape_guard) = (step.smoothing(), f64::INFINITY);
                 let objective = MetricObjective { patch: &rings, formulas, smoothing, shape_guard };
@@ -211,7 +202,7 @@ fn visit_all<S: Simd, T: VisitOutput, const MAPPED: bool>(
                     VertexQuantity::Gradient => sum.gradient,
                     VertexQuantity::StiffnessRoot => {
                         let sum = match rings.inverse_map() {
-                            Some(inverse) if MAPPED && !problem.are_levels_in_plane() => {
+                            Some(inverse) if GENERAL && !problem.are_levels_in_plane() => {
                                 inverse.shape().pull_back(sum)
                             }
                             _ => sum,

@@ -9,11 +9,11 @@ use crate::patch::lanes::{LANES, Lanes, Mask, Points, numbers, points};
 use crate::patch::numbers::Numbers;
 use crate::patch::{AT_DISC, Circle, Direction, GROWTH, MIN_CIRCLE_CURVATURE, Objective, Rings};
 
-/// The bounds of four free vertices.
+/// The bounds of four free vertices of a problem with bounds.
 #[derive(Clone, Copy)]
 pub(super) struct LaneBounds<S: Simd> {
     coordinates: MeshCoordinates,
-    /// Center of the disc of each vertex in coordinates of the mesh, and its radius; infinite without discs.
+    /// Center of the disc of each vertex in coordinates of the mesh, and its radius, infinite without discs.
     center: Points<S>,
     radius: Lanes<S>,
     /// Lower limit of altitudes, 0 for no limit.
@@ -21,8 +21,12 @@ pub(super) struct LaneBounds<S: Simd> {
 }
 
 impl<S: Simd> LaneBounds<S> {
+    /// Returns the bounds of four vertices. `None` if the problem has none.
     #[inline(always)]
-    pub(super) fn gather(simd: S, problem: &Problem, vertices: [u32; LANES]) -> Self {
+    pub(super) fn gather(simd: S, problem: &Problem, vertices: [u32; LANES]) -> Option<Self> {
+        if !problem.is_bounded() {
+            return None;
+        }
         let coordinates = problem.coordinates();
         let center = points(simd, problem.positions(), vertices);
         let radius = match problem.radii() {
@@ -30,7 +34,21 @@ impl<S: Simd> LaneBounds<S> {
             None => Lanes::splat(simd, f64::INFINITY),
         };
         let center = in_mesh(coordinates, center);
-        Self { coordinates, center, radius, floor: problem.floor() }
+        Some(Self { coordinates, center, radius, floor: problem.floor() })
+    }
+
+    /// Does the work of [`Within::point`] for vertices that move in a projection, lane by lane.
+    fn projected_point(&self, on_line: Points<S>) -> Points<S> {
+        let &Self { coordinates, center, radius, .. } = self;
+        let mut found = on_line;
+        for lane in 0..LANES {
+            let center = DVec2::new(center[0][lane], center[1][lane]);
+            let circle = Circle { center, radius: radius[lane] };
+            let to = DVec2::new(on_line[0][lane], on_line[1][lane]);
+            let nearest = circle.nearest_position(coordinates, to);
+            (found[0][lane], found[1][lane]) = (nearest.x, nearest.y);
+        }
+        found
     }
 }
 
@@ -54,21 +72,21 @@ fn each<S: Simd>(points: Points<S>, of: impl Fn(DVec2) -> DVec2) -> Points<S> {
 }
 
 /// The objective of vertices at `at` that may leave neither their discs nor lower a triangle below the least altitude.
-/// Trials beyond a disc end at the nearest point of the disc. Steps of vertices at the circle of their disc that would lead
+/// Without bounds, the objective is unchanged. Trials beyond a disc end at the nearest point of the disc. Steps of vertices at the circle of their disc that would lead
 /// outward are Newton steps along the circle.
-pub(super) struct Within<'a, S: Simd, O> {
-    pub(super) objective: O,
-    pub(super) rings: &'a Rings<'a, S, true>,
+pub(super) struct Within<'a, S: Simd, O, const MAPPED: bool> {
+    pub(super) objective: &'a O,
+    pub(super) rings: &'a Rings<'a, S, MAPPED>,
     pub(super) at: Points<S>,
-    pub(super) bounds: LaneBounds<S>,
+    pub(super) bounds: Option<LaneBounds<S>>,
 }
 
-impl<S: Simd, O> Within<'_, S, O> {
+impl<S: Simd, O, const MAPPED: bool> Within<'_, S, O, MAPPED> {
     /// Returns which triangles between two neighbors are acceptable in all lanes' patches; see
     /// [`keeps_altitude`](crate::patch::keeps_altitude).
     #[inline(always)]
-    fn keeps_altitudes(&self, to: Points<S>) -> Mask<S> {
-        let LaneBounds { coordinates, floor, .. } = self.bounds;
+    fn keeps_altitudes(&self, to: Points<S>, bounds: &LaneBounds<S>) -> Mask<S> {
+        let &LaneBounds { coordinates, floor, .. } = bounds;
         let (from, to) = (in_mesh(coordinates, self.at), in_mesh(coordinates, to));
         let mut kept = to[0].mask(true);
         let floor = to[0].constant(floor * floor);
@@ -101,7 +119,9 @@ fn doubled_area_and_square<S: Simd>([p, q, r]: [Points<S>; 3]) -> (Lanes<S>, Lan
     (a[0] * b[1] - a[1] * b[0], longest)
 }
 
-impl<S: Simd, O: Objective<Lanes<S>>> Objective<Lanes<S>> for Within<'_, S, O> {
+impl<S: Simd, O: Objective<Lanes<S>>, const MAPPED: bool> Objective<Lanes<S>>
+    for Within<'_, S, O, MAPPED>
+{
     #[inline(always)]
     fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
         self.objective.expansion(at)
@@ -112,7 +132,9 @@ impl<S: Simd, O: Objective<Lanes<S>>> Objective<Lanes<S>> for Within<'_, S, O> {
     #[inline(always)]
     fn direction(&self, here: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
         let newton = self.objective.direction(here, eigenvalue_floor);
-        let LaneBounds { coordinates, center, radius, .. } = self.bounds;
+        let Some(LaneBounds { coordinates, center, radius, .. }) = self.bounds else {
+            return newton;
+        };
         let zero = radius.constant(0.0);
         let from = in_mesh(coordinates, self.at);
         let (x, y) = (from[0] - center[0], from[1] - center[1]);
@@ -159,9 +181,10 @@ impl<S: Simd, O: Objective<Lanes<S>>> Objective<Lanes<S>> for Within<'_, S, O> {
     /// Returns the given point, or the nearest point of the disc if the given point is outside.
     #[inline(always)]
     fn point(&self, on_line: Points<S>) -> Points<S> {
-        let LaneBounds { coordinates, center, radius, .. } = self.bounds;
+        let Some(bounds) = self.bounds else { return on_line };
+        let LaneBounds { coordinates, center, radius, .. } = bounds;
         if coordinates.is_projected() {
-            return self.projected_point(on_line);
+            return bounds.projected_point(on_line);
         }
         let (x, y) = (on_line[0] - center[0], on_line[1] - center[1]);
         let distance = Real::sqrt(x * x + y * y);
@@ -174,6 +197,7 @@ impl<S: Simd, O: Objective<Lanes<S>>> Objective<Lanes<S>> for Within<'_, S, O> {
 
     #[inline(always)]
     fn predicted(&self, here: &Dual<Lanes<S>>, to: Points<S>) -> Option<Lanes<S>> {
+        self.bounds?;
         let (x, y) = (to[0] - self.at[0], to[1] - self.at[1]);
         Some(here.gradient[0] * x + here.gradient[1] * y)
     }
@@ -181,9 +205,11 @@ impl<S: Simd, O: Objective<Lanes<S>>> Objective<Lanes<S>> for Within<'_, S, O> {
     #[inline(always)]
     fn trial(&self, to: Points<S>, max_imr: Lanes<S>) -> (Lanes<S>, Mask<S>) {
         let (value, feasible) = self.objective.trial(to, max_imr);
-        match self.bounds.floor > 0.0 {
-            true => (value, feasible & self.keeps_altitudes(to)),
-            false => (value, feasible),
+        match &self.bounds {
+            Some(bounds) if bounds.floor > 0.0 => {
+                (value, feasible & self.keeps_altitudes(to, bounds))
+            }
+            _ => (value, feasible),
         }
     }
 
@@ -203,18 +229,67 @@ impl<S: Simd, O: Objective<Lanes<S>>> Objective<Lanes<S>> for Within<'_, S, O> {
     }
 }
 
-impl<S: Simd, O> Within<'_, S, O> {
-    /// Does the work of [`point`](Objective::point) for vertices that move in a projection, lane by lane.
-    fn projected_point(&self, on_line: Points<S>) -> Points<S> {
-        let LaneBounds { coordinates, center, radius, .. } = self.bounds;
-        let mut found = on_line;
-        for lane in 0..LANES {
-            let center = DVec2::new(center[0][lane], center[1][lane]);
-            let circle = Circle { center, radius: radius[lane] };
-            let to = DVec2::new(on_line[0][lane], on_line[1][lane]);
-            let nearest = circle.nearest_position(coordinates, to);
-            (found[0][lane], found[1][lane]) = (nearest.x, nearest.y);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cpu::{mean_excess, sweep};
+    use crate::layout::{Bounds, prepare};
+    use crate::mesh::Mesh;
+    use crate::metric::Metric;
+    use crate::options::Options;
+    use crate::parallel::pace::now;
+    use crate::run::Plan;
+
+    /// Returns a hexagon with a free vertex at `at`, bounded by a disc of this radius (normalized).
+    fn hexagon(at: [f64; 2], radius: f64) -> Problem {
+        let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
+        let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [x, y]).collect();
+        points.push(at);
+        let triangles = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
+        let (_, mut problem) = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap();
+        problem.set_bounds(Bounds { radii: Some(vec![radius]), floor: 0.0 });
+        problem
+    }
+
+    fn f(problem: &Problem, metric: Metric, at: DVec2) -> f64 {
+        let mut positions = problem.positions().to_vec();
+        positions[0] = at;
+        now(mean_excess(metric, problem, &positions))
+    }
+
+    /// Returns the position of the free vertex after ten sweeps.
+    fn swept(problem: &Problem, metric: Metric) -> DVec2 {
+        let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });
+        let (step, mut moved) = (plan.base_step(1.0), Vec::new());
+        let mut positions = problem.positions().to_vec();
+        for _ in 0..10 {
+            now(sweep::sweep(problem, &mut positions, &mut moved, &step));
         }
-        found
+        positions[0]
+    }
+
+    #[test]
+    fn visits_find_the_least_f_within_a_disc() {
+        for (at, radius) in [([0.6, 0.1], 0.2), ([0.6, 0.1], 0.55), ([-0.3, 0.5], 0.01)] {
+            let problem = hexagon(at, radius);
+            let center = problem.positions()[0];
+            for metric in [Metric::Imr, Metric::Rms, Metric::Area, Metric::ShapeSize] {
+                let found = swept(&problem, metric);
+                assert!(found.distance(center) <= radius * (1.0 + 1e-12), "{metric}: {found}");
+                let on_circle = (0..3600).map(|k| {
+                    let (sin, cos) = (f64::from(k) * std::f64::consts::PI / 1800.0).sin_cos();
+                    f(&problem, metric, center + DVec2::new(cos, sin) * radius)
+                });
+                let least = on_circle.filter(|f| f.is_finite()).fold(f64::INFINITY, f64::min);
+                let end = f(&problem, metric, found);
+                assert!(end <= least + 1e-9, "{metric}, radius {radius}: {end} above {least}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_disc_of_radius_zero_holds_its_vertex() {
+        let problem = hexagon([0.6, 0.1], 0.0);
+        assert_eq!(swept(&problem, Metric::Imr), problem.positions()[0]);
     }
 }

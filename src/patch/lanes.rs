@@ -11,19 +11,19 @@ use crate::metric::Real;
 use crate::patch::numbers::{self, Numbers};
 
 /// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instruction set for which
-/// the code is compiled, and the constant `$mapped` to whether target maps transform the triangles.
+/// the code is compiled, and the constant `$general` to whether the copy of the code serves target maps and bounds.
 ///
 /// Each copy of a sweep takes seconds to compile, so only usual cases have a copy of their own, with AVX2 on x86: each
-/// usual metric on meshes without targets, and soft-size on meshes with targets, where its copy takes half the time of
-/// the general copy. The general copy serves all other cases. It looks up the metric for each triangle, which costs imr
-/// nothing measurable, and gives meshes without targets identity maps.
+/// usual metric on meshes without targets and bounds, and soft-size on meshes with targets, where its copy takes half
+/// the time of the copy for all metrics. The copy for all metrics serves all other cases. It looks up the metric for each
+/// triangle, which costs imr nothing measurable, and gives meshes without targets identity maps.
 macro_rules! with_lanes {
-    ($maps:expr, $metric:expr, $simd:ident, $f:ident, $mapped:ident => $body:expr) => {
+    ($maps:expr, $bounded:expr, $metric:expr, $simd:ident, $f:ident, $general:ident => $body:expr) => {
         'done: {
             let level = fearless_simd::Level::new();
-            if $maps.is_none() {
+            if $maps.is_none() && !$bounded {
                 #[allow(dead_code)]
-                const $mapped: bool = false;
+                const $general: bool = false;
                 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
                 if let Some($simd) = level.as_avx2() {
                     $crate::metric::with_each_metric!($metric, $f => break 'done (
@@ -39,7 +39,7 @@ macro_rules! with_lanes {
                     fearless_simd::dispatch!(level, $simd => $body)
                 ))
             }
-            const $mapped: bool = true;
+            const $general: bool = true;
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             if let (Some($simd), Some(_), $crate::metric::Metric::SoftSize) =
                 (level.as_avx2(), $maps, $metric)
