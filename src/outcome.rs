@@ -37,7 +37,7 @@ pub struct Outcome {
     pub opening_sweeps: u32,
     /// Number of sweeps at the end of a run on a GPU that the CPU did. The CPU replaces the GPU if corrections from
     /// coarser levels were refused and are tried again in double precision, if a run around a vertex of more than 16 neighbors
-    /// would converge after more than 16 corrections, or if sliding has made triangles too flat for
+    /// would converge after more than 16 corrections, or if targets of places have moved vertices to triangles too flat for
     /// single precision.
     pub closing_sweeps: u32,
     /// Whether [`Method::Auto`](crate::Method::Auto) ran without corrections because the coarser levels do not fit the
@@ -169,10 +169,11 @@ pub struct Slid {
     pub pairs: usize,
     /// Number of pairs of vertices with equal coordinates that slide together, as on both sides of a crack.
     pub coincident: usize,
-    /// Number of vertices, partners included, that a bound stopped for the rest of the run: the distance of the new edges from
-    /// the given vertices ([`Slide::hausdorff`](crate::Slide::hausdorff)), or
-    /// [`Options::max_move`](crate::Options::max_move). The remaining gain of a run does not count further moves of these
-    /// vertices.
+    /// Number of vertices, partners included, that stay at a bound: the distance of the new edges from the given vertices
+    /// ([`Slide::hausdorff`](crate::Slide::hausdorff)), or [`Options::max_move`](crate::Options::max_move). These are the
+    /// vertices that stayed in the last Newton step of all vertices. In a run without such steps, they are the vertices that
+    /// three successive sweeps have pressed against a bound, and that later sweeps do not visit. The remaining gain of a run
+    /// does not count further moves of these vertices.
     pub frozen: usize,
     /// Largest distance between the edges of the lines before and after the run, in the unit of the mesh: of a given vertex
     /// from the new edges, or of a moved vertex from the given edges. Moved vertices themselves are on the curves.

@@ -58,8 +58,8 @@ impl Along<'_> {
     }
 }
 
-/// Returns for each free vertex whether the move breaks a triangle around it, as defined at [`mean_excess_along`](super::objective::mean_excess_along), with
-/// the shape guard `guard`.
+/// Returns for each free vertex whether the move breaks a triangle around it, as defined at
+/// [`mean_excess_along`](super::objective::mean_excess_along), with the shape guard `guard`.
 pub(crate) async fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
     paced::collect(along.moved.len(), |v| {
         let ring = problem.ring_of(v as u32);

@@ -194,8 +194,8 @@ impl Curve {
         })
     }
 
-    /// Returns the limits of the line between the points at the parameters `low` and `high`: one for each given vertex between
-    /// the parameters. See [`at`](Self::at) for `near`.
+    /// Returns the limits of the line between the points at the parameters `low` and `high`. Each given vertex between the
+    /// parameters gives a limit. See [`at`](Self::at) for `near`.
     pub(crate) fn limits(
         &self,
         low: f64,

@@ -49,7 +49,7 @@ impl Track {
         to[k] = inside;
     }
 
-    /// Moves vertices that would pass a neighbor back: half of their way, or all of it if `whole`.
+    /// Moves vertices that would pass a neighbor back by half of their way, or by their whole way if `whole`.
     fn keep_order(&self, from: &[f64], to: &mut [f64], whole: bool) {
         let is_out = |to: &[f64], k: usize| {
             let Window { low, at, high } = self.window(to, k);

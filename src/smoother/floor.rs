@@ -2,6 +2,7 @@
 //! ratio than the mesh before the run had, among the triangles that can move and in the coordinates as stored.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 
 use glam::DVec2;
 
@@ -184,11 +185,12 @@ impl Floor<'_> {
             }
             visits -= in_round;
             let penalties = penalties.in_round(round);
-            let mut near = vec![false; positions.len()];
-            let seeds = beyond.iter().flat_map(|&t| topology.triangles()[t as usize]);
-            seeds.for_each(|v| near[number[v as usize] as usize] = true);
-            let around = regions.iter().flatten().flat_map(|&v| problem.ring_of(v));
-            around.for_each(|&v| near[v as usize] = true);
+            let mut near = HashSet::new();
+            if curves.is_some() {
+                let seeds = beyond.iter().flat_map(|&t| topology.triangles()[t as usize]);
+                near.extend(seeds.map(|v| number[v as usize]));
+                near.extend(regions.iter().flatten().flat_map(|&v| problem.ring_of(v)));
+            }
             let moves = floor::round(problem, rules, penalties, &positions, regions).await;
             for (v, to) in moves {
                 positions[v as usize] = to;
@@ -197,7 +199,7 @@ impl Floor<'_> {
                 beyond.extend_from_slice(topology.star(at));
             }
             let slid = curves.as_mut().map(|curves| {
-                curves.visit_by(&penalties, problem, &mut positions, |v| near[v as usize])
+                curves.visit_by(&penalties, problem, &mut positions, |v| near.contains(&v))
             });
             for (at, point) in slid.into_iter().flatten() {
                 points[at as usize] = point.map(|x| options.stored.rounded(x));

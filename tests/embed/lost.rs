@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use gpu_smooth::{
     Backend, CheckpointPolicy, Gpu, GpuError, Mesh, Options, Outcome, Progress, Quality, Scheme,
-    Smoother, Stop, Stopping,
+    Smoother, Stop, Stopping, TargetField, Targets,
     gpu::{Budget, DeviceMesh, Readback, Sweeps, VertexBuffer},
     wgpu,
 };
@@ -198,15 +198,20 @@ fn a_run_goes_on_from_what_was_kept() {
     });
 }
 
-/// A run with bounds leaves a lost device once, and does not use it again.
+/// A run with bounds, or with a host stage between its sweeps, leaves a lost device once, and does not use it again.
 #[test]
-fn a_run_with_bounds_leaves_a_lost_device_once() {
+fn a_run_with_bounds_or_a_stage_leaves_a_lost_device_once() {
     within_a_minute(|| {
         let mesh = bad_plate(500);
         let bounded = Options { max_move: Some(0.3), ..Options::default() };
         let kept = Options { keep_altitude: true, ..Options::default() };
-        for options in [bounded, kept] {
-            let smoother = Smoother::new(&mesh).unwrap();
+        let targets = Targets::equilateral(mesh.points.len());
+        let field = || TargetField::new(&mesh, &targets).unwrap();
+        for (options, has_stage) in [(bounded, false), (kept, false), (Options::default(), true)] {
+            let mut smoother = Smoother::new(&mesh).unwrap();
+            if has_stage {
+                smoother.set_target_field(field()).unwrap();
+            }
             let app = App::new();
             let backend = Backend::Gpu(app.another_gpu());
             let mut policy = GoesOn { interval: Duration::ZERO, told: Vec::new() };

@@ -50,12 +50,12 @@ fn the_guard_of_a_run_with_sliding_is_that_of_the_given_mesh() {
     smoother.set_slide(Some(&Slide::default())).unwrap();
     let worst = |points: &[[f64; 2]]| support::worst_imr(&with_points(&mesh, points));
     for backend in backends() {
-        let [first, last] = [3, 12].map(|max_sweeps| {
+        let [first, last] = [2, 12].map(|max_sweeps| {
             let options = Options { scheme: Metric::Area.into(), max_sweeps, ..Options::default() };
             worst(&run(&smoother, &options, backend).points)
         });
         let (given, label) = (worst(&mesh.points), name(backend));
-        assert!(first < 0.9 * given && last > 1.1 * first, "{label}: {given} {first} {last}");
+        assert!(first < 0.9 * given && last > 1.2 * first, "{label}: {given} {first} {last}");
         assert!(last <= given, "{label}: {given} {last}");
     }
 }

@@ -327,8 +327,10 @@ fn runs_on_curves_take_few_sweeps() {
         let outcome = run(&smoother, &options, &Backend::Cpu);
         assert_eq!(outcome.stop, Stop::Converged);
         assert!(outcome.sweeps <= 40, "{} sweeps for {count} vertices", outcome.sweeps);
+        assert!(outcome.newton_steps > 0 && outcome.newton_iterations > outcome.newton_steps);
         let f = history(&outcome, Metric::Imr);
         assert!(f.windows(2).all(|pair| pair[1] <= pair[0]), "{f:?}");
+        assert!(outcome.remaining.is_some_and(|left| left <= 1e-8), "{:?}", outcome.remaining);
     }
 }
 

@@ -1,8 +1,8 @@
 //! The vertices that move and their triangles in blocks, from the connectivity alone.
 //!
 //! Vertices are numbered aggregate by aggregate, and a block has the vertices of successive aggregates. A triangle belongs
-//! to the block of its first free corner. Its other corners may belong to other blocks, so each block has a local list of
-//! vertices: its own, those of other blocks, and fixed ones. Sums over triangles are formed in the local lists, and the
+//! to the block of its first corner that moves. Its other corners may belong to other blocks, so each block has a local list of
+//! vertices. The list has own vertices first, then vertices of other blocks, then fixed vertices. Sums over triangles are formed in the local lists, and the
 //! own vertices of a block then receive the sums of other blocks in a fixed order. So the sums have equal bits on any
 //! number of threads.
 
@@ -30,7 +30,7 @@ pub(super) struct Blocks {
     pub(super) blocks: Vec<Block>,
 }
 
-/// The places of the vertices of a problem in the order of the blocks.
+/// For each vertex of a problem, its index in [`Blocks::order`].
 struct Ranks<'a> {
     movers: &'a Movers<'a>,
     rank: Vec<u32>,

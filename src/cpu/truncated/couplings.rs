@@ -1,4 +1,4 @@
-//! The places of triangles in the matrix of the first level.
+//! The blocks of the first level's matrix to which each triangle adds.
 
 use std::ops::Range;
 

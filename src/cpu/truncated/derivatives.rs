@@ -57,7 +57,7 @@ impl<T: Scalar> Map<T> {
     }
 }
 
-/// The mesh and the places of its triangles, from which a step is computed.
+/// The input of a step: positions, blocks of triangles, and the admitted moves of sliding vertices.
 pub(super) struct Source<'a, T> {
     pub(super) problem: &'a Problem,
     pub(super) positions: &'a [DVec2],

@@ -10,8 +10,8 @@ use super::scalar::Scalar;
 use crate::parallel::paced;
 use crate::run::multilevel::{Aggregates, invert};
 
-/// Factor on the correction of a coarser level. Plain aggregates are too stiff, as their members move alike. Factors from
-/// 1.5 to 2.2 change the time of a run by 4 % at most.
+/// Factor on the correction of a coarser level. Plain aggregates are too stiff, as their members move alike. In a prototype,
+/// factors from 1.5 to 2.2 changed the time of a run by 4 % at most.
 pub(super) const STIFFNESS: f64 = 1.8;
 /// Interval of eigenvalues on which Chebyshev smoothing works. A matrix is a sum of semidefinite matrices of three blocks
 /// each, so the eigenvalues of D⁻¹A are at most 3, and the polynomial stays below 1 up to there.
@@ -289,7 +289,8 @@ fn moved<T: Scalar>(block: &Square<T>, left: [T; 3], right: [T; 3]) -> Square<T>
 }
 
 impl<T: Scalar> Levels<T> {
-    /// Makes the levels without numbers from the pattern of the first, with the number of vertices of each aggregate.
+    /// Makes the levels, with zero matrices, from the pattern of the first matrix. `counts` has the number of vertices of each
+    /// aggregate of the first level.
     pub(super) async fn new(pattern: Pattern, counts: Vec<f64>) -> Self {
         let mut lattices = vec![Lattice::new(pattern, counts)];
         while let Some(last) = lattices.last_mut()

@@ -1,4 +1,4 @@
-//! The vertices that a Newton step moves: the free ones, and then those that slide.
+//! The vertices that a Newton step moves: free vertices, followed by sliding vertices.
 
 use crate::layout::Problem;
 use crate::run::multilevel::NONE;
@@ -11,7 +11,7 @@ pub(super) struct Movers<'a> {
     slides: Vec<u32>,
     /// Number of each vertex of the problem after the free ones, [`NONE`] for fixed vertices. Empty if none slides.
     number: Vec<u32>,
-    /// Place of the first neighbor of each sliding vertex in `neighbors`, and their count at the end.
+    /// Index in `neighbors` of the first neighbor of each sliding vertex, and at the end the length of `neighbors`.
     start: Vec<u32>,
     neighbors: Vec<u32>,
 }

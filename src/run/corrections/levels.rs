@@ -54,7 +54,7 @@ impl Corrections {
         };
         let rebuild_from = match self.has_local_maps() {
             true => REBUILD_LOCAL_FROM,
-            // The exponents of EDGE decide when its levels change. Bounded moves and sliding gain nothing by new levels.
+            // The exponents of EDGE decide when its levels change. Stages change the targets between sweeps.
             false if self.is_staged || !self.metric().is_smooth() => u32::MAX,
             false => REBUILD_FROM,
         };

@@ -76,7 +76,7 @@ impl Aggregates {
         self
     }
 
-    /// Makes an aggregate of its own of each unknown without an aggregate.
+    /// Puts each unknown without an aggregate into a new aggregate.
     pub(crate) fn add_lone(&mut self) {
         for group in self.of.iter_mut().filter(|group| **group == NONE) {
             *group = self.count as u32;

@@ -4,19 +4,21 @@
 //! spectrum (Meurant & Tichý, Numer. Algorithms 62, 2013), the model falls by at most ½ ρ (γ - α) further. The node is a
 //! share of the smallest Ritz value, an eigenvalue of Lanczos's matrix, which follows from the coefficients too.
 
-/// Share of the smallest Ritz value that counts as below the spectrum. With 0.3, 0.5, 0.7 and 1, 0, 0, 5 and 157 of 211
-/// runs ended with more than twice the reported gain left.
+/// Share of the smallest Ritz value that counts as below the spectrum. A prototype of this method with shares of 0.3, 0.5, 0.7
+/// and 1 left more than twice the reported gain in 0, 0, 5 and 157 of 211 runs.
 const BELOW: f64 = 0.5;
 
 /// Number of iterations over which the fall of the smallest Ritz value is measured, the power of the fall by which the node is
-/// lowered, and the fall of a solution with fewer iterations.
+/// lowered, and the fall of a solution with fewer iterations. Without the fall, and with a first Ritz value of 1, 13 of 150 runs
+/// by `imr` on random meshes left more than twice the reported gain. With the fall, none of the 150 did.
 const FALLS_OVER: usize = 2;
 const FALL_POWER: i32 = 4;
 const FIRST_FALL: f64 = 0.5;
 
 /// The coefficients of a solution by conjugate gradients, with the bound of its error.
+#[derive(Clone)]
 pub(crate) struct ErrorBound {
-    /// The node: a number that is taken to be below the spectrum.
+    /// The node μ, which must be smaller than all eigenvalues of the preconditioned Hessian.
     node: f64,
     /// Steps α and ratios β; the first ratio is 0.
     coefficients: Vec<[f64; 2]>,
@@ -30,8 +32,8 @@ impl ErrorBound {
         Self { node, coefficients: Vec::with_capacity(64), gamma: 1.0 / node }
     }
 
-    /// Records the step α of an iteration, the ratio β of its ρ to the ρ before (0 for the first), and its ρ. Returns the
-    /// largest amount by which further iterations can lower the model.
+    /// Records the coefficients α, β and ρ of an iteration; β is 0 in the first. Returns the largest amount by which further
+    /// iterations can lower the model.
     pub(crate) fn add(&mut self, alpha: f64, beta: f64, rho: f64) -> f64 {
         if let Some(&[before, _]) = self.coefficients.last() {
             let rest = self.gamma - before;
@@ -127,9 +129,9 @@ impl ErrorBound {
 mod tests {
     use super::*;
 
-    /// Solves diag(values) x = b by conjugate gradients. Returns the bounds and the true errors of the model, iteration by
-    /// iteration, and the smallest Ritz value.
-    fn solved(values: &[f64], b: &[f64], least_ritz: f64) -> (Vec<[f64; 2]>, f64) {
+    /// Solves diag(values) x = b by conjugate gradients. Returns the bound, the refined bound and the true error of the model for
+    /// each iteration, and the smallest Ritz value.
+    fn solved(values: &[f64], b: &[f64], least_ritz: f64) -> (Vec<[f64; 3]>, f64) {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let best: f64 = b.iter().zip(values).map(|(b, value)| 0.5 * b * b / value).sum();
         let (mut r, mut p, mut before, mut gain) = (b.to_vec(), b.to_vec(), 0.0, 0.0);
@@ -145,20 +147,23 @@ mod tests {
             let alpha = rho / dot(&p, &q);
             r = r.iter().zip(&q).map(|(r, q)| r - alpha * q).collect();
             gain += 0.5 * alpha * rho;
-            errors.push([bound.add(alpha, beta, rho), best - gain]);
+            let plain = bound.add(alpha, beta, rho);
+            errors.push([plain, bound.clone().refined(rho), best - gain]);
             before = rho;
         }
         (errors, bound.least_ritz())
     }
 
     #[test]
-    fn the_bound_is_above_the_error() {
+    fn the_bound_is_above_the_error_and_falls_with_it() {
         let values = [0.3, 0.7, 1.0, 1.1, 1.5, 2.0, 2.2];
         let b = [1.0, -0.3, 0.8, 0.5, 1.2, -0.7, 0.2];
         let (errors, ritz) = solved(&values, &b, 0.5);
-        for [bound, error] in errors {
-            assert!(bound >= error && bound.is_finite(), "{bound} {error}");
+        for [bound, refined, error] in &errors {
+            assert!(bound >= error && refined >= bound, "{bound} {refined} {error}");
         }
+        assert!(errors[..2].iter().all(|[bound, _, error]| *bound <= 8.0 * error), "{errors:?}");
+        assert!(errors[5][0] < 1e-3 * errors[0][0], "{errors:?}");
         assert!((0.3..0.31).contains(&ritz), "{ritz}");
     }
 
@@ -167,8 +172,18 @@ mod tests {
     fn a_node_above_the_spectrum_is_lowered() {
         let values = [0.01, 0.02, 1.0, 1.2, 1.4];
         let (errors, _) = solved(&values, &[1.0; 5], 10.0);
-        assert!(errors.iter().all(|[bound, _]| bound.is_finite() && *bound > 0.0));
-        let [bound, error] = errors[3];
+        assert!(errors.iter().all(|[bound, ..]| bound.is_finite() && *bound > 0.0));
+        let [bound, _, error] = errors[3];
         assert!(bound >= error, "{bound} {error}");
+    }
+
+    /// A small eigenvalue of which the right-hand side has little shows in the Ritz values late. While these still fall, the
+    /// bound may be below the error, and the refined bound is not.
+    #[test]
+    fn falling_ritz_values_show_a_hidden_eigenvalue() {
+        let values = [0.02, 0.5, 0.8, 1.0, 1.2, 1.5, 1.8, 2.0];
+        let (errors, _) = solved(&values, &[0.1, 1.0, -0.5, 0.7, 0.9, -0.4, 0.6, 0.8], 1.0);
+        assert!(errors.iter().any(|[bound, _, error]| *bound < 0.5 * error), "{errors:?}");
+        assert!(errors.iter().all(|[_, refined, error]| refined >= error), "{errors:?}");
     }
 }

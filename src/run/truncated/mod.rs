@@ -1,4 +1,4 @@
-//! The control of Newton steps of all vertices: without an engine, and the same for all engines.
+//! The decisions about Newton steps of all vertices. They are the same for all engines, and are tested without one.
 
 mod bound;
 mod search;

@@ -1,12 +1,12 @@
-//! The Newton steps at the end of a run: how accurate each is, what remains to be gained after it, and when they give way to
-//! sweeps. No decision depends on the history of f.
+//! The decisions about the Newton steps at the end of a run: the accuracy of each step, the gain that remains after the step, and
+//! the return to sweeps. No decision depends on the history of f.
 
 use crate::run::stop::NOISE;
 use crate::run::truncated::{NewtonStep, StepRequest};
 
 /// Bounds of the accuracy of conjugate gradients, as a share of the model's gain. Within the bounds it is the relative
-/// discrepancy of model and objective in the step before. 0.05 or 0.2 as the smaller bound change the time of runs by 4 %
-/// at most.
+/// discrepancy of model and objective in the step before. In a prototype, 0.05 or 0.2 as the smaller bound
+/// changed the time of runs by 4 % at most.
 const FORCING: [f64; 2] = [0.1, 0.5];
 /// Smallest Ritz value before any solution has shown one. The smallest eigenvalues of ordinary meshes are 0.12 to 0.25, and
 /// solutions of two iterations do not show them: with 1, 0.25 and 0.15, 5 of 32, 1 of 112 and 0 of 80 runs on perturbed meshes
@@ -74,7 +74,9 @@ impl Tail {
     }
 
     /// Records a step. `scale` is f, relative to which gains are judged. Returns the gain that remains at most, as a share
-    /// of f; `None` after a shortened step and after negative curvature, whose bounds are of another function.
+    /// of f, and whether the step was whole. The gain is `None` after a shortened step, and after a step whose bound is of
+    /// another function: with negative curvature, or with curvatures of curves left out. It is `None` too if the step would end
+    /// the run and another step must agree.
     pub(crate) fn record(
         &mut self,
         step: &NewtonStep,
@@ -109,7 +111,7 @@ impl Tail {
         (is_known.then_some(left), is_whole)
     }
 
-    /// Records whether the last step, which was shortened or met negative curvature if `left` is `None`, was idle.
+    /// Records whether the last step was idle. A step that is not whole was shortened or met negative curvature.
     /// `excess` are those of f over its lower limit before the sweep and after the step. Returns whether the run goes back
     /// to sweeps.
     pub(crate) fn is_stuck(
