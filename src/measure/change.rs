@@ -112,7 +112,7 @@ fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
         let [p, q, r] = t.map(|v| points[v as usize]);
         let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
         let (a, b, c) = (edge(p, q), edge(p, r), edge(q, r));
-        let lengths = [a, b, c].map(|[x, y]| x.hypot(y));
+        let lengths = [a, b, c].map(|[x, y]| (x * x + y * y).sqrt());
         let doubled = (a[0] * b[1] - a[1] * b[0]).abs();
         least = least.min(doubled / lengths.into_iter().fold(0.0, f64::max));
         let logarithm = (0.5 * doubled).max(f64::MIN_POSITIVE).ln();

@@ -173,7 +173,7 @@ impl<T: Real> Corner<T> {
 
 #[inline(always)]
 #[allow(clippy::manual_map)]
-fn times<T: Real>(slope: Option<T>, by: T) -> Option<T> {
+pub(super) fn times<T: Real>(slope: Option<T>, by: T) -> Option<T> {
     match slope {
         Some(slope) => Some(slope * by),
         None => None,
@@ -190,7 +190,7 @@ fn sum<T: Real>(a: Option<T>, b: Option<T>) -> Option<T> {
 }
 
 #[inline(always)]
-fn or<T: Real>(slope: Option<T>, zero: T) -> T {
+pub(super) fn or<T: Real>(slope: Option<T>, zero: T) -> T {
     match slope {
         Some(slope) => slope,
         None => zero,

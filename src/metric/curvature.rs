@@ -5,7 +5,8 @@
 //! complex numbers, with w = exp(2πi/3). Its excess is |D|²/√3, its doubled area (|C|² - |D|²)/(2√3). So both invariants,
 //! and all derivatives, follow from C and D.
 
-use crate::metric::corner::{Corner, InvariantSlopes, Slopes};
+use crate::metric::corner::{Corner, InvariantSlopes, Slopes, or, times};
+use crate::metric::dual::Real;
 use crate::metric::table::{AnyFormulas, Metric, OfInvariants};
 
 /// √3/2, the imaginary part of w.
@@ -14,29 +15,33 @@ pub(crate) const H: f64 = 0.866_025_403_784_438_6;
 const W: f64 = 0.577_350_269_189_625_8;
 
 /// A vector of the plane, or a complex number.
-type Vector = [f64; 2];
+type Vector<T> = [T; 2];
+
+/// Least divisor in place of zero, far below any quantity of a triangle in normalized units.
+const TINY: f64 = 1e-150;
 
 /// The first and second derivatives of a function of excess and area.
 #[derive(Clone, Copy, Debug)]
-struct Derivatives {
-    excess: f64,
-    area: f64,
-    excess_excess: f64,
-    excess_area: f64,
-    area_area: f64,
+struct Derivatives<T> {
+    excess: T,
+    area: T,
+    excess_excess: T,
+    excess_area: T,
+    area_area: T,
 }
 
-impl Derivatives {
-    fn of(slopes: &Slopes<f64>) -> Self {
+impl<T: Real> Derivatives<T> {
+    #[inline(always)]
+    fn of(slopes: &Slopes<T>) -> Self {
         match *slopes {
             Slopes::ByShape { inverse_area: inverse, shape: m, first, second, .. } => {
                 let square = inverse * inverse;
                 Self {
                     excess: first * inverse,
-                    area: -first * m * inverse,
+                    area: first * m * inverse * -1.0,
                     excess_excess: second * square,
-                    excess_area: -(second * m + first) * square,
-                    area_area: (second * m + 2.0 * first) * m * square,
+                    excess_area: (second * m + first) * square * -1.0,
+                    area_area: (second * m + first * 2.0) * m * square,
                 }
             }
             Slopes::ByInvariants(InvariantSlopes {
@@ -47,13 +52,13 @@ impl Derivatives {
                 area_area,
                 ..
             }) => {
-                let (once, twice) = (|x: Option<f64>| unit * x.unwrap_or(0.0), unit * unit);
+                let (zero, square) = (unit.constant(0.0), unit * unit);
                 Self {
-                    excess: once(excess),
-                    area: once(area),
-                    excess_excess: 0.0,
-                    excess_area: twice * excess_area.unwrap_or(0.0),
-                    area_area: twice * area_area.unwrap_or(0.0),
+                    excess: or(times(excess, unit), zero),
+                    area: or(times(area, unit), zero),
+                    excess_excess: zero,
+                    excess_area: or(times(excess_area, square), zero),
+                    area_area: or(times(area_area, square), zero),
                 }
             }
         }
@@ -65,37 +70,37 @@ impl Derivatives {
 /// A displacement changes C by c and D by d. The Hessian is t_c |c|² + t_d |d|² + m_cc (C·c)² + 2 m_cd (C·c)(D·d) +
 /// m_dd (D·d)².
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Curvature {
+pub(crate) struct Curvature<T = f64> {
     /// The conformal part C of the triangle.
-    pub(crate) conformal: Vector,
+    pub(crate) conformal: Vector<T>,
     /// The anticonformal part D of the triangle.
-    pub(crate) anticonformal: Vector,
+    pub(crate) anticonformal: Vector<T>,
     /// The factors t_c and t_d. The gradient of q² by C and D is t_c C and t_d D.
-    pub(crate) own: [f64; 2],
+    pub(crate) own: [T; 2],
     /// The factors m_cc, m_cd and m_dd.
-    pub(crate) mixed: [f64; 3],
+    pub(crate) mixed: [T; 3],
     /// Three rows (X, Y) such that the sum of the squares of X·c + Y·d is a positive semidefinite part of the Hessian:
     /// the Hessian without the second derivative of the area, which cancels between neighbors where the derivative by the
     /// area is equal. Where this part is indefinite, which convex functions of map and area exclude, the curvature along
     /// D is raised.
-    pub(crate) rows: [[Vector; 2]; 3],
+    pub(crate) rows: [[Vector<T>; 2]; 3],
 }
 
-impl Curvature {
+impl<T: Real> Curvature<T> {
     #[inline(always)]
-    fn of(corner: &Corner<f64>, slopes: &Slopes<f64>) -> Self {
+    fn of(corner: &Corner<T>, slopes: &Slopes<T>) -> Self {
         let by = Derivatives::of(slopes);
         let ([ax, ay], [bx, by_]) = (corner.a, corner.b);
         // w̄ a + w b and w a + w̄ b.
         let (middle, half) =
-            ([-0.5 * (ax + bx), -0.5 * (ay + by_)], [H * (ax - bx), H * (ay - by_)]);
+            ([(ax + bx) * -0.5, (ay + by_) * -0.5], [(ax - bx) * H, (ay - by_) * H]);
         let conformal = [middle[0] + half[1], middle[1] - half[0]];
         let anticonformal = [middle[0] - half[1], middle[1] + half[0]];
         let along = by.area * W;
-        let own = [along, 2.0 * W * by.excess - along];
-        let third = by.area_area / 3.0;
-        let cross = 2.0 / 3.0 * by.excess_area;
-        let mixed = [third, cross - third, 4.0 / 3.0 * by.excess_excess - 2.0 * cross + third];
+        let own = [along, by.excess * (2.0 * W) - along];
+        let third = by.area_area * (1.0 / 3.0);
+        let cross = by.excess_area * (2.0 / 3.0);
+        let mixed = [third, cross - third, by.excess_excess * (4.0 / 3.0) - cross * 2.0 + third];
         let rows = Self::rows(&by, conformal, anticonformal);
         Self { conformal, anticonformal, own, mixed, rows }
     }
@@ -104,26 +109,28 @@ impl Curvature {
     /// part is χ_AA a² + 2 χ_EA (2/√3) |D| a r + (2/√3 χ_E + 4/3 |D|² χ_EE) r², and 2/√3 χ_E t² with t the change of D
     /// across D.
     #[inline(always)]
-    fn rows(by: &Derivatives, c: Vector, d: Vector) -> [[Vector; 2]; 3] {
-        let square = d[0] * d[0] + d[1] * d[1];
+    fn rows(by: &Derivatives<T>, c: Vector<T>, d: Vector<T>) -> [[Vector<T>; 2]; 3] {
+        let zero = d[0].constant(0.0);
+        // The direction of D, some direction if D is zero.
+        let ahead = d[0] + TINY;
+        let square = ahead * ahead + d[1] * d[1];
         let length = square.sqrt();
-        let unit = if length > 0.0 { [d[0] / length, d[1] / length] } else { [1.0, 0.0] };
-        let first = by.area_area.max(0.0).sqrt();
-        let second = match first > 0.0 {
-            true => 2.0 * W * length * by.excess_area / first,
-            false => 0.0,
-        };
-        let along = 2.0 * W * by.excess;
-        let rest = along + 4.0 / 3.0 * square * by.excess_excess - second * second;
-        let (third, across) = (rest.max(0.0).sqrt(), along.max(0.0).sqrt());
+        let unit = [ahead / length, d[1] / length];
+        let curvature = by.area_area.max(zero);
+        let first = curvature.sqrt();
+        let least = curvature.max(zero.constant(TINY));
+        let second = length * by.excess_area * first / least * (2.0 * W);
+        let along = by.excess * (2.0 * W);
+        let rest = along + square * by.excess_excess * (4.0 / 3.0) - second * second;
+        let (third, across) = (rest.max(zero).sqrt(), along.max(zero).sqrt());
         let area = first * W;
         [
             [
                 [area * c[0], area * c[1]],
                 [second * unit[0] - area * d[0], second * unit[1] - area * d[1]],
             ],
-            [[0.0; 2], [third * unit[0], third * unit[1]]],
-            [[0.0; 2], [-across * unit[1], across * unit[0]]],
+            [[zero; 2], [third * unit[0], third * unit[1]]],
+            [[zero; 2], [zero - across * unit[1], across * unit[0]]],
         ]
     }
 }
@@ -131,12 +138,12 @@ impl Curvature {
 /// A metric with Hessians of triangles by their corners.
 pub(crate) trait Curved: Copy + Send + Sync {
     /// Returns the derivatives of q² of a triangle in the form of the metrics.
-    fn curvature(self, corner: &Corner<f64>) -> Curvature;
+    fn curvature<T: Real>(self, corner: &Corner<T>) -> Curvature<T>;
 }
 
 impl Curved for OfInvariants {
     #[inline(always)]
-    fn curvature(self, corner: &Corner<f64>) -> Curvature {
+    fn curvature<T: Real>(self, corner: &Corner<T>) -> Curvature<T> {
         Curvature::of(corner, &self.slopes(&corner.invariants()))
     }
 }
@@ -147,7 +154,7 @@ pub(crate) struct OfImr;
 
 impl Curved for OfImr {
     #[inline(always)]
-    fn curvature(self, corner: &Corner<f64>) -> Curvature {
+    fn curvature<T: Real>(self, corner: &Corner<T>) -> Curvature<T> {
         OfInvariants::Imr.curvature(corner)
     }
 }
@@ -169,7 +176,7 @@ mod tests {
     use crate::metric::{Formulas, Ideal};
 
     /// Displacements of the three corners of a triangle.
-    type Move = [Vector; 3];
+    type Move = [Vector<f64>; 3];
 
     fn corner(z: Move) -> Corner<f64> {
         let edge = |k: usize| [z[k][0] - z[0][0], z[k][1] - z[0][1]];
@@ -177,13 +184,13 @@ mod tests {
     }
 
     /// Returns the changes of C and D by a displacement.
-    fn parts(p: Move) -> [Vector; 2] {
+    fn parts(p: Move) -> [Vector<f64>; 2] {
         let none = OfImr.curvature(&corner(p));
         let Curvature { conformal, anticonformal, .. } = none;
         [conformal, anticonformal]
     }
 
-    fn dot(a: Vector, b: Vector) -> f64 {
+    fn dot(a: Vector<f64>, b: Vector<f64>) -> f64 {
         a[0] * b[0] + a[1] * b[1]
     }
 
@@ -246,7 +253,7 @@ mod tests {
                     + mixed[0] * along_c * along_c
                     + 2.0 * mixed[1] * along_c * along_d
                     + mixed[2] * along_d * along_d;
-                let row = |[x, y]: &[Vector; 2]| (dot(*x, c) + dot(*y, d)).powi(2);
+                let row = |[x, y]: &[Vector<f64>; 2]| (dot(*x, c) + dot(*y, d)).powi(2);
                 let sum: f64 = rows.iter().map(row).sum();
                 // D of a nearly ideal triangle keeps half of its digits.
                 let scale = 1e-6 * sum.max(1.0);

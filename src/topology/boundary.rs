@@ -21,7 +21,9 @@ impl Topology<'_> {
     fn boundary_sides(&self) -> impl Iterator<Item = BoundaryEdge> + '_ {
         let sides = |triangle| (0..3).map(move |corner| BoundaryEdge { triangle, corner });
         let all = (0..self.triangles().len() as u32).flat_map(sides);
-        all.filter(|&side| self.across(side).is_none())
+        // Each edge of a free vertex has two triangles.
+        let is_inside = |side| self.ends(side).iter().any(|&v| self.free()[v as usize]);
+        all.filter(move |&side| !is_inside(side) && self.across(side).is_none())
     }
 
     /// Returns the vertices at which an edge starts and ends, with its triangle on the left.

@@ -253,9 +253,7 @@ impl<'s> Live<'s> {
                 AnyEngine::Device(device.engine(problem, positions, judged, steps).await?)
             }
         };
-        let slides = curves.is_some();
-        let corrections =
-            corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged, slides));
+        let corrections = corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged));
         let mut session = Session::new(engine, plan, corrections, log);
         if let Some(saved) = saved {
             session.restore(saved).await?;

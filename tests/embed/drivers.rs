@@ -72,8 +72,15 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
             assert_eq!(other.sweeps, 8, "{label}");
             // Largest measured differences over all metrics: 1.5e-7 in f; 5e-5 edges for `edge`, less for other
             // metrics.
-            assert!(off.abs() < 1e-6 && apart < 1e-3, "{label}: f off by {off:e}, {apart:e} edges");
+            // Newton steps of all vertices on the CPU are nearer to the limit than corrections on a device.
+            let most = if cpu.newton_steps > 0 { 1e-2 } else { 1e-3 };
+            assert!(off.abs() < 1e-6 && apart < most, "{label}: f off by {off:e}, {apart:e} edges");
         }
+        let (off, apart) = (f(&gl) / f(&vulkan) - 1.0, apart(&gl, &vulkan) / mean_edge);
+        assert!(
+            off.abs() < 1e-6 && apart < 1e-3,
+            "{base} by drivers: f off by {off:e}, {apart:e} edges"
+        );
     }
 }
 

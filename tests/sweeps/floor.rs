@@ -226,7 +226,7 @@ fn an_ended_run_keeps_the_worst() {
         let options = Options::default();
         smoother.run(&options).on(&Backend::Cpu).observe(observe).block().unwrap()
     };
-    for (sweep, phase) in [(3, Phase::Smoothing), (0, Phase::Improving)] {
+    for (sweep, phase) in [(1, Phase::Smoothing), (0, Phase::Improving)] {
         let outcome = ended_at(sweep, phase);
         let label = format!("{phase:?}: {:?}", outcome.floored);
         assert_eq!(outcome.stop, Stop::Canceled, "{label}");

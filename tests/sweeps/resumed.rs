@@ -251,12 +251,13 @@ fn a_hard_run_goes_on_to_the_same_bits() {
             let options = Options::default();
             let mut all = All::default();
             let kept = smoother.run(&options).on(backend).checkpoints(&mut all).block().unwrap();
-            assert!(kept.corrections > 2, "{} corrections", kept.corrections);
+            let corrected = kept.corrections + kept.newton_steps;
+            assert!(corrected > 1, "{corrected} corrections and Newton steps");
             // Secant pairs double the size of a checkpoint.
             let sizes: Vec<usize> = all.0.iter().map(|one| one.to_bytes().len()).collect();
             let per_vertex = sizes.iter().max().unwrap() / mesh.points.len();
             assert!(
-                !accelerated || per_vertex > 35,
+                !accelerated || kept.corrections == 0 || per_vertex > 35,
                 "{per_vertex} bytes a vertex: no pairs on the {}",
                 name(backend)
             );

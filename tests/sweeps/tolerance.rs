@@ -20,8 +20,9 @@ fn check(smoother: &Smoother, options: &Options, limit: f64) {
             let f = *history(&outcome, options.scheme.base()).last().unwrap();
             let left = (f - limit) / limit;
             assert!(left <= TRUST * tolerance, "{label}: {left:e} left");
-            // The tolerance must not be exceeded by many sweeps either. A corrected sweep gains a factor of up to ten.
-            let room = if options.is_multilevel() { 100.0 } else { 20.0 };
+            // The tolerance must not be exceeded by many sweeps either. A corrected sweep gains a factor of up to ten,
+            // a Newton step of all vertices often more than a thousand.
+            let room = if options.is_multilevel() { 1e4 } else { 20.0 };
             assert!(left >= tolerance / room, "{label}: {left:e} left");
         }
     }
@@ -248,9 +249,6 @@ fn levels_are_built_again_in_long_runs() {
         let label = format!("{metric}: {sweeps} sweeps");
         assert_eq!(outcome.stop, Stop::Converged, "{label}");
         assert!(sweeps <= most && left <= 2.0 * told, "{label}: {told:e} of {left:e}");
-        // The last correction around the vertex gains nothing, and slow modes may remain: 1.5e-7 on an airfoil of the
-        // reported 1e-8, a former defect.
-        assert!(told >= 1e-6, "{label}: {told:e}");
     }
 }
 

@@ -178,21 +178,32 @@ impl BlockCouplings {
     fn new(block: &Block, group_of: &[u32]) -> Self {
         let mut groups = group_of[block.own.clone()].to_vec();
         groups.extend(block.others.iter().map(|&v| group_of[v as usize]));
+        let mut beyond = groups[block.own.len()..].to_vec();
+        beyond.sort_unstable();
+        beyond.dedup();
         groups.resize(block.vertices.len(), NONE);
-        let mut keys = Vec::new();
-        let corners = |t: &[u32; 3]| {
-            CornerGroups::new(t.map(|v| groups[v as usize]), block.has_sliding_corner(t))
+        // Index of an aggregate among those of the block, followed by those of other blocks.
+        let row_of = |group: u32| match (group as usize).wrapping_sub(block.groups.start) {
+            own if own < block.groups.len() => own,
+            _ => block.groups.len() + beyond.partition_point(|&other| other < group),
         };
-        let key =
-            |of: &CornerGroups, [row, column]: [usize; 2]| [of.groups[row], of.groups[column]];
-        for of in block.triangles.iter().map(corners) {
-            keys.extend(of.pairs().iter().map(|&pair| key(&of, pair)));
+        let (mut keys, mut places) = (Vec::new(), Vec::with_capacity(2 * block.triangles.len()));
+        // Columns of each row, ascending, with the places of their entries.
+        let mut rows: Vec<Vec<[u32; 2]>> = vec![Vec::new(); block.groups.len() + beyond.len()];
+        for t in &block.triangles {
+            let corners = t.map(|v| groups[v as usize]);
+            let of = CornerGroups::new(corners, block.has_sliding_corner(t));
+            for &[row, column] in of.pairs() {
+                let [row, column] = [of.groups[row], of.groups[column]];
+                let entries = &mut rows[row_of(row)];
+                let at = entries.partition_point(|[other, _]| *other < column);
+                if entries.get(at).is_none_or(|[other, _]| *other != column) {
+                    entries.insert(at, [column, keys.len() as u32]);
+                    keys.push([row, column]);
+                }
+                places.push(entries[at][1]);
+            }
         }
-        let asked = keys.clone();
-        keys.sort_unstable();
-        keys.dedup();
-        let place = |asked: &[u32; 2]| keys.partition_point(|key| key < asked) as u32;
-        let places = asked.iter().map(place).collect();
         Self { groups, places, keys, entries: 0..0 }
     }
 }

@@ -1,7 +1,7 @@
 //! The pass over all triangles that computes the numbers of a Newton step: the gradient, the Hessian of each triangle, and
 //! the sums of its positive semidefinite part at the vertices and over aggregates.
 
-use fearless_simd::Level;
+use fearless_simd::{Level, prelude::*};
 use glam::DVec2;
 
 use super::blocks::{Block, Blocks};
@@ -11,9 +11,9 @@ use super::matrix::{ROWS, Square, UNKNOWNS};
 use super::scalar::{Scalar, narrowed};
 use super::slides::Line;
 use crate::layout::Problem;
-use crate::metric::{Curvature, Curved, H, Metric, OfImr, TargetMap};
+use crate::metric::{Corner, Curvature, Curved, H, Metric, OfImr, TargetMap};
 use crate::parallel::paced;
-use crate::patch::lanes::with_instructions;
+use crate::patch::lanes::{LANES, Lanes, Points, with_instructions};
 use crate::run::multilevel::NONE;
 
 /// The Hessian of a triangle: see [`Curvature`]. Lengths are in units of |C|, so that the numbers keep their digits for
@@ -108,13 +108,10 @@ impl<T: Scalar> Source<'_, T> {
             .map(|(((terms, maps), entries), sums)| Part { terms, maps, entries, sums })
             .collect();
         paced::for_each_part(parts, |at, part| {
-            with_instructions!(Level::new(), simd => {
-                let _ = simd;
-                match metric.curved() {
-                    Some(_) if metric == Metric::Imr => self.block(OfImr, at, part),
-                    Some(curved) => self.block(curved, at, part),
-                    None => {}
-                }
+            with_instructions!(Level::new(), simd => match metric.curved() {
+                Some(_) if metric == Metric::Imr => self.block(simd, OfImr, at, part),
+                Some(curved) => self.block(simd, curved, at, part),
+                None => {}
             });
         })
         .await;
@@ -154,49 +151,70 @@ impl<T: Scalar> Source<'_, T> {
     }
 
     #[inline(always)]
-    fn block(&self, curved: impl Curved, at: usize, part: Part<'_, T>) {
-        let Self { problem, positions, blocks, couplings, extents, .. } = self;
+    fn block<S: Simd>(&self, simd: S, curved: impl Curved, at: usize, part: Part<'_, T>) {
+        let Self { problem, blocks, couplings, extents, .. } = self;
         let (block, couplings) = (&blocks.blocks[at], &couplings.blocks[at]);
         let Part { terms, maps, entries, sums } = part;
-        let position = |v: u32| positions[v as usize];
         entries.fill(Square::default());
         terms.clear();
         maps.clear();
-        let mut next = 0;
-        let mut triangle = 0;
-        while triangle < block.triangles.len() {
-            let t = &block.triangles[triangle];
-            triangle += 1;
-            let of = |v: u32| block.vertices[v as usize];
-            let vertices = [of(t[0]), of(t[1]), of(t[2])];
-            let corner = problem.corner(&vertices, position);
-            let mut curvature = curved.curvature(&corner);
-            let map = problem.target_map(&vertices).map(|map| Map::of(&map));
-            terms.push(terms_of(&curvature));
-            maps.extend(map.as_ref().map(Map::narrowed));
-            let Curvature { conformal: c, anticonformal: d, own, rows, .. } = &mut curvature;
-            let mut force = [[own[0] * c[0], own[0] * c[1]], [own[1] * d[0], own[1] * d[1]]];
-            if let Some(map) = map {
-                force = map.apply(force[0], force[1]);
-                rows.iter_mut().for_each(|row| *row = map.apply(row[0], row[1]));
+        let (mut next, mut first) = (0, 0);
+        while first < block.triangles.len() {
+            let four = curved.curvature(&self.corners(simd, block, first));
+            let count = LANES.min(block.triangles.len() - first);
+            let mut lane = 0;
+            while lane < count {
+                let t = &block.triangles[first + lane];
+                let vertices = vertices_of(block, t);
+                let mut curvature = of_lane(&four, lane);
+                let map = problem.target_map(&vertices).map(|map| Map::of(&map));
+                terms.push(terms_of(&curvature));
+                maps.extend(map.as_ref().map(Map::narrowed));
+                let Curvature { conformal: c, anticonformal: d, own, rows, .. } = &mut curvature;
+                let mut force = [[own[0] * c[0], own[0] * c[1]], [own[1] * d[0], own[1] * d[1]]];
+                if let Some(map) = map {
+                    force = map.apply(force[0], force[1]);
+                    rows.iter_mut().for_each(|row| *row = map.apply(row[0], row[1]));
+                }
+                let force = at_corners(force);
+                let mut rows = [at_corners(rows[0]), at_corners(rows[1]), at_corners(rows[2])];
+                if block.has_sliding_corner(t) {
+                    self.project(block, t, &mut rows);
+                }
+                let mut k = 0;
+                while k < 3 {
+                    let sum = &mut sums[t[k] as usize];
+                    let ([a, b], [c, d], [e, f]) = (rows[0][k], rows[1][k], rows[2][k]);
+                    sum[0] += force[k][0];
+                    sum[1] += force[k][1];
+                    sum[2] += a * a + c * c + e * e;
+                    sum[3] += a * b + c * d + e * f;
+                    sum[4] += b * b + d * d + f * f;
+                    k += 1;
+                }
+                next += self.couple(block, couplings, next, &rows, t, &vertices, entries, extents);
+                lane += 1;
             }
-            let force = at_corners(force);
-            let mut rows = [at_corners(rows[0]), at_corners(rows[1]), at_corners(rows[2])];
-            if block.has_sliding_corner(t) {
-                self.project(block, t, &mut rows);
-            }
-            let mut k = 0;
-            while k < 3 {
-                let sum = &mut sums[t[k] as usize];
-                let ([a, b], [c, d], [e, f]) = (rows[0][k], rows[1][k], rows[2][k]);
-                sum[0] += force[k][0];
-                sum[1] += force[k][1];
-                sum[2] += a * a + c * c + e * e;
-                sum[3] += a * b + c * d + e * f;
-                sum[4] += b * b + d * d + f * f;
-                k += 1;
-            }
-            next += self.couple(block, couplings, next, &rows, t, &vertices, entries, extents);
+            first += LANES;
+        }
+    }
+
+    /// Returns the corners of four triangles of a block, from `first` on. The last triangle stands for missing ones.
+    #[inline(always)]
+    fn corners<S: Simd>(&self, simd: S, block: &Block, first: usize) -> Corner<Lanes<S>> {
+        let [mut a, mut b] = [[[0.0; LANES]; 2]; 2];
+        let mut lane = 0;
+        while lane < LANES {
+            let t = &block.triangles[(first + lane).min(block.triangles.len() - 1)];
+            let position = |v: u32| self.positions[v as usize];
+            let corner = self.problem.corner(&vertices_of(block, t), position);
+            ([a[0][lane], a[1][lane]], [b[0][lane], b[1][lane]]) = (corner.a, corner.b);
+            lane += 1;
+        }
+        Corner {
+            a: [Lanes::simd_from(simd, a[0]), Lanes::simd_from(simd, a[1])],
+            b: [Lanes::simd_from(simd, b[0]), Lanes::simd_from(simd, b[1])],
+            ideal: self.problem.ideal(),
         }
     }
 
@@ -277,6 +295,26 @@ impl<T: Scalar> Source<'_, T> {
     }
 }
 
+/// Returns the vertices of a triangle in the problem.
+#[inline(always)]
+fn vertices_of(block: &Block, t: &[u32; 3]) -> [u32; 3] {
+    [block.vertices[t[0] as usize], block.vertices[t[1] as usize], block.vertices[t[2] as usize]]
+}
+
+/// Returns the derivatives of one of four triangles.
+#[inline(always)]
+fn of_lane<S: Simd>(four: &Curvature<Lanes<S>>, lane: usize) -> Curvature {
+    let Curvature { conformal: c, anticonformal: d, own, mixed, rows } = four;
+    let row = |[x, y]: &[Points<S>; 2]| [[x[0][lane], x[1][lane]], [y[0][lane], y[1][lane]]];
+    Curvature {
+        conformal: [c[0][lane], c[1][lane]],
+        anticonformal: [d[0][lane], d[1][lane]],
+        own: [own[0][lane], own[1][lane]],
+        mixed: [mixed[0][lane], mixed[1][lane], mixed[2][lane]],
+        rows: [row(&rows[0]), row(&rows[1]), row(&rows[2])],
+    }
+}
+
 /// Returns the inverse of the diagonal block of a vertex: xx, xy, yy. Zero if the block is singular.
 #[inline(always)]
 fn inverse_of<T: Scalar>([xx, xy, yy]: [f64; 3]) -> [T; 3] {
@@ -326,13 +364,13 @@ impl Extent {
         let center = positions.clone().sum::<DVec2>() / count;
         let square = positions.map(|at| at.distance_squared(center)).sum::<f64>() / count;
         let size = if square > 0.0 { square.sqrt() } else { 1.0 };
-        Self { center: center.to_array(), size }
+        Self::new(center.to_array(), size)
     }
 
     /// Returns (z - c)/s of a position z.
     #[inline(always)]
     fn place(&self, at: DVec2) -> [f64; 2] {
-        [(at.x - self.center[0]) / self.size, (at.y - self.center[1]) / self.size]
+        [(at.x - self.center[0]) * self.inverse, (at.y - self.center[1]) * self.inverse]
     }
 }
 

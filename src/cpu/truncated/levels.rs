@@ -27,6 +27,14 @@ pub(super) struct Extent {
     pub(super) center: [f64; 2],
     /// Root of the mean squared distance of the vertices from the center. 1 for a single vertex.
     pub(super) size: f64,
+    /// Inverse of the size.
+    pub(super) inverse: f64,
+}
+
+impl Extent {
+    pub(super) fn new(center: [f64; 2], size: f64) -> Self {
+        Self { center, size, inverse: 1.0 / size }
+    }
 }
 
 /// A level with its matrix and vectors.
@@ -132,7 +140,7 @@ impl<T: Scalar> Lattice<T> {
                     let [x, y] = [of.center[0] - center[0], of.center[1] - center[1]];
                     (x * x + y * y + of.size * of.size) * counts[k as usize] / all
                 };
-                *extent = Extent { center, size: members.iter().map(square).sum::<f64>().sqrt() };
+                *extent = Extent::new(center, members.iter().map(square).sum::<f64>().sqrt());
             }
         })
         .await;

@@ -22,6 +22,10 @@ use crate::slide::{OnCurves, Tangents};
 /// Largest number of iterations. Hard meshes take up to some 150 in their last step.
 const MOST_ITERATIONS: u32 = 1000;
 
+/// Smallest Ritz value for the bound of a step that cannot end the run, which need not be safe. On a distorted mesh of 60,000
+/// vertices, 0.1, 0.3 and 1 took 50, 38 and 38 iterations; with 1, an ordinary mesh of 10,000 took a step more.
+const ROUGH_RITZ: f64 = 0.3;
+
 /// A mesh prepared for Newton steps of all vertices, with the vectors of the solution.
 pub(crate) struct Solver<T> {
     blocks: Blocks,
@@ -124,6 +128,7 @@ impl<T: Scalar> Solver<T> {
     /// Computes the step. `least_gain` is the sum over triangles of the request's least gain.
     pub(super) async fn solve(&mut self, request: &StepRequest, least_gain: f64) -> Solved {
         let mut bound = ErrorBound::new(request.least_ritz);
+        let mut rough = ErrorBound::new(ROUGH_RITZ);
         let mut solved = Solved {
             model_gain: 0.0,
             descent: 0.0,
@@ -161,14 +166,19 @@ impl<T: Scalar> Solver<T> {
             solved.model_gain += 0.5 * alpha * rho;
             solved.bound = bound.add(alpha, beta, rho);
             before = rho;
-            if solved.bound <= (request.forcing * solved.model_gain).max(least_gain) {
+            let rest = rough.add(alpha, beta, rho);
+            let is_accurate = match request.accuracy(solved.model_gain, least_gain) {
+                Some(wanted) => rest <= wanted,
                 // Only a solution that may end the run needs a safe bound.
-                if solved.bound <= 2.0 * least_gain {
-                    solved.bound = bound.refined(rho);
+                None => {
+                    if solved.bound <= 2.0 * least_gain {
+                        solved.bound = bound.refined(rho);
+                    }
+                    solved.bound <= least_gain
                 }
-                if solved.bound <= (request.forcing * solved.model_gain).max(least_gain) {
-                    break;
-                }
+            };
+            if is_accurate {
+                break;
             }
         }
         self.advance(alpha).await;

@@ -115,9 +115,8 @@ pub(super) enum Stage {
 }
 
 impl Corrections {
-    /// Creates the state at the start of a run. `is_staged` is whether stages work between sweeps, and `slides` whether
-    /// vertices slide along curves. Only runs with sliding vertices end by Newton steps of all vertices.
-    pub(crate) fn new(problem: &Problem, plan: &Plan, is_staged: bool, slides: bool) -> Self {
+    /// Creates the state at the start of a run. `is_staged` is whether stages work between sweeps.
+    pub(crate) fn new(problem: &Problem, plan: &Plan, is_staged: bool) -> Self {
         Self {
             problem: problem.clone(),
             plan: plan.clone(),
@@ -144,7 +143,7 @@ impl Corrections {
             levels_time: Duration::ZERO,
             needs_double: false,
             tail: Tail::new(),
-            can_step: slides && can_step(problem, plan, is_staged),
+            can_step: can_step(problem, plan, is_staged),
         }
     }
 
