@@ -208,7 +208,7 @@ def main():
             count = counts.setdefault((engine, name), {"runs": 0, "converged": 0, "above": 0, "twice": 0, "ten": 0, "sweeps": 0, "iterations": 0, "seconds": 0.0, "most": 0.0})
             count["runs"] += 1
             count["sweeps"] += report["sweeps"]
-            count["iterations"] += report.get("iterations", 0)
+            count["iterations"] += report.get("newton_iterations", 0)
             count["seconds"] += report["seconds"]["smooth"]
             f = report["movable_f"][1]
             if args.before:

@@ -166,18 +166,15 @@ impl<T: Scalar> Solver<T> {
             solved.model_gain += 0.5 * alpha * rho;
             solved.bound = bound.add(alpha, beta, rho);
             before = rho;
+            let slides = !self.slides.lines.is_empty();
+            let accuracy = request.accuracy(solved.model_gain, least_gain, slides);
             let rest = rough.add(alpha, beta, rho);
-            let is_accurate = match request.accuracy(solved.model_gain, least_gain) {
-                Some(wanted) => rest <= wanted,
-                // Only a solution that may end the run needs a safe bound.
-                None => {
-                    if solved.bound <= 2.0 * least_gain {
-                        solved.bound = bound.refined(rho);
-                    }
-                    solved.bound <= least_gain
-                }
-            };
-            if is_accurate {
+            let is_last = slides || accuracy <= least_gain;
+            // Only a solution that may end the run needs a safe bound.
+            if is_last && solved.bound <= accuracy.min(2.0 * least_gain) {
+                solved.bound = bound.refined(rho);
+            }
+            if accuracy >= if is_last { solved.bound } else { rest } {
                 break;
             }
         }

