@@ -174,19 +174,17 @@ fn twins(vertices: usize, origin: &[u32], next: &[u32], lines: &[[u32; 2]]) -> V
     walls.sort_unstable();
     let by_least = Groups::new(origin.len(), vertices, |h| [sorted(ends(h))[0]]);
     let mut twin = vec![NONE; origin.len()];
+    let mut own: Vec<(u32, u32)> = Vec::new();
     for vertex in 0..vertices {
-        let own = by_least.of(vertex);
-        for (i, &h) in own.iter().enumerate() {
-            let [from, to] = ends(h as usize);
-            let mut others =
-                own.iter().filter(|&&o| o != h && sorted(ends(o as usize)) == sorted([from, to]));
-            let (other, more) = (others.next(), others.next());
-            if let (Some(&other), None) = (other, more)
-                && own[..i].contains(&other)
-                && ends(other as usize) == [to, from]
-                && walls.binary_search(&sorted([from, to])).is_err()
+        own.clear();
+        own.extend(by_least.of(vertex).iter().map(|&h| (sorted(ends(h as usize))[1], h)));
+        own.sort_unstable();
+        for edge in own.chunk_by(|(a, _), (b, _)| a == b) {
+            if let &[(greater, first), (_, second)] = edge
+                && origin[first as usize] != origin[second as usize]
+                && walls.binary_search(&[vertex as u32, greater]).is_err()
             {
-                (twin[h as usize], twin[other as usize]) = (other, h);
+                (twin[first as usize], twin[second as usize]) = (second, first);
             }
         }
     }
