@@ -21,8 +21,8 @@ _METHODS = (
     "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
 )
 _PROPERTIES = (
-    "axes", "metric", "has_target", "engine", "stop", "fault", "sweeps", "corrections", "best_sweep", "movable_f", "remaining",
-    "held_back", "slid", "floored", "prepare_seconds", "seconds",
+    "axes", "metric", "has_target", "engine", "stop", "fault", "sweeps", "corrections", "newton_steps", "newton_iterations",
+    "best_sweep", "movable_f", "remaining", "held_back", "slid", "floored", "prepare_seconds", "seconds",
 )
 
 
@@ -130,6 +130,16 @@ class Result:
     def corrections(self) -> int:
         """Number of corrections from coarser levels."""
         return self._outcome.corrections
+
+    @property
+    def newton_steps(self) -> int:
+        """Number of Newton steps of all vertices."""
+        return self._outcome.newton_steps
+
+    @property
+    def newton_iterations(self) -> int:
+        """Number of iterations of conjugate gradients in all Newton steps of all vertices."""
+        return self._outcome.newton_iterations
 
     @property
     def best_sweep(self) -> int:

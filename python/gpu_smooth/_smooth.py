@@ -194,7 +194,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     time_limit : float, optional
         Seconds after which the run ends with the best points so far.
     method : {"auto", "multilevel", "relaxed", "paper"}, default "auto"
-        Sweeps with corrections from coarser levels, over-relaxed sweeps, or the method of Park & Shontz.
+        Sweeps with Newton steps of all vertices (CPU) or corrections from coarser levels (GPU), over-relaxed sweeps, or the
+        method of Park & Shontz.
     omega : float, optional
         Factor of over-relaxation, above 0 and below 2.
     inner : int, default 1
@@ -251,7 +252,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     Python's global lock is released while the library works, so that other threads go on, also with other meshes.
 
     The method is by J. Park and S. M. Shontz, *An Alternating Mesh Quality Metric Scheme for Efficient Mesh Quality
-    Improvement*, Procedia Computer Science 4 (2011) 292-301, with corrections from coarser levels.
+    Improvement*, Procedia Computer Science 4 (2011) 292-301, with Newton steps of all vertices or corrections from coarser
+    levels.
 
     Examples
     --------

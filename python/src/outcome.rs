@@ -148,6 +148,18 @@ impl Outcome {
         self.outcome.corrections
     }
 
+    /// Number of Newton steps of all vertices.
+    #[getter]
+    fn newton_steps(&self) -> u32 {
+        self.outcome.newton_steps
+    }
+
+    /// Number of iterations of conjugate gradients in all Newton steps of all vertices.
+    #[getter]
+    fn newton_iterations(&self) -> u32 {
+        self.outcome.newton_iterations
+    }
+
     /// The sweep whose points were taken; 0 for the points before the run.
     #[getter]
     fn best_sweep(&self) -> u32 {

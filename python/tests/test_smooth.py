@@ -253,6 +253,8 @@ def test_a_result_reports_the_run(mesh: Mesh) -> None:
     assert abs(result.history[-1] - result.quality_after.f("rms")) < 1e-6
     assert result.quality_after.inverted == 0 and result.seconds > 0
     assert 0 <= result.best_sweep <= result.sweeps and result.held_back >= 0
+    assert result.corrections == 0 and 0 < result.newton_steps < result.sweeps
+    assert result.newton_iterations >= result.newton_steps
     q = gpu_smooth.quality(result.points, triangles, "rms")
     assert abs((q**2).mean() - result.quality_after.f("rms")) < 1e-12
     worst = gpu_smooth.quality(result.points, triangles, "imr").max()

@@ -13,9 +13,9 @@ use crate::options::worst_by::WorstBy;
 use crate::precision::Precision;
 
 /// The options of a run. The mesh, its targets and its sliding vertices are not options: they belong to the
-/// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR with corrections from coarser levels, until an
-/// estimated 1e-6 of f is left to gain, and makes neither the least angle nor the worst inverse mean ratio worse; see
-/// [`Floored`](crate::outcome::Floored).
+/// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR, on the CPU with Newton steps of all vertices
+/// and on devices with corrections from coarser levels, until an estimated 1e-6 of f is left to gain, and makes neither the
+/// least angle nor the worst inverse mean ratio worse; see [`Floored`](crate::outcome::Floored).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The metric, or several metrics that alternate. The first metric judges convergence.

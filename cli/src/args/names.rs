@@ -84,8 +84,8 @@ pub(crate) fn scheme_help() -> String {
 pub(crate) fn method_help() -> String {
     let uncorrected = either(&metrics(|metric| !metric.supports_multilevel()));
     format!(
-        "Sweeps corrected from coarser levels of the mesh, by all metrics but {uncorrected} (multilevel), over-relaxed sweeps \
-         (relaxed), or the plain sweeps of Park & Shontz (paper). auto takes relaxed with --omega, paper with --inner or --derivatives, \
+        "Sweeps with Newton steps of all vertices or corrections from coarser levels of the mesh, by all metrics but \
+         {uncorrected} (multilevel), over-relaxed sweeps (relaxed), or the plain sweeps of Park & Shontz (paper). auto takes relaxed with --omega, paper with --inner or --derivatives, \
          and otherwise multilevel where the scheme allows corrections"
     )
 }
