@@ -46,7 +46,7 @@ pub(crate) struct CpuEngine {
     truncated: Option<Truncated>,
     hierarchy: Option<Hierarchy>,
     gradient: Vec<Vec2>,
-    /// DiscTangents of discs along which the last correction moves vertices.
+    /// Tangents of discs along which the last correction moves vertices.
     tangents: DiscTangents,
     /// The last correction: a displacement of each free vertex at step length 1.
     direction: Vec<Vec2>,

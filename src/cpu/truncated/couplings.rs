@@ -36,7 +36,7 @@ pub(super) struct CornerGroups {
     /// The distinct aggregates, ascending. The first [`count`](Self::count) are valid.
     pub(super) groups: [u32; 3],
     pub(super) count: usize,
-    /// Whether all corners are in one aggregate and none slides. The motion of a sliding corner is not that of its aggregate.
+    /// Whether all corners are in one aggregate and no corner slides. The motion of a sliding corner is not that of its aggregate.
     pub(super) is_inside: bool,
 }
 

@@ -1,8 +1,8 @@
 //! The coarser levels: aggregates that move, turn and scale.
 //!
 //! A vertex z of an aggregate with center c and size s moves by a + b (z - c)/s, with complex a and b. An aggregate of
-//! aggregates moves its members alike, so a level is a matrix of 4x4 blocks. The matrix of the first level is summed from
-//! the triangles, and the others are sums of the blocks of the level before.
+//! aggregates moves its members alike, so a level is a matrix of 4x4 blocks. The matrix of the first level is a sum over
+//! triangles. The matrix of each coarser level is a sum of blocks of the next finer matrix.
 
 use super::blocks::MOST_DEGREES;
 use super::matrix::{Matrix, Pattern, Quad, ROWS, Square, UNKNOWNS, times};

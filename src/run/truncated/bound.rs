@@ -10,7 +10,7 @@ const BELOW: f64 = 0.5;
 
 /// Number of iterations over which the fall of the smallest Ritz value is measured, the power of the fall by which the node is
 /// lowered, and the fall of a solution with fewer iterations. Without the fall, and with a first Ritz value of 1, 13 of 150 runs
-/// by `imr` on random meshes left more than twice the reported gain. With the fall, none of the 150 did.
+/// by `imr` on random meshes left more than twice the reported gain. With the fall, no run left more than twice the gain.
 const FALLS_OVER: usize = 2;
 const FALL_POWER: i32 = 4;
 const FIRST_FALL: f64 = 0.5;

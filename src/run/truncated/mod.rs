@@ -1,4 +1,5 @@
-//! The decisions about Newton steps of all vertices. They are the same for all engines, and are tested without one.
+//! The decisions about Newton steps of all vertices. Every engine follows the same decisions, and tests of the decisions need no
+//! engine.
 
 mod bound;
 mod search;

@@ -51,7 +51,7 @@ pub(crate) struct NewtonStep {
     pub(crate) is_curved_down: bool,
     /// Whether a longer step would invert a triangle or break the shape guard.
     pub(crate) is_broken: bool,
-    /// Whether the model has all curvatures that come from the bend of curves.
+    /// Whether the model has the curvatures of all curves.
     pub(crate) is_exact: bool,
     /// Number of sliding vertices that stayed at a bound.
     pub(crate) held: usize,
