@@ -12,12 +12,10 @@ use super::movers::Movers;
 use crate::layout::Problem;
 use crate::parallel::paced;
 use crate::run::multilevel::{Aggregates, NONE};
+use crate::run::truncated::aggregation::MOST_DEGREES;
 
 /// Number of vertices from which on a block ends. The vectors of a block then fit the first cache of a processor.
 const VERTICES: u32 = 2048;
-/// Largest product of the numbers of neighbors of two vertices that may share an aggregate as neighbors. A hub with all
-/// its neighbors would be an aggregate of unlike vertices.
-pub(super) const MOST_DEGREES: usize = 144;
 
 /// The blocks of a mesh.
 pub(super) struct Blocks {

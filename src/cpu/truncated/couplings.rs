@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use super::blocks::{Block, Blocks};
-use super::matrix::{Matrix, Pattern, ROWS, Square, transposed};
+use super::matrix::{Matrix, ROWS, Square, transposed};
 use super::scalar::Scalar;
 use crate::parallel::paced;
 use crate::run::multilevel::NONE;
+use crate::run::truncated::aggregation::Pattern;
 
 /// The entries of the first level's matrix to which the triangles of each block add, and where they go.
 pub(super) struct Couplings {

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::blocks::{Block, Blocks};
 use super::couplings::{BlockCouplings, CornerGroups, Couplings};
 use super::levels::Extent;
-use super::matrix::{ROWS, Square, UNKNOWNS};
+use super::matrix::{ROWS, Square};
 use super::scalar::{Scalar, narrowed};
 use super::slides::Line;
 use crate::layout::Problem;
@@ -15,6 +15,7 @@ use crate::metric::{Corner, Curvature, Curved, H, Metric, OfImr, TargetMap};
 use crate::parallel::paced;
 use crate::patch::lanes::{LANES, Lanes, Points, with_instructions};
 use crate::run::multilevel::NONE;
+use crate::run::truncated::aggregation::UNKNOWNS;
 
 /// The Hessian of a triangle: see [`Curvature`]. Lengths are in units of |C|, so that the numbers keep their digits for
 /// triangles of any stretching.

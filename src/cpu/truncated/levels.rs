@@ -4,22 +4,14 @@
 //! aggregates moves its members alike, so a level is a matrix of 4x4 blocks. The matrix of the first level is a sum over
 //! triangles. The matrix of each coarser level is a sum of blocks of the next finer matrix.
 
-use super::blocks::MOST_DEGREES;
-use super::matrix::{Matrix, Pattern, Quad, ROWS, Square, UNKNOWNS, times};
+use super::matrix::{Matrix, Quad, ROWS, Square, times};
 use super::scalar::Scalar;
 use crate::parallel::paced;
-use crate::run::multilevel::{Aggregates, invert};
+use crate::run::multilevel::invert;
+use crate::run::truncated::aggregation::{CHEBYSHEV, Members, Pattern, STIFFNESS, UNKNOWNS};
 
-/// Factor on the correction of a coarser level. Plain aggregates are too stiff, as their members move alike. In a prototype,
-/// factors from 1.5 to 2.2 changed the time of a run by 4 % at most.
-pub(super) const STIFFNESS: f64 = 1.8;
-/// Interval of eigenvalues on which Chebyshev smoothing works. A matrix is a sum of semidefinite matrices of three blocks
-/// each, so the eigenvalues of D⁻¹A are at most 3, and the polynomial stays below 1 up to there.
-const INTERVAL: [f64; 2] = [0.6, 2.4];
 /// Largest number of aggregates that are solved for directly.
 const DIRECT: usize = 12;
-/// Share of the unknowns that a level must leave out to repay its work.
-const LEAST_SHRINKAGE: f64 = 0.3;
 
 /// Place and size of an aggregate.
 #[derive(Clone, Copy, Default)]
@@ -54,9 +46,7 @@ pub(super) struct Lattice<T> {
 
 /// The aggregates of a level in those of the next coarser level.
 struct Coarser<T> {
-    group: Vec<u32>,
-    start: Vec<u32>,
-    members: Vec<u32>,
+    members: Members,
     /// Motion of each aggregate with that of its coarser aggregate: a' = a + (x + iy) b and b' = σ b, as x, y and σ.
     shifts: Vec<[T; 3]>,
 }
@@ -85,50 +75,22 @@ impl<T: Scalar> Lattice<T> {
 
     /// Returns the next coarser level, without numbers. `None` if the level is solved directly, or hardly shrinks.
     async fn coarsened(&mut self) -> Option<Self> {
-        let pattern = &self.matrix.pattern;
-        let rows = pattern.rows();
-        if rows <= DIRECT {
-            return None;
-        }
-        let neighbors = |row: usize| {
-            let degree = |row: usize| pattern.columns(row).len() - 1;
-            let is_near = move |&&other: &&u32| {
-                other as usize != row && degree(row) * degree(other as usize) <= MOST_DEGREES
-            };
-            pattern.columns(row).iter().filter(is_near).copied()
-        };
-        let mut aggregates = Aggregates::new(rows, neighbors).await;
-        aggregates.add_lone();
-        if aggregates.count as f64 > (1.0 - LEAST_SHRINKAGE) * rows as f64 {
-            return None;
-        }
-        let (start, members) = aggregates.members().await;
-        let group = aggregates.of;
-        let members_of =
-            |coarse: usize| &members[start[coarse] as usize..start[coarse + 1] as usize];
-        let columns = (0..aggregates.count).map(|coarse| {
-            let of_member = |&row: &u32| pattern.columns(row as usize).iter();
-            let near = members_of(coarse).iter().flat_map(of_member);
-            let mut columns: Vec<u32> = near.map(|&row| group[row as usize]).collect();
-            columns.sort_unstable();
-            columns.dedup();
-            columns
-        });
-        let coarse = Pattern::of_rows(columns);
-        let count = |coarse| members_of(coarse).iter().map(|&row| self.counts[row as usize]).sum();
-        let counts = (0..aggregates.count).map(count).collect();
-        let shifts = vec![[T::default(); 3]; rows];
-        self.coarser = Some(Coarser { group, start, members, shifts });
+        let (members, coarse) = self.matrix.pattern.joined(DIRECT).await?;
+        let all = |of: &[u32]| of.iter().map(|&row| self.counts[row as usize]).sum();
+        let counts = (0..members.count()).map(|coarse| all(members.of(coarse))).collect();
+        let shifts = vec![[T::default(); 3]; self.matrix.pattern.rows()];
+        self.coarser = Some(Coarser { members, shifts });
         Some(Self::new(coarse, counts))
     }
 
     /// Sets the extents of the next level, and the motions of this level's aggregates with it.
     async fn set_extents(&mut self, next: &mut Self) {
-        let Some(Coarser { group, shifts, start, members }) = &mut self.coarser else { return };
+        let Some(Coarser { members, shifts }) = &mut self.coarser else { return };
+        let members = &*members;
         let (extents, counts) = (&self.extents, &self.counts);
         paced::for_each_chunk(&mut next.extents, ROWS, |first, coarse| {
             for (at, extent) in (first..).zip(coarse) {
-                let members = &members[start[at] as usize..start[at + 1] as usize];
+                let members = members.of(at);
                 let all: f64 = members.iter().map(|&k| counts[k as usize]).sum();
                 let mut center = [0.0; 2];
                 for &k in members {
@@ -147,7 +109,7 @@ impl<T: Scalar> Lattice<T> {
         let coarse = &next.extents;
         paced::for_each_chunk(shifts, ROWS, |first, shifts| {
             for (at, shift) in (first..).zip(shifts) {
-                let (own, of) = (&extents[at], &coarse[group[at] as usize]);
+                let (own, of) = (&extents[at], &coarse[members.group[at] as usize]);
                 let [x, y] = [own.center[0] - of.center[0], own.center[1] - of.center[1]];
                 *shift = [x / of.size, y / of.size, own.size / of.size].map(T::of);
             }
@@ -157,7 +119,7 @@ impl<T: Scalar> Lattice<T> {
 
     /// Sets the matrix of the next level to the sums of the blocks of this level.
     async fn sum_up(&self, next: &mut Self) {
-        let Some(Coarser { group, start, members, shifts }) = &self.coarser else { return };
+        let Some(Coarser { members, shifts }) = &self.coarser else { return };
         let Matrix { pattern: coarse, blocks, .. } = &mut next.matrix;
         let rows = coarse.rows();
         let lengths = (0..rows).map(|row| coarse.row(row).len());
@@ -166,11 +128,11 @@ impl<T: Scalar> Lattice<T> {
             for (row, sums) in (task * (ROWS / 8)..).zip(parts) {
                 sums.fill(Square::default());
                 let columns = coarse.columns(row);
-                for &k in &members[start[row] as usize..start[row + 1] as usize] {
+                for &k in members.of(row) {
                     let fine = &self.matrix;
                     for at in fine.pattern.row(k as usize) {
                         let other = fine.pattern.columns[at] as usize;
-                        let column = group[other];
+                        let column = members.group[other];
                         let place = columns.partition_point(|&c| c < column);
                         let block = moved(&fine.blocks[at], shifts[k as usize], shifts[other]);
                         for (sum, entry) in sums[place].iter_mut().zip(block) {
@@ -185,11 +147,7 @@ impl<T: Scalar> Lattice<T> {
 
     /// Sets the solution to two steps of Chebyshev's method from zero, or adds two steps to it.
     async fn smooth(&mut self, from_zero: bool) {
-        let [low, high] = INTERVAL;
-        let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
-        let first = T::of(1.0 / middle);
-        let ratio = 1.0 / (2.0 * middle / half - half / middle);
-        let (again, more) = (T::of(1.0 + ratio * half / middle), T::of(2.0 * ratio / half));
+        let [first, again, more] = CHEBYSHEV.map(T::of);
         let Self { matrix, b, x, residual, step, .. } = self;
         if !from_zero {
             matrix
@@ -233,7 +191,8 @@ impl<T: Scalar> Lattice<T> {
 
     /// Sets the right-hand side of the next level to the residual of this level.
     async fn restrict(&self, next: &mut Self) {
-        let Some(Coarser { start, members, shifts, .. }) = &self.coarser else { return };
+        let Some(Coarser { members, shifts }) = &self.coarser else { return };
+        let Members { start, members, .. } = members;
         let Self { matrix, b, x, .. } = self;
         next.matrix
             .for_each_row(
@@ -259,7 +218,9 @@ impl<T: Scalar> Lattice<T> {
 
     /// Adds the solution of the next level to the solution of this level.
     async fn prolong(&mut self, next: &Self) {
-        let Some(Coarser { group, shifts, .. }) = &self.coarser else { return };
+        let Some(Coarser { members: Members { group, .. }, shifts }) = &self.coarser else {
+            return;
+        };
         let by = T::of(STIFFNESS);
         self.matrix
             .for_each_row(

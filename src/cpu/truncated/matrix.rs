@@ -6,52 +6,14 @@ use super::scalar::Scalar;
 use crate::parallel::paced;
 use crate::patch::lanes::with_instructions;
 use crate::run::multilevel::invert;
+use crate::run::truncated::aggregation::{Pattern, UNKNOWNS};
 
-/// Number of unknowns of an aggregate: a translation, and a turn with a scaling as a complex number.
-pub(super) const UNKNOWNS: usize = 4;
 /// A 4x4 block, column by column.
 pub(super) type Square<T> = [T; UNKNOWNS * UNKNOWNS];
 pub(super) type Quad<T> = [T; UNKNOWNS];
 
 /// Number of rows that one task handles.
 pub(super) const ROWS: usize = 256;
-
-/// The places of the blocks of a matrix, each row in ascending order of columns.
-pub(super) struct Pattern {
-    pub(super) start: Vec<u32>,
-    pub(super) columns: Vec<u32>,
-    /// Place of the diagonal block of each row.
-    pub(super) diagonal: Vec<u32>,
-}
-
-impl Pattern {
-    /// Makes the pattern of rows with ascending columns. Every row must have its diagonal.
-    pub(super) fn of_rows(rows: impl Iterator<Item = Vec<u32>>) -> Self {
-        let mut pattern = Self { start: vec![0], columns: Vec::new(), diagonal: Vec::new() };
-        for (row, columns) in (0..).zip(rows) {
-            let before = columns.partition_point(|&column| column < row);
-            pattern.diagonal.push((pattern.columns.len() + before) as u32);
-            pattern.columns.extend(columns);
-            pattern.start.push(pattern.columns.len() as u32);
-        }
-        pattern
-    }
-
-    pub(super) fn rows(&self) -> usize {
-        self.diagonal.len()
-    }
-
-    /// Returns the places of the blocks of a row.
-    #[inline(always)]
-    pub(super) fn row(&self, row: usize) -> std::ops::Range<usize> {
-        self.start[row] as usize..self.start[row + 1] as usize
-    }
-
-    /// Returns the columns of a row, with its diagonal.
-    pub(super) fn columns(&self, row: usize) -> &[u32] {
-        &self.columns[self.row(row)]
-    }
-}
 
 /// A symmetric positive semidefinite matrix, with the inverses of its diagonal blocks.
 pub(super) struct Matrix<T> {

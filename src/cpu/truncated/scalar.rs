@@ -2,6 +2,8 @@
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
+use crate::run::truncated::aggregation;
+
 /// Single or double precision.
 pub(crate) trait Scalar:
     Copy
@@ -23,7 +25,7 @@ pub(crate) trait Scalar:
 }
 
 impl Scalar for f32 {
-    const LEAST_PIVOT: f64 = 1e-6;
+    const LEAST_PIVOT: f64 = aggregation::LEAST_PIVOT;
 
     #[inline(always)]
     fn of(number: f64) -> Self {

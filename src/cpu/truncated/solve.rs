@@ -6,8 +6,8 @@ use glam::DVec2;
 use super::blocks::Blocks;
 use super::couplings::Couplings;
 use super::derivatives::{Numbers, Source, extents, room};
-use super::levels::{Levels, STIFFNESS};
-use super::matrix::{Quad, Square, UNKNOWNS};
+use super::levels::Levels;
+use super::matrix::{Quad, Square};
 use super::movers::Movers;
 use super::product::{Locals, inner};
 use super::scalar::Scalar;
@@ -16,15 +16,9 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::parallel::paced;
 use crate::patch::lanes::with_instructions;
+use crate::run::truncated::aggregation::{STIFFNESS, UNKNOWNS};
 use crate::run::truncated::{ErrorBound, StepRequest};
 use crate::slide::{OnCurves, Tangents};
-
-/// Largest number of iterations. Hard meshes take up to some 150 in their last step.
-const MOST_ITERATIONS: u32 = 1000;
-
-/// Smallest Ritz value for the bound of a step that cannot end the run, which need not be safe. On a distorted mesh of 60,000
-/// vertices, 0.1, 0.3 and 1 took 50, 38 and 38 iterations; with 1, an ordinary mesh of 10,000 took a step more.
-const ROUGH_RITZ: f64 = 0.3;
 
 /// A mesh prepared for Newton steps of all vertices, with the vectors of the solution.
 pub(crate) struct Solver<T> {
@@ -128,7 +122,7 @@ impl<T: Scalar> Solver<T> {
     /// Computes the step. `least_gain` is the sum over triangles of the request's least gain.
     pub(super) async fn solve(&mut self, request: &StepRequest, least_gain: f64) -> Solved {
         let mut bound = ErrorBound::new(request.least_ritz);
-        let mut rough = ErrorBound::new(ROUGH_RITZ);
+        let mut rough = ErrorBound::new(StepRequest::ROUGH_RITZ);
         let mut solved = Solved {
             model_gain: 0.0,
             descent: 0.0,
@@ -139,7 +133,7 @@ impl<T: Scalar> Solver<T> {
         };
         self.solution.fill([T::default(); 2]);
         let (mut alpha, mut before) = (0.0, f64::INFINITY);
-        while solved.iterations < MOST_ITERATIONS {
+        while solved.iterations < StepRequest::MOST_ITERATIONS {
             let rho = self.precondition(alpha).await;
             alpha = 0.0;
             if rho == 0.0 {

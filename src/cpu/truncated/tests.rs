@@ -153,7 +153,13 @@ fn blocks_divide_vertices_and_triangles() {
 }
 
 fn request() -> StepRequest {
-    StepRequest { forcing: 1e-3, least_gain: 1e-10, least_ritz: 1.0, is_exact: true }
+    StepRequest {
+        objective: 1.0,
+        forcing: 1e-3,
+        least_gain: 1e-10,
+        least_ritz: 1.0,
+        is_exact: true,
+    }
 }
 
 /// Returns the last step of a run of Newton steps alone, and the positions after it.

@@ -19,13 +19,14 @@ impl Corrections {
         engine: &mut impl Engine,
         history: &History,
     ) -> Result<Option<Objectives>, GpuError> {
-        let request = self.tail.request(history.rule().tolerance);
+        let objective = history.last().max(MIN_SCALE);
+        let request = self.tail.request(objective, history.rule().tolerance);
         let Some(step) = engine.sweep_and_step(&self.step(OMEGA_BETWEEN), &request).await? else {
             return Ok(None);
         };
         let f = step.excess + self.metric().ideal_squared();
         let tolerance = history.rule().tolerance;
-        let (left, is_whole) = self.tail.record(&step, f.max(MIN_SCALE), tolerance);
+        let (left, is_whole) = self.tail.record(&step, f.max(MIN_SCALE), tolerance, engine.noise());
         let above = [history.last(), f].map(|f| f - self.least_objective());
         self.stage = match self.tail.is_stuck(&step, is_whole, above) {
             true => {

@@ -4,17 +4,6 @@
 //! spectrum (Meurant & Tichý, Numer. Algorithms 62, 2013), the model falls by at most ½ ρ (γ - α) further. The node is a
 //! share of the smallest Ritz value, an eigenvalue of Lanczos's matrix, which follows from the coefficients too.
 
-/// Share of the smallest Ritz value that counts as below the spectrum. A prototype of this method with shares of 0.3, 0.5, 0.7
-/// and 1 left more than twice the reported gain in 0, 0, 5 and 157 of 211 runs.
-const BELOW: f64 = 0.5;
-
-/// Number of iterations over which the fall of the smallest Ritz value is measured, the power of the fall by which the node is
-/// lowered, and the fall of a solution with fewer iterations. Without the fall, and with a first Ritz value of 1, 13 of 150 runs
-/// by `imr` on random meshes left more than twice the reported gain. With the fall, no run left more than twice the gain.
-const FALLS_OVER: usize = 2;
-const FALL_POWER: i32 = 4;
-const FIRST_FALL: f64 = 0.5;
-
 /// The coefficients of a solution by conjugate gradients, with the bound of its error.
 #[derive(Clone)]
 pub(crate) struct ErrorBound {
@@ -26,9 +15,20 @@ pub(crate) struct ErrorBound {
 }
 
 impl ErrorBound {
+    /// Share of the smallest Ritz value that counts as below the spectrum. A prototype of this method with shares of 0.3, 0.5, 0.7
+    /// and 1 left more than twice the reported gain in 0, 0, 5 and 157 of 211 runs.
+    pub(crate) const BELOW: f64 = 0.5;
+    /// Number of iterations over which the fall of the smallest Ritz value is measured, the power of the fall by which the node
+    /// is lowered, and the fall of a solution with fewer iterations. Without the fall, and with a first Ritz value of 1, 13 of 150
+    /// runs by `imr` on random meshes left more than twice the reported gain. With the fall, no run left more than twice the
+    /// gain.
+    pub(crate) const FALLS_OVER: usize = 2;
+    const FALL_POWER: i32 = 4;
+    pub(crate) const FIRST_FALL: f64 = 0.5;
+
     /// Begins a solution. `least_ritz` is the smallest Ritz value of earlier solutions.
     pub(crate) fn new(least_ritz: f64) -> Self {
-        let node = BELOW * least_ritz;
+        let node = Self::BELOW * least_ritz;
         Self { node, coefficients: Vec::with_capacity(64), gamma: 1.0 / node }
     }
 
@@ -40,7 +40,7 @@ impl ErrorBound {
             self.gamma = rest / (self.node * rest + beta);
         }
         self.coefficients.push([alpha, beta]);
-        let own = BELOW * self.least_ritz();
+        let own = Self::BELOW * self.least_ritz();
         if own < self.node {
             self.node = own;
             self.gamma = self.anew();
@@ -61,9 +61,10 @@ impl ErrorBound {
     pub(crate) fn refined(&mut self, rho: f64) -> f64 {
         let count = self.coefficients.len();
         let Some(&[alpha, _]) = self.coefficients.last() else { return f64::INFINITY };
-        let [before, now] = [count.saturating_sub(FALLS_OVER), count].map(|n| self.ritz_of(n));
-        let fall = if before.is_finite() { (now / before).min(1.0) } else { FIRST_FALL };
-        let node = BELOW * now * fall.powi(FALL_POWER);
+        let [before, now] =
+            [count.saturating_sub(Self::FALLS_OVER), count].map(|n| self.ritz_of(n));
+        let fall = if before.is_finite() { (now / before).min(1.0) } else { Self::FIRST_FALL };
+        let node = Self::BELOW * now * fall.powi(Self::FALL_POWER);
         if node < self.node {
             self.node = node;
             self.gamma = self.anew();

@@ -1,6 +1,7 @@
 //! The decisions about Newton steps of all vertices. Every engine follows the same decisions, and tests of the decisions need no
 //! engine.
 
+pub(crate) mod aggregation;
 mod bound;
 mod search;
 mod step;

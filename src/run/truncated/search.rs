@@ -1,7 +1,5 @@
 //! The line search along a Newton step of all vertices.
 
-/// Largest number of lengths that are tried along one step.
-const TRIALS: u32 = 10;
 /// Share of the predicted decrease that a trial must reach (Armijo).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
@@ -17,6 +15,9 @@ pub(crate) struct StepSearch {
 }
 
 impl StepSearch {
+    /// Largest number of lengths that are tried along one step.
+    pub(crate) const TRIALS: u32 = 10;
+
     /// Begins a search from the objective `here`. `descent` is the negative of its derivative along the step;
     /// without a positive one, no length is tried.
     pub(crate) fn new(here: f64, descent: f64) -> Self {
@@ -48,7 +49,7 @@ impl StepSearch {
                 0.5 * length
             }
         };
-        self.next = Some(shorter).filter(|next| self.trials < TRIALS && next.is_finite());
+        self.next = Some(shorter).filter(|next| self.trials < Self::TRIALS && next.is_finite());
     }
 
     /// Returns whether a tried length inverted a triangle or broke the shape guard.
@@ -81,8 +82,8 @@ mod tests {
         let (length, trials) = search(|t| Some((t - 0.2) * (t - 0.2)), 0.4);
         assert!((length - 0.2).abs() < 1e-12 && trials == 2);
         assert_eq!(search(|t| (t < 0.3).then_some(-t), 1.0), (0.25, 3));
-        assert_eq!(search(Some, 1.0), (0.0, TRIALS));
-        assert_eq!(search(|t| (t == 0.0).then_some(1.0), 1.0), (0.0, TRIALS));
+        assert_eq!(search(Some, 1.0), (0.0, StepSearch::TRIALS));
+        assert_eq!(search(|t| (t == 0.0).then_some(1.0), 1.0), (0.0, StepSearch::TRIALS));
         assert_eq!(search(|_| Some(1.0), f64::NAN), (0.0, 0));
     }
 }

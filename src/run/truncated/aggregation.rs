@@ -1,0 +1,163 @@
+//! The connectivity of the coarser levels of Newton steps: aggregates of vertices, and aggregates of aggregates.
+
+use crate::run::multilevel::Aggregates;
+
+/// Largest product of the numbers of neighbors of two members that may share an aggregate as neighbors. A hub with all
+/// its neighbors would be an aggregate of unlike vertices.
+pub(crate) const MOST_DEGREES: usize = 144;
+/// Factor on the correction of a coarser level. Plain aggregates are too stiff, as their members move alike. In a prototype,
+/// factors from 1.5 to 2.2 changed the time of a run by 4 % at most.
+pub(crate) const STIFFNESS: f64 = 1.8;
+/// Number of unknowns of an aggregate: a translation, and a turn with a scaling as a complex number.
+pub(crate) const UNKNOWNS: usize = 4;
+/// Share of its diagonal entry that a pivot of a block must exceed in single precision. A smaller pivot is rounding of the sums.
+pub(crate) const LEAST_PIVOT: f64 = 1e-6;
+/// Share of the unknowns that a level must leave out to repay its work.
+const LEAST_SHRINKAGE: f64 = 0.3;
+
+/// The factors of two steps of Chebyshev's method for the eigenvalues from 0.6 to 2.4: the factor of the first step by the
+/// residual, then of the first step and of the remaining residual in the sum of both steps. A matrix is a sum of semidefinite
+/// matrices of three blocks each, so the eigenvalues of D⁻¹A are at most 3, and the polynomial stays below 1 up to there.
+pub(crate) const CHEBYSHEV: [f64; 3] = {
+    let [low, high] = [0.6, 2.4];
+    let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
+    let ratio = 1.0 / (2.0 * middle / half - half / middle);
+    [1.0 / middle, 1.0 + ratio * half / middle, 2.0 * ratio / half]
+};
+
+/// The places of the blocks of a matrix, each row in ascending order of columns.
+pub(crate) struct Pattern {
+    pub(crate) start: Vec<u32>,
+    pub(crate) columns: Vec<u32>,
+    /// Place of the diagonal block of each row.
+    pub(crate) diagonal: Vec<u32>,
+}
+
+impl Pattern {
+    /// Makes the pattern of rows with ascending columns. Every row must have its diagonal.
+    pub(crate) fn of_rows(rows: impl Iterator<Item = Vec<u32>>) -> Self {
+        let mut pattern = Self { start: vec![0], columns: Vec::new(), diagonal: Vec::new() };
+        for (row, columns) in (0..).zip(rows) {
+            let before = columns.partition_point(|&column| column < row);
+            pattern.diagonal.push((pattern.columns.len() + before) as u32);
+            pattern.columns.extend(columns);
+            pattern.start.push(pattern.columns.len() as u32);
+        }
+        pattern
+    }
+
+    pub(crate) fn rows(&self) -> usize {
+        self.diagonal.len()
+    }
+
+    /// Returns the places of the blocks of a row.
+    #[inline(always)]
+    pub(crate) fn row(&self, row: usize) -> std::ops::Range<usize> {
+        self.start[row] as usize..self.start[row + 1] as usize
+    }
+
+    /// Returns the columns of a row, with its diagonal.
+    pub(crate) fn columns(&self, row: usize) -> &[u32] {
+        &self.columns[self.row(row)]
+    }
+
+    /// Joins the rows to aggregates of neighbors. Returns the aggregates, and the pattern of their matrix. `None` if there are at
+    /// most `least` rows, or hardly fewer aggregates.
+    pub(crate) async fn joined(&self, least: usize) -> Option<(Members, Self)> {
+        let rows = self.rows();
+        if rows <= least {
+            return None;
+        }
+        let degree = |row: usize| self.columns(row).len() - 1;
+        let neighbors = |row: usize| {
+            let is_near = move |&&other: &&u32| {
+                other as usize != row && degree(row) * degree(other as usize) <= MOST_DEGREES
+            };
+            self.columns(row).iter().filter(is_near).copied()
+        };
+        let members = Members::new(Aggregates::new(rows, neighbors).await).await;
+        if members.count() as f64 > (1.0 - LEAST_SHRINKAGE) * rows as f64 {
+            return None;
+        }
+        let pattern = members.pattern(|row| self.columns(row as usize).iter().copied());
+        Some((members, pattern))
+    }
+}
+
+/// The members of aggregates. Each vertex, or aggregate of the finer level, is a member of one.
+pub(crate) struct Members {
+    /// The aggregate of each member.
+    pub(crate) group: Vec<u32>,
+    /// Index in `members` of the first member of each aggregate, and at the end the number of members.
+    pub(crate) start: Vec<u32>,
+    pub(crate) members: Vec<u32>,
+}
+
+impl Members {
+    /// Lists the members of aggregates. Members without an aggregate become aggregates.
+    pub(crate) async fn new(mut aggregates: Aggregates) -> Self {
+        aggregates.add_lone();
+        let (start, members) = aggregates.members().await;
+        Self { group: aggregates.of, start, members }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Returns the members of an aggregate.
+    pub(crate) fn of(&self, aggregate: usize) -> &[u32] {
+        &self.members[self.start[aggregate] as usize..self.start[aggregate + 1] as usize]
+    }
+
+    /// Returns the pattern of the aggregates' matrix. `neighbors` lists the neighbors of a member; numbers beyond all members
+    /// have no aggregate.
+    pub(crate) fn pattern<N: Iterator<Item = u32>>(&self, neighbors: impl Fn(u32) -> N) -> Pattern {
+        Pattern::of_rows((0..self.count()).map(|aggregate| {
+            let near = self.of(aggregate).iter().flat_map(|&member| neighbors(member));
+            let mut columns: Vec<u32> =
+                near.filter_map(|member| self.group.get(member as usize).copied()).collect();
+            columns.push(aggregate as u32);
+            columns.sort_unstable();
+            columns.dedup();
+            columns
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parallel::pace::now;
+
+    /// The pattern of a path.
+    fn path(rows: u32) -> Pattern {
+        let near = |row: u32| row.saturating_sub(1)..rows.min(row + 2);
+        Pattern::of_rows((0..rows).map(|row| near(row).collect()))
+    }
+
+    #[test]
+    fn aggregates_of_a_path_form_a_path() {
+        let (members, joined) = now(path(40).joined(1)).unwrap();
+        assert_eq!((members.count(), joined.rows()), (14, 14));
+        let all: usize = (0..members.count()).map(|aggregate| members.of(aggregate).len()).sum();
+        assert_eq!(all, 40);
+        for row in 0..joined.rows() {
+            let near = row.saturating_sub(1) as u32..(row as u32 + 2).min(14);
+            assert!(joined.columns(row).iter().copied().eq(near), "{:?}", joined.columns(row));
+            assert_eq!(joined.columns[joined.diagonal[row] as usize], row as u32);
+        }
+    }
+
+    #[test]
+    fn few_rows_are_not_joined() {
+        assert!(now(path(12).joined(12)).is_none());
+        assert!(now(path(13).joined(12)).is_some());
+        assert!(now(path(1).joined(1)).is_none());
+    }
+
+    #[test]
+    fn rows_without_neighbors_are_not_joined() {
+        assert!(now(Pattern::of_rows((0..40).map(|row| vec![row])).joined(1)).is_none());
+    }
+}
