@@ -216,12 +216,14 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
     // The only coarse level has some 80 unknowns, whose inverse matrix exceeds a binding of the device.
     let mesh = bad_plate(870);
     let [large, small] = devices(&self::mesh());
-    let auto = Options::default();
+    // By this metric, runs do not end by Newton steps.
+    let auto = Options { scheme: Metric::ShapeSize.into(), ..Options::default() };
     let [with, without] = [&large, &small].map(|app| run(app, &mesh, &auto));
     assert!(with.corrections > 0 && !with.levels_left_out);
     assert!(without.corrections == 0 && without.levels_left_out);
     assert_eq!(without.stop, Stop::Converged);
-    let [with, without] = [with, without].map(|outcome| *f(&outcome, Metric::Imr).last().unwrap());
+    let [with, without] =
+        [with, without].map(|outcome| *f(&outcome, Metric::ShapeSize).last().unwrap());
     assert!((without / with - 1.0).abs() < 1e-6, "{without} for {with}");
 
     let asked = Options { method: Method::Multilevel, ..auto };

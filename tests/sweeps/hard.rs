@@ -224,7 +224,8 @@ fn the_gain_lost_to_rounding_is_reported() {
         assert_eq!(lost, 1.0, "on the {}", name(backend));
         let fine = fan(12, 1);
         let lost = run(&Smoother::new(&fine).unwrap(), &Options::default(), backend).lost;
-        assert!(lost < 1e-5, "{lost} on the {}", name(backend));
+        // A device evaluates f with an error of some 1e-7.
+        assert!(lost < 1e-4, "{lost} on the {}", name(backend));
     }
 }
 

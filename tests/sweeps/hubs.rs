@@ -72,21 +72,16 @@ fn gains_that_rise_now_and_then_do_not_prolong_a_run() {
 }
 
 /// Rounding in single precision hides slow modes around a hub. After 164 corrections around a vertex of 200, a run on a device
-/// had left 4.4e-5 and reported 2e-6, a former defect. Similar runs left up to 5.4e-6, on the CPU too.
+/// had left 4.4e-5 and reported 2e-6, a former defect. Newton steps bound the rest on both engines.
 #[test]
-fn a_long_run_around_a_hub_ends_in_double_precision() {
+fn a_run_around_a_hub_ends_on_its_engine() {
     let mesh = support::perturb_random(&support::hub(60, 1e-2), 1.0, 3);
     for backend in backends() {
         let (outcome, left) = with_gain_left(&mesh, None, Metric::Imr, backend);
         let label = format!("{} sweeps on the {}", outcome.sweeps, name(backend));
-        let on_device = !matches!(backend, Backend::Cpu);
-        assert_eq!(outcome.stop, Stop::Converged, "{label}");
-        assert_eq!(outcome.closing_sweeps > 0, on_device, "{label}");
-        assert!(left <= 1e-6, "{label}: {left:e}");
-        // Newton steps on the CPU bound the rest.
-        if on_device {
-            assert!(outcome.corrections > 16 && outcome.remaining.unwrap() >= 4e-6, "{label}");
-        }
+        assert_eq!((outcome.stop, outcome.closing_sweeps), (Stop::Converged, 0), "{label}");
+        assert!(outcome.newton_steps > 2 && outcome.corrections == 0, "{label}");
+        assert!(left <= 2.0 * outcome.remaining.unwrap() && left <= 1e-6, "{label}: {left:e}");
     }
 }
 
@@ -100,15 +95,20 @@ fn corrections_in_vain_at_the_end_do_not_prolong_a_run() {
     assert!(outcome.sweeps <= 62 && left <= 1e-6, "{left:e} after {} sweeps", outcome.sweeps);
 }
 
-/// The device would converge with its last permitted sweep, and the CPU may do no further sweep.
+/// Corrections of a bounded run end in double precision. The device would converge with its last permitted sweep, and the CPU
+/// may do no further sweep.
 #[test]
 fn a_run_that_would_end_in_double_precision_does_no_sweep_too_many() {
-    let mesh = support::perturb_random(&support::hub(60, 1e-2), 1.0, 3);
-    let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { scheme: Metric::Imr.into(), ..Options::default() };
+    let mesh = support::perturb_random(&support::hub(50, 1e-2), 1.0, 3);
+    let topology = Topology::new(&mesh).unwrap();
+    let sizes = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_targets(&sizes).unwrap();
+    let options = Options { scheme: Metric::Rms.into(), max_move: Some(3.0), ..Options::default() };
     let gpu = &backends()[1];
     let whole = run(&smoother, &options, gpu);
     let max_sweeps = whole.sweeps - whole.closing_sweeps;
+    assert!(whole.closing_sweeps > 0);
     let cut = run(&smoother, &Options { max_sweeps, ..options }, gpu);
     assert_eq!((cut.stop, cut.sweeps, cut.closing_sweeps), (Stop::MaxSweeps, max_sweeps, 0));
 }

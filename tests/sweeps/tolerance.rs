@@ -162,33 +162,20 @@ fn a_loose_tolerance_holds_in_a_slow_decay() {
 }
 
 /// On meshes whose sizes differ by factors of 1,000 and 10,000, f in single precision has errors of up to 1e-4. A former
-/// defect: runs on the GPU reported as little as a hundredth of the remaining gain.
+/// defect: runs on the GPU reported as little as a hundredth of the remaining gain. The bound of Newton steps comes from
+/// derivatives, not from f, and holds on these meshes.
 #[test]
-fn the_rest_above_the_limit_is_not_below_the_error_of_single_precision() {
-    let gpu = &backends()[1];
-    let mut most: f64 = 0.0;
+fn newton_steps_on_a_device_bound_the_rest_on_graded_meshes() {
     for ratio in [1e-3, 1e-4] {
         let mesh = support::perturb_random(&support::graded(32, ratio), 0.3, 5);
-        let smoother = Smoother::new(&mesh).unwrap();
-        for metric in [Metric::ShapeSize, Metric::SoftSize, Metric::Tmop94] {
-            // These runs end on the device. Longer runs end on the CPU.
-            for max_sweeps in [40, 50, 60, 70] {
-                let options = Options { scheme: metric.into(), max_sweeps, ..Options::default() };
-                let outcome = run(&smoother, &options, gpu);
-                assert_eq!((outcome.stop, outcome.closing_sweeps), (Stop::MaxSweeps, 0));
-                let Some(told) = outcome.remaining else { continue };
-                let f = smoother.f(metric, &outcome.points).unwrap();
-                let error = (history(&outcome, metric).last().unwrap() / f - 1.0).abs();
-                let label = format!("{metric} at {ratio}, {max_sweeps} sweeps");
-                assert!(
-                    error <= told * (1.0 + 1e-6),
-                    "{label}: {told:e} with an error of {error:e}"
-                );
-                most = most.max(error);
-            }
+        for metric in [Metric::SoftSize, Metric::Tmop94] {
+            let (outcome, left) = with_gain_left(&mesh, None, metric, &backends()[1]);
+            let (told, sweeps) = (outcome.remaining.unwrap(), outcome.sweeps);
+            let label = format!("{metric} at {ratio}, {sweeps} sweeps: {told:e} of {left:e}");
+            assert_eq!(outcome.stop, Stop::Converged, "{label}");
+            assert!(left <= 2.0 * told, "{label}");
         }
     }
-    assert!(most > 1e-6, "{most:e}: the test has no hard mesh");
 }
 
 /// Returns the outcome of a run on a mesh with targets, and the gain of further sweeps on the CPU, as a share of f. The

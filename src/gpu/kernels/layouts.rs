@@ -323,6 +323,56 @@ bind_layouts! {
         sums: ReadWrite array<vec2f>,
     }
 
+    /// A mesh, its Hessian at the free vertices, and the places of the free vertices in their aggregates.
+    Hessian, HessianBindings, ["params.wgsl", "levels/rings.wgsl", "pairs.wgsl", "patch.wgsl"] {
+        params: Uniform Params,
+        op: DynamicUniform StepOp,
+        positions: Positions,
+        /// Start of each free vertex's one-ring. The bit HELD is set if the vertex must stay.
+        ring_start: Read array<u32>,
+        ring: Read array<u32>,
+        structure: Read array<u32>,
+        /// For each entry of the one-rings, the Hessian's 2x2 block of both vertices, column by column.
+        entries: ReadWrite array<vec4f>,
+        fine: ReadWrite array<vec2f>,
+        rows: ReadWrite array<vec4f>,
+    }
+
+    /// The vectors of conjugate gradients on the free vertices, the Hessian, and the first level of aggregates.
+    Solution, SolutionBindings, [
+        "params.wgsl", "levels/rings.wgsl", "pairs.wgsl", "truncated/blocks.wgsl"
+    ] {
+        params: Uniform Params,
+        op: DynamicUniform StepOp,
+        /// Start of each free vertex's one-ring. The bit HELD is set if the vertex must stay.
+        ring_start: Read array<u32>,
+        ring: Read array<u32>,
+        structure: Read array<u32>,
+        /// For each entry of the one-rings, the Hessian's 2x2 block of both vertices, column by column.
+        entries: Read array<vec4f>,
+        fine: ReadWrite array<vec2f>,
+        rows: ReadWrite array<vec4f>,
+        state: ReadWrite StepState,
+    }
+
+    /// The levels of aggregates of a Newton step.
+    Lattice, LatticeBindings, [
+        "params.wgsl", "pairs.wgsl", "patch.wgsl", "truncated/blocks.wgsl", "truncated/lattice.wgsl"
+    ] {
+        params: Uniform Params,
+        op: DynamicUniform LatticeOp,
+        structure: Read array<u32>,
+        rows: ReadWrite array<vec4f>,
+        state: Read StepState,
+    }
+
+    /// The state of a Newton step, and that of the trials along it.
+    Trials, TrialsBindings, ["params.wgsl", "search/places.wgsl", "pairs.wgsl"] {
+        params: Uniform Params,
+        vectors: ReadWrite array<vec2f>,
+        state: ReadWrite StepState,
+    }
+
     /// Inputs and results of a check of the adapter's arithmetic.
     Arithmetic, ArithmeticBindings, ["params.wgsl", "pairs.wgsl", "patch.wgsl"] {
         params: Uniform Params,
@@ -335,6 +385,11 @@ impl BindLayout {
     /// Returns whether kernels of this layout bind the positions of a mesh.
     pub(crate) fn has_positions(self) -> bool {
         self.bindings().iter().any(|binding| binding.access == Access::Positions)
+    }
+
+    /// Returns whether each dispatch of a kernel of this layout has a uniform of its own.
+    pub(crate) fn has_operation(self) -> bool {
+        self.bindings().iter().any(|binding| binding.access == Access::DynamicUniform)
     }
 
     /// Returns the form in which kernels of this layout bind positions, for a mesh that needs the form `positions`.

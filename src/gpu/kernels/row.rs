@@ -28,6 +28,8 @@ pub(crate) enum User {
     Sweeps,
     /// Corrections from coarser levels.
     Corrections,
+    /// Newton steps of all vertices at the end of a run.
+    Steps,
     /// The arithmetic check of an adapter, made once.
     Check,
 }
@@ -38,6 +40,8 @@ pub(crate) enum Source {
     File(&'static str),
     /// The formulas of the kernel's metric.
     ActiveMetric,
+    /// The derivatives of the kernel's metric by the invariants of a triangle.
+    MetricSlopes,
     /// The objectives of the kernel's metrics.
     TrackedMetrics,
     /// The indices of the kernel's metrics in an evaluation.
@@ -61,6 +65,17 @@ impl Arguments for () {
 impl Arguments for Metric {
     fn list(plan: Option<&Plan>) -> Vec<Self> {
         plan.map_or(Metric::ALL.to_vec(), |plan| vec![plan.scheme.base()])
+    }
+}
+
+/// A metric that is a function of the invariants of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct OfInvariants(pub(crate) Metric);
+
+impl Arguments for OfInvariants {
+    fn list(plan: Option<&Plan>) -> Vec<Self> {
+        let metrics = <Metric as Arguments>::list(plan).into_iter();
+        metrics.filter(|metric| metric.curved().is_some()).map(Self).collect()
     }
 }
 
@@ -106,6 +121,12 @@ impl From<()> for Composition {
 impl From<Metric> for Composition {
     fn from(metric: Metric) -> Self {
         vec![metric].into()
+    }
+}
+
+impl From<OfInvariants> for Composition {
+    fn from(metric: OfInvariants) -> Self {
+        metric.0.into()
     }
 }
 

@@ -6,8 +6,9 @@ use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::row::{Composition, Source};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
-    ALTITUDE_ERROR, AT_DISC, FINISH_WORKGROUP, HELD, HISTORY, INVERTED, MIN_NORMAL, NO_GUARD,
-    SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS, TINY, WORKGROUP, WORST,
+    ALTITUDE_ERROR, AT_DISC, BISECTIONS, FINISH_WORKGROUP, HELD, HIDDEN, HISTORY, INVERTED,
+    MIN_NORMAL, NO_GUARD, SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS, STEP_TRIALS, TINY,
+    WORKGROUP, WORST,
 };
 use crate::layout::MapKind;
 use crate::metric::Metric;
@@ -21,6 +22,7 @@ use crate::run::Stop;
 use crate::run::multilevel::search::{CLOSE, MAX_FIRST_LENGTH};
 use crate::run::multilevel::{MIN_FIRST_LENGTH, NONE, SMOOTHING};
 use crate::run::secant::MIN_CURVATURE;
+use crate::run::truncated::{ErrorBound, StepRequest, StepSearch, aggregation};
 use crate::run::{JITTER, MIN_SCALE, NOISE, line_search, regularization};
 
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
@@ -93,6 +95,7 @@ impl Kernel {
             match part {
                 Source::File(text) => source.push_str(text),
                 Source::ActiveMetric => source.push_str(&active_metric(&composition)),
+                Source::MetricSlopes => source.push_str(&metric_slopes(&composition)),
                 Source::TrackedMetrics => source.push_str(&tracked_metrics(&composition.metrics)),
                 Source::TrackedSlots => source.push_str(&tracked_slots(&composition.metrics)),
                 Source::UntanglingEnergy => source.push_str(&untangling_energy()),
@@ -118,6 +121,11 @@ fn constants() -> String {
         ("NONE", NONE),
         ("TRIALS", SearchRule::SWEEP.trials),
         ("SEARCH_TRIALS", SEARCH_TRIALS),
+        ("STEP_TRIALS", STEP_TRIALS),
+        ("MOST_STEP_TRIALS", StepSearch::TRIALS),
+        ("MOST_ITERATIONS", StepRequest::MOST_ITERATIONS),
+        ("BISECTIONS", BISECTIONS),
+        ("FALLS_OVER", ErrorBound::FALLS_OVER as u32),
     ] {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
     }
@@ -151,6 +159,15 @@ fn constants() -> String {
         ("MIN_FIRST_LENGTH", MIN_FIRST_LENGTH),
         ("MAX_FIRST_LENGTH", MAX_FIRST_LENGTH),
         ("CLOSE", CLOSE),
+        ("HIDDEN", HIDDEN),
+        ("STIFFNESS", aggregation::STIFFNESS),
+        ("FIRST_STEP", aggregation::CHEBYSHEV[0]),
+        ("STEP_AGAIN", aggregation::CHEBYSHEV[1]),
+        ("SECOND_STEP", aggregation::CHEBYSHEV[2]),
+        ("LEAST_PIVOT", aggregation::LEAST_PIVOT),
+        ("BELOW", ErrorBound::BELOW),
+        ("FIRST_FALL", ErrorBound::FIRST_FALL),
+        ("NEAR_LEAST", StepRequest::NEAR_LEAST),
     ] {
         let _ = writeln!(text, "const {name}: f32 = {value:?}f;");
     }
@@ -219,6 +236,17 @@ fn difference_width(p: Patch) -> f32 {{ return DIFFERENCE * least_height(p); }}
         }
     }
     text
+}
+
+/// Returns the function of a triangle that gives the derivatives of the metric by the invariants.
+fn metric_slopes(composition: &Composition) -> String {
+    let Some(&metric) = composition.metrics.first() else { return String::new() };
+    let (formulas, name) = (metric.properties().wgsl, wgsl_name(metric));
+    format!(
+        "{INVARIANTS}{formulas}
+fn metric_slopes(t: Corner) -> Slopes {{ return {name}_slopes(invariants(t)); }}
+"
+    )
 }
 
 /// Returns the eigenvalue floor for the energy of untangling: that of imr, as the energy is a variant of the inverse

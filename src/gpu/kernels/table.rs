@@ -5,7 +5,7 @@
 
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::layouts::BindLayout;
-use crate::gpu::kernels::row::{Arguments, Composition, Row, Source, User};
+use crate::gpu::kernels::row::{Arguments, Composition, OfInvariants, Row, Source, User};
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, SLOTS, WORKGROUP};
 use crate::layout::MapKind;
 use crate::metric::Metric;
@@ -487,6 +487,215 @@ kernels! {
         sees_bounds: false,
         user: Corrections,
         source: ["secants/begin_pair.wgsl"],
+    }
+
+    /// Computes the centers and sizes of aggregates of vertices, and the places of their vertices.
+    PlaceMembers {
+        entry_point: "place_members",
+        layout: Hessian,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/place_members.wgsl"],
+    }
+
+    /// The Hessian at the free vertices, or the positive semidefinite part of it.
+    FindHessian(metric: OfInvariants) {
+        entry_point: "find_hessian",
+        layout: Hessian,
+        width: WORKGROUP,
+        sees_maps: true,
+        sees_bounds: false,
+        user: Steps,
+        source: ["one_ring.wgsl", MetricSlopes, "truncated/vectors.wgsl", "truncated/find_hessian.wgsl"],
+    }
+
+    /// The matrix of the first level of aggregates.
+    SumOverMembers {
+        entry_point: "sum_over_members",
+        layout: Solution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/sum_over_members.wgsl"],
+    }
+
+    /// Ends an iteration of conjugate gradients, and sums the residual over the aggregates.
+    Advance {
+        entry_point: "advance",
+        layout: Solution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/advance.wgsl"],
+    }
+
+    /// The preconditioned residual.
+    Precondition {
+        entry_point: "precondition",
+        layout: Solution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/precondition.wgsl"],
+    }
+
+    /// Begins an iteration of conjugate gradients.
+    BeginIteration {
+        entry_point: "begin_iteration",
+        layout: Solution,
+        width: FINISH_WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/begin_iteration.wgsl"],
+    }
+
+    /// The next direction of conjugate gradients.
+    Turn {
+        entry_point: "turn",
+        layout: Solution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/turn.wgsl"],
+    }
+
+    /// The product of the Hessian and the direction.
+    Multiply {
+        entry_point: "multiply",
+        layout: Solution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/multiply.wgsl"],
+    }
+
+    /// Judges an iteration of conjugate gradients.
+    JudgeIteration {
+        entry_point: "judge_iteration",
+        layout: Solution,
+        width: FINISH_WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/judge_iteration.wgsl"],
+    }
+
+    /// The centers and sizes of coarser aggregates.
+    JoinAggregates {
+        entry_point: "join_aggregates",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/join_aggregates.wgsl"],
+    }
+
+    /// The places of aggregates in coarser aggregates.
+    FindShifts {
+        entry_point: "find_shifts",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/find_shifts.wgsl"],
+    }
+
+    /// The matrix of a coarser level, from the next finer level's.
+    SumBlocks {
+        entry_point: "sum_blocks",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/sum_blocks.wgsl"],
+    }
+
+    /// Inverts the diagonal blocks of a level's matrix.
+    InvertDiagonal {
+        entry_point: "invert_diagonal",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/invert_diagonal.wgsl"],
+    }
+
+    /// The residual of a level, summed over the aggregates of the next coarser level.
+    RestrictResidual {
+        entry_point: "restrict_residual",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/restrict_residual.wgsl"],
+    }
+
+    /// Adds the motion of coarser aggregates to the solution of a level.
+    ProlongMotion {
+        entry_point: "prolong",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/prolong.wgsl"],
+    }
+
+    /// The residual of a level, and the first step of Chebyshev's method.
+    SmoothResidual {
+        entry_point: "smooth_residual",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/smooth_residual.wgsl"],
+    }
+
+    /// The second step of Chebyshev's method on a level of aggregates.
+    SmoothAgain {
+        entry_point: "smooth_again",
+        layout: Lattice,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/smooth_again.wgsl"],
+    }
+
+    /// Begins the trials of the lengths of a Newton step.
+    BeginTrials {
+        entry_point: "begin_trials",
+        layout: Trials,
+        width: 1,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/begin_trials.wgsl"],
+    }
+
+    /// Judges a trial of the length of a Newton step.
+    JudgeLength {
+        entry_point: "judge_length",
+        layout: Trials,
+        width: 1,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Steps,
+        source: ["truncated/judge_length.wgsl"],
     }
 
     /// Checks the arithmetic of the adapter on inputs where a compiler that reorders sums loses digits.

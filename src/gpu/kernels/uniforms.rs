@@ -40,6 +40,13 @@ pub(crate) const TINY: f64 = 1e-30;
 
 /// Number of lengths tried along each correction that an application encodes.
 pub(crate) const SEARCH_TRIALS: u32 = 3;
+/// Number of lengths tried along a Newton step in one submission, and in all.
+pub(crate) const STEP_TRIALS: u32 = 2;
+/// Decrease of the objective, as a share, that single precision hides from the trials of a Newton step.
+pub(crate) const HIDDEN: f64 = 3e-8;
+/// Number of bisections by which a device finds the smallest Ritz value, in single precision.
+pub(crate) const BISECTIONS: u32 = 24;
+
 /// Number of entries in front of the partial sums in the vectors of the levels: the totals, and the state of a line
 /// search on the device, as in shaders/search/places.wgsl.
 pub(crate) const SEARCH_STATE: u32 = 7;
@@ -273,6 +280,120 @@ shared_structs! {
         /// 1 if sum_secants.wgsl sums products with the correction, 0 for products with the gradient.
         is_after: u32,
         padding: vec2u,
+    }
+
+    /// An operation of a Newton step on the free vertices, or on the first level of their aggregates.
+    StepOp {
+        /// Number of vertices, aggregates or blocks of this dispatch. Invocations beyond them do nothing.
+        rows: u32,
+        /// Number of free vertices.
+        vertices: u32,
+        /// Offset of the binding in the buffer of one-rings, in entries.
+        ring_base: u32,
+        /// Distance between two vectors in `fine`.
+        vector: u32,
+        /// Number of invocations that write partial sums.
+        partials: u32,
+        /// 1 if find_hessian.wgsl computes the positive semidefinite part, 0 for the whole Hessian.
+        is_positive: u32,
+        /// Offset in `structure` of the aggregate of each free vertex.
+        aggregate_of: u32,
+        /// Offset in `structure` of the start of each aggregate's members. Starts count from `members`.
+        member_starts: u32,
+        /// Offset in `structure` of the members of all aggregates.
+        members: u32,
+        /// Offset in `structure` of the start of each row of the first level's matrix.
+        starts: u32,
+        /// Offset in `structure` of the column of each block.
+        columns: u32,
+        /// Offset in `rows` of the first level's matrix.
+        blocks: u32,
+        /// Offset in `rows` of the inverses of its diagonal blocks.
+        inverses: u32,
+        /// Offset in `rows` of the centers and sizes of the aggregates.
+        extents: u32,
+        /// Offset in `rows` of the first level's right-hand side.
+        right: u32,
+        /// Offset in `rows` of its first step of Chebyshev's method.
+        step: u32,
+        /// Offset in `rows` of its solution.
+        solution: u32,
+        padding: u32,
+        more_padding: vec2u,
+    }
+
+    /// An operation on a level of aggregates, or between the level and the next coarser level. Offsets are in `structure`
+    /// or `rows`.
+    LatticeOp {
+        /// Number of aggregates or blocks of this dispatch. Invocations beyond them do nothing.
+        rows: u32,
+        /// Structure: the start of each row of the matrix, and the column of each block.
+        starts: u32,
+        columns: u32,
+        /// Structure: the coarser aggregate of each aggregate, the start of each coarser aggregate's members, the members.
+        aggregate_of: u32,
+        member_starts: u32,
+        members: u32,
+        /// Rows: the matrix, and the inverses of its diagonal blocks.
+        blocks: u32,
+        inverses: u32,
+        /// Rows: the right-hand side, the solution, the first step of Chebyshev's method, and the residual before that step.
+        right: u32,
+        solution: u32,
+        step: u32,
+        left: u32,
+        /// Rows: the centers and sizes, and the places in the coarser aggregates.
+        extents: u32,
+        shifts: u32,
+        /// The same of the next coarser level, where kernels need them.
+        coarse_starts: u32,
+        coarse_columns: u32,
+        coarse_blocks: u32,
+        coarse_inverses: u32,
+        coarse_right: u32,
+        coarse_solution: u32,
+        coarse_step: u32,
+        coarse_extents: u32,
+        padding: vec2u,
+    }
+
+    /// The state of a Newton step: of conjugate gradients, and of the trials of lengths. Gains are sums over the triangles.
+    StepState {
+        /// Nonzero once conjugate gradients have ended.
+        is_solved: u32,
+        iterations: u32,
+        /// 1 if conjugate gradients have met negative curvature.
+        is_curved_down: u32,
+        /// Nonzero once the length of the step is known.
+        is_searched: u32,
+        trials: u32,
+        /// 1 if a tried length inverted a triangle or broke the shape guard.
+        is_broken: u32,
+        /// The accepted length; 0 without any.
+        length: f32,
+        next_length: f32,
+        /// The coefficients α and β of the present iteration, and ρ.
+        alpha: f32,
+        beta: f32,
+        rho: f32,
+        model_gain: f32,
+        /// Negative derivative of the objective along the step.
+        descent: f32,
+        /// Bound of the gain that remains to the model.
+        bound: f32,
+        least_ritz: f32,
+        /// The node and γ of the bound, and of the bound of steps that cannot end the run.
+        node: f32,
+        gamma: f32,
+        rough_node: f32,
+        rough_gamma: f32,
+        /// The request of the host (StepRequest in src/run/truncated/step.rs).
+        forcing: f32,
+        least_gain: f32,
+        padding: f32,
+        /// Sums of q² - ideal² before and after the step, as pairs of floats.
+        here: vec2f,
+        there: vec2f,
     }
 
     /// The state of a run. Written by finish.wgsl, and by the kernels of judged/ for sweeps that an application

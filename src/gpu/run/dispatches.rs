@@ -265,7 +265,8 @@ impl Dispatches {
     }
 }
 
-fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
+/// Returns the constants of a run by a plan.
+pub(super) fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
     let triangles = problem.judged_triangles().len() as f64;
     let base = plan.scheme.base();
     let ideal_sum = base.ideal_squared() * triangles;

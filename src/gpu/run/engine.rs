@@ -16,11 +16,13 @@ use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::levels::{Fitting, Levels};
 use crate::gpu::run::secants::Secants;
 use crate::gpu::run::stiffness;
+use crate::gpu::run::truncated::Truncated;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
 use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
+use crate::run::truncated::{NewtonStep, StepRequest};
 use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Stop, SweepParams};
 
 /// Relative error of f that the device sums from terms in single precision. Repeated evaluations on lavapipe differ by
@@ -51,6 +53,8 @@ pub(crate) struct GpuEngine<'a> {
     secants: Option<Secants>,
     /// Source of `levels`: the hierarchy on the host.
     hierarchy: Option<Hierarchy>,
+    /// The mesh prepared for Newton steps of all vertices. `None` before the first step.
+    truncated: Option<Truncated>,
     waiting: Waiting,
     /// Number of evaluations read back so far.
     evaluated: u32,
@@ -87,9 +91,15 @@ impl<'a> GpuEngine<'a> {
             levels,
             secants,
             hierarchy,
+            truncated: None,
             waiting,
             evaluated,
         })
+    }
+
+    #[cfg(test)]
+    pub(super) fn truncated(&self) -> Option<&Truncated> {
+        self.truncated.as_ref()
     }
 
     fn submit(&self, encode: impl FnOnce(&mut Passes<'_>)) -> Result<(), GpuError> {
@@ -252,6 +262,7 @@ impl Engine for GpuEngine<'_> {
 
     fn set_maps(&mut self, problem: &Problem) -> Result<(), GpuError> {
         self.problem = problem.clone();
+        self.truncated = None;
         self.mesh.write_maps(self.gpu, problem)?;
         if problem.has_local_maps() {
             // Secant pairs belong to levels in the coordinates of the earlier maps.
@@ -281,7 +292,7 @@ impl Engine for GpuEngine<'_> {
 
     async fn set_hierarchy(&mut self, hierarchy: Hierarchy) -> Result<(), GpuError> {
         // The old levels are dropped first, as both at once would take more memory than the mesh itself.
-        self.levels = None;
+        (self.levels, self.truncated) = (None, None);
         let Self { gpu, problem, mesh, dispatches, secants, .. } = self;
         let levels =
             Levels::new(gpu, problem, mesh, dispatches, &hierarchy, Fitting::ByHost).await?;
@@ -331,6 +342,29 @@ impl Engine for GpuEngine<'_> {
         let proposal = self.proposal(totals).await;
         self.secants = secants;
         proposal
+    }
+
+    async fn sweep_and_step(
+        &mut self,
+        step: &SweepParams,
+        request: &StepRequest,
+    ) -> Result<Option<NewtonStep>, GpuError> {
+        let Self { gpu, problem, mesh, dispatches, truncated, waiting, .. } = self;
+        // In single precision, steps on strongly stretched triangles do not end a run.
+        if problem.has_local_maps() || mesh.parts.count() > 1 {
+            return Ok(None);
+        }
+        if truncated.is_none() {
+            *truncated = match Truncated::new(gpu, problem, mesh, dispatches).await {
+                Ok(prepared) => Some(prepared),
+                Err(GpuError::Limit { .. } | GpuError::OutOfMemory { .. }) => return Ok(None),
+                Err(error) => return Err(error),
+            };
+        }
+        let Some(truncated) = truncated else { return Ok(None) };
+        let count = problem.judged_triangles().len() as f64;
+        let taken = truncated.sweep_and_step(gpu, dispatches, step, request, count, *waiting);
+        Ok(Some(taken.await?))
     }
 
     fn forget(&mut self) {

@@ -4,14 +4,13 @@ use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::encode::Passes;
-use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{CoarseOp, FineOp, NO_GUARD, TransferOp, WORKGROUP};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::mesh::RingPart;
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::listing::{
-    Bound, Dispatch, Groups, Listing, Op, SUMS, TOTALS, Uploaded, coarse_op,
+    Bound, Dispatch, Groups, Listing, Op, SUMS, TOTALS, Uploaded, coarse_op, encode, uniforms,
 };
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
@@ -270,21 +269,14 @@ impl Levels {
         let op = match step.op {
             Op::Fine(op) => Op::Fine(FineOp { length, ..op }.smoothed(self.smoothing)),
             // These operations have neither a length nor a metric.
-            Op::Transfer(_) | Op::Coarse(_) => step.op,
+            Op::Transfer(_) | Op::Coarse(_) | Op::Step(_) | Op::Lattice(_) => step.op,
         };
         let at = u64::from(step.number * self.stride);
         gpu.queue.write_buffer(&self.ops, at, op.bytes());
     }
 
     fn encode(&self, passes: &mut Passes<'_>, step: &Dispatch) {
-        passes.run(&step.pipeline, None, |pass| {
-            let uniform = step.number * self.stride;
-            pass.set_bind_group(0, &self.bind_groups[step.bind_group], &[uniform]);
-            match step.groups {
-                Groups::ForRows => dispatch(pass, step.op.rows()),
-                Groups::Just(groups) => pass.dispatch_workgroups(groups, 1, 1),
-            }
-        });
+        encode(passes, &self.bind_groups, self.stride, step);
     }
 }
 
@@ -307,23 +299,4 @@ fn kernels(metric: Metric, has_guard: bool, hierarchy: &Hierarchy) -> Vec<Kernel
         kernels.extend([Kernel::Chebyshev, Kernel::MatrixVector]);
     }
     kernels
-}
-
-/// Returns the uniforms of `count` listed dispatches as one buffer's bytes, and the distance in bytes between two
-/// successive uniforms.
-fn uniforms<'d>(
-    gpu: &Gpu,
-    listed: impl Iterator<Item = &'d Dispatch>,
-    count: u32,
-) -> (u32, Vec<u8>) {
-    let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
-    let largest = size_of::<FineOp>().max(size_of::<TransferOp>()).max(size_of::<CoarseOp>());
-    let stride = (largest as u32).next_multiple_of(alignment);
-    let mut ops = vec![0u8; (stride * count) as usize];
-    for step in listed {
-        let at = (step.number * stride) as usize;
-        let op = step.op.bytes();
-        ops[at..at + op.len()].copy_from_slice(op);
-    }
-    (stride, ops)
 }

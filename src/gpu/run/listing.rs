@@ -5,17 +5,22 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, uniform, zeroed};
+use crate::gpu::encode::Passes;
+use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::layouts::{CoarseBindings, FineBindings, TransferBindings};
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::kernels::uniforms::{CoarseOp, FineOp, SEARCH_STATE, TransferOp};
+use crate::gpu::kernels::uniforms::{
+    CoarseOp, FineOp, LatticeOp, SEARCH_STATE, StepOp, TransferOp,
+};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::pages::Pages;
 use crate::gpu::scope::scoped;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Level, NONE, Sparse};
 
 /// A dispatch of a kernel with its uniform.
+#[derive(Clone)]
 pub(super) struct Dispatch {
     pub(super) pipeline: Pipeline,
     pub(super) op: Op,
@@ -32,6 +37,8 @@ pub(super) enum Op {
     Fine(FineOp),
     Transfer(TransferOp),
     Coarse(CoarseOp),
+    Step(StepOp),
+    Lattice(LatticeOp),
 }
 
 impl Op {
@@ -40,6 +47,8 @@ impl Op {
             Op::Fine(op) => op.rows,
             Op::Transfer(op) => op.rows,
             Op::Coarse(op) => op.rows,
+            Op::Step(op) => op.rows,
+            Op::Lattice(op) => op.rows,
         }
     }
 
@@ -48,6 +57,8 @@ impl Op {
             Op::Fine(op) => bytemuck::bytes_of(op),
             Op::Transfer(op) => bytemuck::bytes_of(op),
             Op::Coarse(op) => bytemuck::bytes_of(op),
+            Op::Step(op) => bytemuck::bytes_of(op),
+            Op::Lattice(op) => bytemuck::bytes_of(op),
         }
     }
 }
@@ -75,6 +86,7 @@ pub(super) fn coarse_op(rows: u32) -> CoarseOp {
 }
 
 /// The number of workgroups of a dispatch.
+#[derive(Clone, Copy)]
 pub(super) enum Groups {
     /// As many workgroups as the rows of the operation need.
     ForRows,
@@ -314,4 +326,50 @@ pub(super) struct Uploaded {
     pub(super) vectors: wgpu::Buffer,
     pub(super) gradient: wgpu::Buffer,
     pub(super) direction: wgpu::Buffer,
+}
+
+/// Encodes a dispatch. `stride` is the distance between successive uniforms, in bytes.
+pub(super) fn encode(
+    passes: &mut Passes<'_>,
+    bind_groups: &[wgpu::BindGroup],
+    stride: u32,
+    step: &Dispatch,
+) {
+    passes.run(&step.pipeline, None, |pass| {
+        // Trials have no operation of their own.
+        let uniform = [step.number * stride];
+        let offsets =
+            if step.pipeline.kernel.layout().has_operation() { &uniform[..] } else { &[] };
+        pass.set_bind_group(0, &bind_groups[step.bind_group], offsets);
+        match step.groups {
+            Groups::ForRows => dispatch(pass, step.op.rows()),
+            Groups::Just(groups) => pass.dispatch_workgroups(groups, 1, 1),
+        }
+    });
+}
+
+/// Returns the uniforms of `count` listed dispatches as one buffer's bytes, and the distance in bytes between two
+/// successive uniforms.
+pub(super) fn uniforms<'d>(
+    gpu: &Gpu,
+    listed: impl Iterator<Item = &'d Dispatch>,
+    count: u32,
+) -> (u32, Vec<u8>) {
+    let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+    let sizes = [
+        size_of::<FineOp>(),
+        size_of::<TransferOp>(),
+        size_of::<CoarseOp>(),
+        size_of::<StepOp>(),
+        size_of::<LatticeOp>(),
+    ];
+    let largest = sizes.into_iter().fold(0, usize::max);
+    let stride = (largest as u32).next_multiple_of(alignment);
+    let mut ops = vec![0u8; (stride * count) as usize];
+    for step in listed {
+        let at = (step.number * stride) as usize;
+        let op = step.op.bytes();
+        ops[at..at + op.len()].copy_from_slice(op);
+    }
+    (stride, ops)
 }

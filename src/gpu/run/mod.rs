@@ -7,6 +7,7 @@ mod listing;
 mod pages;
 mod secants;
 pub(crate) mod stiffness;
+mod truncated;
 
 pub(crate) use dispatches::Dispatches;
 pub(crate) use engine::GpuEngine;

@@ -1,0 +1,20 @@
+// Adds up partial sums in one workgroup.
+
+var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
+
+// Returns the sum of all partial sums, the same for each invocation.
+fn total(local: u32) -> f32 {
+    var sum = vec2(0.0);
+    for (var k = local; k < op.partials; k += FINISH_WORKGROUP) {
+        sum = pair_add(sum, fine[sum_at(k)]);
+    }
+    totals[local] = sum;
+    for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
+        workgroupBarrier();
+        if local < half {
+            totals[local] = pair_add(totals[local], totals[local + half]);
+        }
+    }
+    workgroupBarrier();
+    return totals[0].x + totals[0].y;
+}

@@ -1,0 +1,449 @@
+//! The list of the dispatches of a Newton step, and their buffers and bind groups.
+
+use wgpu::BufferUsages as Usage;
+
+use super::nest::Nest;
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::buffers::{bytes, filled, filled_with_pauses, uniform, zeroed};
+use crate::gpu::device::size::{check_limit, objective_invocations};
+use crate::gpu::kernels::form::MeshForm;
+use crate::gpu::kernels::layouts::{
+    CoarseBindings, FineBindings, HessianBindings, LatticeBindings, SolutionBindings,
+    TrialsBindings,
+};
+use crate::gpu::kernels::row::OfInvariants;
+use crate::gpu::kernels::table::Kernel;
+use crate::gpu::kernels::uniforms::{
+    CoarseOp, FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepOp, StepState, WORKGROUP,
+};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::run::dispatches::{Dispatches, params};
+use crate::gpu::run::listing::{Dispatch, Groups, Op, SUMS, TOTALS, coarse_op, uniforms};
+use crate::gpu::scope::scoped;
+use crate::layout::Problem;
+use crate::parallel::pace::pause;
+use crate::run::multilevel::NONE;
+use crate::run::truncated::StepRequest;
+
+/// Number of vectors in `fine`, as in shaders/truncated/vectors.wgsl: five vectors, and inverse blocks of two rows.
+const VECTORS: u32 = 7;
+/// Bytes of a pair, and of a four-component row.
+const PAIR: u64 = size_of::<[f32; 2]>() as u64;
+const ROW: u64 = size_of::<[f32; 4]>() as u64;
+
+/// The dispatches of Newton steps, with their buffers.
+pub(super) struct Prepared {
+    pub(super) bind_groups: Vec<wgpu::BindGroup>,
+    /// Distance between successive uniforms, in bytes.
+    pub(super) stride: u32,
+    /// Three lists of dispatches: the Hessian and the levels; an iteration; the trials of one submission and the movement.
+    pub(super) set_up: Vec<Dispatch>,
+    pub(super) iteration: Vec<Dispatch>,
+    pub(super) trials: Vec<Dispatch>,
+    pub(super) state: wgpu::Buffer,
+    /// The vectors at the free vertices, and the offset of the coefficients.
+    #[cfg(test)]
+    pub(super) fine: (wgpu::Buffer, usize),
+}
+
+/// The bind groups of the dispatches, one of each layout.
+#[derive(Clone, Copy)]
+enum Bound {
+    Hessian,
+    Solution,
+    Lattice,
+    Trials,
+    Fine,
+    Coarse,
+}
+
+/// The list of the dispatches of Newton steps.
+pub(super) struct List<'g> {
+    gpu: &'g Gpu,
+    form: MeshForm,
+    nest: Nest,
+    listed: u32,
+    /// The operation on the free vertices, with the number of invocations left out.
+    step: StepOp,
+    set_up: Vec<Dispatch>,
+    iteration: Vec<Dispatch>,
+    trials: Vec<Dispatch>,
+}
+
+impl<'g> List<'g> {
+    /// Makes the levels, and lists the dispatches with their compiled kernels.
+    pub(super) async fn new(
+        gpu: &'g Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        dispatches: &Dispatches,
+    ) -> Result<Self, GpuError> {
+        let nest = Nest::new(problem).await;
+        let free = problem.free_count() as u32;
+        let alignment = gpu.device.limits().min_storage_buffer_offset_alignment;
+        let step = step_op(&nest, free, free.next_multiple_of((alignment / PAIR as u32).max(1)));
+        let form = mesh.parts.form();
+        let (set_up, iteration, trials) = (Vec::new(), Vec::new(), Vec::new());
+        let mut list = Self { gpu, form, nest, listed: 0, step, set_up, iteration, trials };
+        list.check(problem)?;
+        list.list_set_up(OfInvariants(dispatches.plan.scheme.base())).await?;
+        list.list_iteration().await?;
+        list.list_trials(problem, dispatches).await?;
+        Ok(list)
+    }
+
+    /// Returns [`GpuError::Limit`] if a buffer is larger than a binding.
+    fn check(&self, problem: &Problem) -> Result<(), GpuError> {
+        let limits = self.gpu.device.limits();
+        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let Nest { structure, rows, .. } = &self.nest;
+        let largest = [
+            problem.ring().len() as u64 * ROW,
+            self.fine_bytes(),
+            u64::from(*rows) * ROW,
+            size_of_val(&structure[..]) as u64,
+        ];
+        let needed = largest.into_iter().fold(0, u64::max);
+        let what = || "the Hessian and the levels of Newton steps".to_owned();
+        check_limit("max_storage_buffer_binding_size", most, &what, needed)
+    }
+
+    fn fine_bytes(&self) -> u64 {
+        let StepOp { vector, partials, .. } = self.step;
+        u64::from(VECTORS * vector + partials + StepRequest::MOST_ITERATIONS) * PAIR
+    }
+
+    async fn dispatch(
+        &mut self,
+        kernel: Kernel,
+        bound: Bound,
+        groups: Groups,
+        op: Op,
+    ) -> Result<Dispatch, GpuError> {
+        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.form)?;
+        pause().await;
+        let number = self.listed;
+        self.listed += 1;
+        Ok(Dispatch { pipeline, op, number, bind_group: bound as usize, groups })
+    }
+
+    /// Returns the dispatch of a kernel on the free vertices, with a number of invocations.
+    async fn step(&mut self, kernel: Kernel, rows: u32) -> Result<Dispatch, GpuError> {
+        let op = Op::Step(StepOp { rows, ..self.step });
+        self.dispatch(kernel, Bound::Solution, Groups::ForRows, op).await
+    }
+
+    /// Returns the dispatch of a kernel whose invocations stride over the free vertices.
+    async fn strided(&mut self, kernel: Kernel) -> Result<Dispatch, GpuError> {
+        let groups = Groups::Just(self.step.partials / WORKGROUP);
+        self.dispatch(kernel, Bound::Solution, groups, Op::Step(self.step)).await
+    }
+
+    /// Returns the dispatch of a kernel in one workgroup.
+    async fn single(&mut self, kernel: Kernel) -> Result<Dispatch, GpuError> {
+        self.dispatch(kernel, Bound::Solution, Groups::Just(1), Op::Step(self.step)).await
+    }
+
+    /// Returns the dispatch of a kernel on the levels.
+    async fn lattice(&mut self, kernel: Kernel, op: LatticeOp) -> Result<Dispatch, GpuError> {
+        self.dispatch(kernel, Bound::Lattice, Groups::ForRows, Op::Lattice(op)).await
+    }
+
+    /// Lists the positive part of the Hessian and the levels, which follow from it. The Hessian itself then overwrites its positive
+    /// part.
+    async fn list_set_up(&mut self, metric: OfInvariants) -> Result<(), GpuError> {
+        let StepOp { vertices, .. } = self.step;
+        let aggregates = self.nest.op(0).rows;
+        let place = Op::Step(StepOp { rows: aggregates, ..self.step });
+        let list =
+            [self.dispatch(Kernel::PlaceMembers, Bound::Hessian, Groups::ForRows, place).await?];
+        self.set_up.extend(list);
+        for is_positive in [1, 0] {
+            let op = Op::Step(StepOp { rows: vertices, is_positive, ..self.step });
+            let kernel = Kernel::FindHessian(metric);
+            let hessian = self.dispatch(kernel, Bound::Hessian, Groups::ForRows, op).await?;
+            self.set_up.push(hessian);
+            if is_positive == 1 {
+                let first = self.step(Kernel::SumOverMembers, aggregates).await?;
+                self.set_up.push(first);
+                self.list_levels().await?;
+            }
+        }
+        let advance = self.step(Kernel::Advance, aggregates).await?;
+        self.set_up.push(advance);
+        Ok(())
+    }
+
+    /// Lists the matrices of all levels, each computed from the next finer level.
+    async fn list_levels(&mut self) -> Result<(), GpuError> {
+        for level in 0..self.nest.depth() {
+            let op = self.nest.op(level);
+            let inverted = self.lattice(Kernel::InvertDiagonal, op).await?;
+            self.set_up.push(inverted);
+            if level + 1 == self.nest.depth() {
+                break;
+            }
+            let rows = self.nest.op(level + 1).rows;
+            for (kernel, rows) in [
+                (Kernel::JoinAggregates, rows),
+                (Kernel::FindShifts, op.rows),
+                (Kernel::SumBlocks, rows),
+            ] {
+                let dispatch = self.lattice(kernel, LatticeOp { rows, ..op }).await?;
+                self.set_up.push(dispatch);
+            }
+        }
+        Ok(())
+    }
+
+    /// Lists an iteration of conjugate gradients. The kernel [`Advance`](Kernel::Advance) before the iteration has smoothed the first
+    /// level once.
+    async fn list_iteration(&mut self) -> Result<(), GpuError> {
+        let last = self.nest.depth() - 1;
+        let mut list = Vec::new();
+        for level in 0..=last {
+            // From zero, the residual is the right-hand side.
+            let op = self.nest.op(level);
+            let op = LatticeOp { left: op.right, ..op };
+            list.push(self.lattice(Kernel::SmoothAgain, op).await?);
+            if level < last {
+                let rows = self.nest.op(level + 1).rows;
+                list.push(self.lattice(Kernel::RestrictResidual, LatticeOp { rows, ..op }).await?);
+            }
+        }
+        for level in (0..last).rev() {
+            let op = self.nest.op(level);
+            for kernel in [Kernel::ProlongMotion, Kernel::SmoothResidual, Kernel::SmoothAgain] {
+                list.push(self.lattice(kernel, op).await?);
+            }
+        }
+        list.push(self.strided(Kernel::Precondition).await?);
+        list.push(self.single(Kernel::BeginIteration).await?);
+        list.push(self.step(Kernel::Turn, self.step.vertices).await?);
+        list.push(self.strided(Kernel::Multiply).await?);
+        list.push(self.single(Kernel::JudgeIteration).await?);
+        list.push(self.step(Kernel::Advance, self.nest.op(0).rows).await?);
+        self.iteration = list;
+        Ok(())
+    }
+
+    /// Lists the trials of one submission, and the movement.
+    async fn list_trials(
+        &mut self,
+        problem: &Problem,
+        dispatches: &Dispatches,
+    ) -> Result<(), GpuError> {
+        let metric = dispatches.plan.scheme.base();
+        let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
+        let triangles = problem.judged_triangles().len();
+        let partials = objective_invocations(triangles);
+        let fine = FineOp {
+            rows: triangles as u32,
+            first: 0,
+            free: self.step.vertices,
+            ring_base: 0,
+            present_roots: NONE,
+            unbroken: NONE,
+            partial_sums: SUMS,
+            // The length is in the state of the search.
+            length: 0.0,
+            shape_guard: guard,
+            sharpness: 0,
+            inverse_penalty_guard: 0.0,
+            padding: 0,
+        };
+        let sum = CoarseOp { partial_sums: SUMS, totals: TOTALS, ..coarse_op(partials) };
+        let whole = Groups::Just(partials / WORKGROUP);
+        let movement = FineOp { rows: self.step.vertices, ..fine };
+        let none = || Op::Step(self.step);
+        let (begins, judges) = (none(), none());
+        let kernel = Kernel::ObjectiveAlongCorrection(metric);
+        let begin =
+            self.dispatch(Kernel::BeginTrials, Bound::Trials, Groups::Just(1), begins).await?;
+        let objective = self.dispatch(kernel, Bound::Fine, whole, Op::Fine(fine)).await?;
+        let kernel = Kernel::SumAlongCorrection;
+        let sum = self.dispatch(kernel, Bound::Coarse, Groups::Just(1), Op::Coarse(sum)).await?;
+        let judge =
+            self.dispatch(Kernel::JudgeLength, Bound::Trials, Groups::Just(1), judges).await?;
+        let kernel = Kernel::MoveAlongCorrection;
+        let op = Op::Fine(movement);
+        let movement = self.dispatch(kernel, Bound::Fine, Groups::ForRows, op).await?;
+        self.trials.push(begin);
+        for _ in 0..STEP_TRIALS {
+            self.trials.extend([&objective, &sum, &judge].map(Dispatch::clone));
+        }
+        self.trials.push(movement);
+        Ok(())
+    }
+
+    /// Creates the buffers, and the bind groups of the listed dispatches.
+    pub(super) async fn bound(
+        self,
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        dispatches: &Dispatches,
+    ) -> Result<Prepared, GpuError> {
+        let fine_bytes = self.fine_bytes();
+        let Self { form, nest, listed, step, set_up, iteration, trials, .. } = self;
+        let all = set_up.iter().chain(&iteration).chain(&trials);
+        let (stride, ops) = uniforms(gpu, all, listed);
+        let structure =
+            filled_with_pauses(gpu, "step structure", &[&nest.structure], Usage::STORAGE).await?;
+        let (bind_groups, buffers) = scoped(&gpu.device, || {
+            let partials = objective_invocations(problem.judged_triangles().len());
+            // The solution is in the coordinates of the plane.
+            let params =
+                Params { levels_in_plane: 1, ..params(problem, &dispatches.plan, partials) };
+            let storage = |label, size: u64| zeroed(gpu, label, size, Usage::STORAGE);
+            let read_in_tests = if cfg!(test) { Usage::COPY_SRC } else { Usage::empty() };
+            let copied = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+            let buffers = Buffers {
+                params: filled(gpu, "step params", &[params], Usage::UNIFORM),
+                ops: filled(gpu, "step operations", &ops, Usage::UNIFORM),
+                structure,
+                entries: storage("Hessian", problem.ring().len() as u64 * ROW),
+                fine: zeroed(gpu, "step vectors", fine_bytes, Usage::STORAGE | read_in_tests),
+                rows: storage("step rows", u64::from(nest.rows) * ROW),
+                vectors: storage("step sums", u64::from(SUMS + 4 * partials) * PAIR),
+                state: zeroed(gpu, "step state", size_of::<StepState>() as u64, copied),
+                nothing: storage("no values", PAIR),
+            };
+            (buffers.bind_groups(gpu, form, mesh, &step), buffers)
+        })?;
+        Ok(Prepared {
+            bind_groups,
+            stride,
+            set_up,
+            iteration,
+            trials,
+            state: buffers.state,
+            #[cfg(test)]
+            fine: (buffers.fine, (VECTORS * step.vector + step.partials) as usize),
+        })
+    }
+}
+
+/// The buffers of Newton steps.
+struct Buffers {
+    params: wgpu::Buffer,
+    ops: wgpu::Buffer,
+    structure: wgpu::Buffer,
+    entries: wgpu::Buffer,
+    fine: wgpu::Buffer,
+    rows: wgpu::Buffer,
+    /// The totals of a trial, the state of the search, and the partial sums.
+    vectors: wgpu::Buffer,
+    state: wgpu::Buffer,
+    /// Stands for values that no kernel reads.
+    nothing: wgpu::Buffer,
+}
+
+impl Buffers {
+    /// Returns the bind groups in the order of [`Bound`]. To be called in an error scope.
+    fn bind_groups(
+        &self,
+        gpu: &Gpu,
+        form: MeshForm,
+        mesh: &MeshBuffers,
+        step: &StepOp,
+    ) -> Vec<wgpu::BindGroup> {
+        let Self { params, ops, structure, entries, fine, rows, vectors, state, nothing } = self;
+        let hessian = HessianBindings {
+            params: params.as_entire_binding(),
+            op: uniform::<StepOp>(ops),
+            positions: mesh.bind_positions(),
+            ring_start: mesh.ring_start.as_entire_binding(),
+            ring: mesh.bind_ring(0),
+            structure: structure.as_entire_binding(),
+            entries: entries.as_entire_binding(),
+            fine: fine.as_entire_binding(),
+            rows: rows.as_entire_binding(),
+        };
+        let solution = SolutionBindings {
+            params: params.as_entire_binding(),
+            op: uniform::<StepOp>(ops),
+            ring_start: mesh.ring_start.as_entire_binding(),
+            ring: mesh.bind_ring(0),
+            structure: structure.as_entire_binding(),
+            entries: entries.as_entire_binding(),
+            fine: fine.as_entire_binding(),
+            rows: rows.as_entire_binding(),
+            state: state.as_entire_binding(),
+        };
+        let lattice = LatticeBindings {
+            params: params.as_entire_binding(),
+            op: uniform::<LatticeOp>(ops),
+            structure: structure.as_entire_binding(),
+            rows: rows.as_entire_binding(),
+            state: state.as_entire_binding(),
+        };
+        let trials = TrialsBindings {
+            params: params.as_entire_binding(),
+            vectors: vectors.as_entire_binding(),
+            state: state.as_entire_binding(),
+        };
+        vec![
+            gpu.pipelines.bind(&gpu.device, form, hessian),
+            gpu.pipelines.bind(&gpu.device, form, solution),
+            gpu.pipelines.bind(&gpu.device, form, lattice),
+            gpu.pipelines.bind(&gpu.device, form, trials),
+            gpu.pipelines.bind(&gpu.device, form, self.along_solution(mesh, step)),
+            gpu.pipelines.bind(
+                &gpu.device,
+                form,
+                CoarseBindings {
+                    params: params.as_entire_binding(),
+                    op: uniform::<CoarseOp>(ops),
+                    structure: structure.as_entire_binding(),
+                    values: nothing.as_entire_binding(),
+                    vectors: vectors.as_entire_binding(),
+                },
+            ),
+        ]
+    }
+
+    /// Returns the bindings of the kernels that also serve corrections. Here the solution stands for the correction.
+    fn along_solution<'b>(&'b self, mesh: &'b MeshBuffers, step: &StepOp) -> FineBindings<'b> {
+        let (vector, length) = (u64::from(step.vector) * PAIR, u64::from(step.vertices) * PAIR);
+        FineBindings {
+            params: self.params.as_entire_binding(),
+            op: uniform::<FineOp>(&self.ops),
+            positions: mesh.bind_positions(),
+            ring_start: mesh.ring_start.as_entire_binding(),
+            ring: mesh.bind_ring(0),
+            triangles: mesh.bind_triangles(0),
+            gradient: bytes(&self.fine, 0..length),
+            direction: bytes(&self.fine, vector..vector + length),
+            vectors: self.vectors.as_entire_binding(),
+        }
+    }
+}
+
+/// Returns the operation on the free vertices and the first level of aggregates.
+fn step_op(nest: &Nest, vertices: u32, vector: u32) -> StepOp {
+    let [aggregate_of, member_starts, members] = nest.of_vertices;
+    let first = nest.op(0);
+    StepOp {
+        rows: vertices,
+        vertices,
+        ring_base: 0,
+        vector,
+        partials: objective_invocations(vertices as usize),
+        is_positive: 0,
+        aggregate_of,
+        member_starts,
+        members,
+        starts: first.starts,
+        columns: first.columns,
+        blocks: first.blocks,
+        inverses: first.inverses,
+        extents: first.extents,
+        right: first.right,
+        step: first.step,
+        solution: first.solution,
+        padding: 0,
+        more_padding: [0; 2],
+    }
+}

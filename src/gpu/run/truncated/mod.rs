@@ -1,0 +1,169 @@
+//! Newton steps of all vertices on a device, by the rules of [`crate::run::truncated`].
+//!
+//! The Hessian is stored as a 2x2 block for each entry of the one-rings. Conjugate gradients and the line search are judged on
+//! the device: a submission holds as many iterations as the step is expected to take, and the host waits for its end.
+
+mod list;
+mod nest;
+#[cfg(test)]
+mod tests;
+
+use crate::error::GpuError;
+use crate::gpu::device::Gpu;
+use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::encode::Passes;
+use crate::gpu::encode::sealed::Target;
+use crate::gpu::kernels::uniforms::{StepState, unpair};
+use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::run::Dispatches;
+use crate::gpu::run::listing::{Dispatch, encode};
+use crate::gpu::scope::scoped;
+use crate::layout::Problem;
+use crate::run::SweepParams;
+use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
+use list::{List, Prepared};
+
+/// Number of iterations in the first submission of a run, and limits of the number in each later submission.
+const FIRST_ITERATIONS: u32 = 8;
+const ITERATIONS: [u32; 2] = [4, 32];
+/// The first submission of a step has this number of iterations more than the whole step before.
+const MORE: u32 = 2;
+
+/// A mesh on a device prepared for Newton steps.
+pub(crate) struct Truncated {
+    prepared: Prepared,
+    /// Number of iterations that the next submission holds.
+    expected: u32,
+}
+
+impl Truncated {
+    /// Prepares a mesh for Newton steps by the base metric of a run.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if the Hessian is too large for the device, or another [`GpuError`] if the device fails.
+    pub(crate) async fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        mesh: &MeshBuffers,
+        dispatches: &Dispatches,
+    ) -> Result<Self, GpuError> {
+        let list = List::new(gpu, problem, mesh, dispatches).await?;
+        let prepared = list.bound(gpu, problem, mesh, dispatches).await?;
+        Ok(Self { prepared, expected: FIRST_ITERATIONS })
+    }
+
+    /// Sweeps by `sweep`, and takes a Newton step from there. `count` is the number of triangles.
+    pub(crate) async fn sweep_and_step(
+        &mut self,
+        gpu: &Gpu,
+        dispatches: &Dispatches,
+        sweep: &SweepParams,
+        request: &StepRequest,
+        count: f64,
+        waiting: Waiting,
+    ) -> Result<NewtonStep, GpuError> {
+        let begin = begin(request, count);
+        let Prepared { set_up, iteration, trials, state: buffer, .. } = &self.prepared;
+        scoped(&gpu.device, || {
+            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&begin));
+        })?;
+        let mut first = Some(());
+        let mut state = begin;
+        while state.is_searched == 0 {
+            let iterations = if state.is_solved == 0 { self.expected } else { 0 };
+            let encode = |encoder: &mut wgpu::CommandEncoder| {
+                let mut passes = encoder.passes("gpu-smooth run");
+                if first.take().is_some() {
+                    dispatches.encode_sweep(&mut passes, sweep);
+                    self.encode(&mut passes, set_up);
+                }
+                (0..iterations).for_each(|_| self.encode(&mut passes, iteration));
+                self.encode(&mut passes, trials);
+            };
+            let copied = readback::submit_and_copy::<StepState>(gpu, encode, buffer, 1)?;
+            let states = copied.values(waiting).await?;
+            state =
+                *states.first().ok_or_else(|| GpuError::Lost("the readback is empty".into()))?;
+            if state.is_solved == 0 {
+                let [least, most] = ITERATIONS;
+                self.expected = state.iterations.clamp(least, most);
+            }
+        }
+        let [least, most] = ITERATIONS;
+        self.expected = (state.iterations + MORE).clamp(least, most);
+        Ok(taken(&state, count))
+    }
+
+    fn encode(&self, passes: &mut Passes<'_>, list: &[Dispatch]) {
+        let Prepared { bind_groups, stride, .. } = &self.prepared;
+        list.iter().for_each(|step| encode(passes, bind_groups, *stride, step));
+    }
+}
+
+#[cfg(test)]
+impl Truncated {
+    /// Returns the state after the last step, and the coefficients of its `count` iterations.
+    async fn solved(
+        &self,
+        gpu: &Gpu,
+        count: usize,
+    ) -> Result<(StepState, Vec<[f32; 2]>), GpuError> {
+        let state = readback::read(gpu, &self.prepared.state, 1, Waiting::Block).await?[0];
+        let (fine, at) = &self.prepared.fine;
+        let vectors = readback::read(gpu, fine, at + count, Waiting::Block).await?;
+        Ok((state, vectors[*at..].to_vec()))
+    }
+}
+
+/// Returns the state at the begin of a step.
+fn begin(request: &StepRequest, count: f64) -> StepState {
+    let node = ErrorBound::BELOW * request.least_ritz;
+    let rough = ErrorBound::BELOW * StepRequest::ROUGH_RITZ;
+    StepState {
+        is_solved: 0,
+        iterations: 0,
+        is_curved_down: 0,
+        is_searched: 0,
+        trials: 0,
+        is_broken: 0,
+        length: 0.0,
+        next_length: 1.0,
+        alpha: 0.0,
+        beta: 0.0,
+        rho: 0.0,
+        model_gain: 0.0,
+        descent: 0.0,
+        bound: f32::MAX,
+        least_ritz: f32::MAX,
+        node: node as f32,
+        gamma: node.recip() as f32,
+        rough_node: rough as f32,
+        rough_gamma: rough.recip() as f32,
+        forcing: request.forcing as f32,
+        least_gain: (request.least_gain * request.objective * count) as f32,
+        padding: 0.0,
+        here: [0.0; 2],
+        there: [0.0; 2],
+    }
+}
+
+/// Returns the step in the form of all engines. `state` is the device's state after the step, and `count` the number of triangles.
+fn taken(state: &StepState, count: f64) -> NewtonStep {
+    let mean = |sum: f32| f64::from(sum) / count;
+    let swept = unpair(state.here) / count;
+    let is_moved = state.length > 0.0;
+    let known = |x: f32| if x < f32::MAX * 0.5 { f64::from(x) } else { f64::INFINITY };
+    NewtonStep {
+        swept,
+        excess: if is_moved { unpair(state.there) / count } else { swept },
+        model_gain: mean(state.model_gain),
+        bound: known(state.bound) / count,
+        least_ritz: known(state.least_ritz),
+        length: state.length.into(),
+        is_curved_down: state.is_curved_down != 0,
+        is_broken: state.is_broken != 0,
+        is_exact: true,
+        held: 0,
+        iterations: state.iterations,
+    }
+}

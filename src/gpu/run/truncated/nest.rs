@@ -1,0 +1,155 @@
+//! The aggregates of a mesh, level by level, and their places in the buffers of a device.
+
+use crate::gpu::kernels::uniforms::LatticeOp;
+use crate::layout::Problem;
+use crate::parallel::pace::pause;
+use crate::run::multilevel::Aggregates;
+use crate::run::truncated::aggregation::{MOST_DEGREES, Members, Pattern};
+
+/// The aggregates of the free vertices, and those of all coarser levels.
+#[derive(Default)]
+pub(super) struct Nest {
+    /// The operation on each level, with zeros in place of the next coarser level.
+    levels: Vec<LatticeOp>,
+    /// The connectivity of all levels: lists of vertices, aggregates and columns.
+    pub(super) structure: Vec<u32>,
+    /// Number of four-component rows of all levels. A block of a matrix has four rows.
+    pub(super) rows: u32,
+    /// Offsets in `structure` of the aggregates of the free vertices: aggregate, starts and members.
+    pub(super) of_vertices: [u32; 3],
+}
+
+impl Nest {
+    /// Makes the levels from the connectivity of a mesh. The coarsest level has few aggregates, usually one.
+    pub(super) async fn new(problem: &Problem) -> Self {
+        let free = problem.free_count();
+        let degree = |v: usize| problem.ring_range(v as u32).len();
+        let neighbors = |v: usize| {
+            let is_near = move |&&other: &&u32| {
+                (other as usize) < free && degree(v) * degree(other as usize) <= MOST_DEGREES
+            };
+            problem.ring_of(v as u32).iter().filter(is_near).copied()
+        };
+        let first = Members::new(Aggregates::new(free, neighbors).await).await;
+        pause().await;
+        let mut pattern = first.pattern(|v| problem.ring_of(v).iter().copied());
+        let mut nest = Self::default();
+        nest.of_vertices = nest.place_members(&first);
+        drop(first);
+        loop {
+            pause().await;
+            match pattern.joined(1).await {
+                Some((members, coarser)) => {
+                    nest.add(&pattern, Some(&members));
+                    pattern = coarser;
+                }
+                None => {
+                    nest.add(&pattern, None);
+                    return nest;
+                }
+            }
+        }
+    }
+
+    /// Adds a level with its coarser aggregates, if it has any.
+    fn add(&mut self, pattern: &Pattern, members: Option<&Members>) {
+        let count = pattern.rows() as u32;
+        let [starts, columns] = [&pattern.start, &pattern.columns].map(|list| self.place(list));
+        let of_members = members.map(|members| self.place_members(members));
+        let [aggregate_of, member_starts, members] = of_members.unwrap_or_default();
+        let blocks = taken(&mut self.rows, 4 * pattern.columns.len() as u32);
+        let inverses = taken(&mut self.rows, 4 * count);
+        let [right, solution, step, left, shifts] =
+            std::array::from_fn(|_| taken(&mut self.rows, count));
+        self.levels.push(LatticeOp {
+            rows: count,
+            starts,
+            columns,
+            aggregate_of,
+            member_starts,
+            members,
+            blocks,
+            inverses,
+            right,
+            solution,
+            step,
+            left,
+            extents: taken(&mut self.rows, 2 * count),
+            shifts,
+            coarse_starts: 0,
+            coarse_columns: 0,
+            coarse_blocks: 0,
+            coarse_inverses: 0,
+            coarse_right: 0,
+            coarse_solution: 0,
+            coarse_step: 0,
+            coarse_extents: 0,
+            padding: [0; 2],
+        });
+    }
+
+    /// Adds a list to the structure. Returns its offset.
+    fn place(&mut self, list: &[u32]) -> u32 {
+        let at = self.structure.len() as u32;
+        self.structure.extend_from_slice(list);
+        at
+    }
+
+    fn place_members(&mut self, members: &Members) -> [u32; 3] {
+        [&members.group, &members.start, &members.members].map(|list| self.place(list))
+    }
+
+    /// Returns the number of levels.
+    pub(super) fn depth(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Returns the operation on a level, with the offsets of the next coarser level if there is one.
+    pub(super) fn op(&self, level: usize) -> LatticeOp {
+        let mut op = self.levels[level];
+        if let Some(next) = self.levels.get(level + 1) {
+            (op.coarse_starts, op.coarse_columns) = (next.starts, next.columns);
+            (op.coarse_blocks, op.coarse_inverses) = (next.blocks, next.inverses);
+            (op.coarse_right, op.coarse_step) = (next.right, next.step);
+            (op.coarse_solution, op.coarse_extents) = (next.solution, next.extents);
+        }
+        op
+    }
+}
+
+/// Takes room from a total. Returns the offset of the room.
+fn taken(total: &mut u32, length: u32) -> u32 {
+    let at = *total;
+    *total += length;
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::prepare;
+    use crate::mesh::Mesh;
+    use crate::parallel::pace::now;
+
+    #[test]
+    fn levels_end_with_one_aggregate_and_do_not_overlap() {
+        let side = 40;
+        let points = (0..side * side).map(|k| [f64::from(k % side), f64::from(k / side)]).collect();
+        let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
+        let triangles =
+            cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]).collect();
+        let problem = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap().1;
+        let nest = now(Nest::new(&problem));
+        assert!(nest.depth() >= 4);
+        assert_eq!(nest.op(nest.depth() - 1).rows, 1);
+        let ops: Vec<_> = (0..nest.depth()).map(|level| nest.op(level)).collect();
+        for pair in ops.windows(2) {
+            let [fine, coarse] = [pair[0], pair[1]];
+            assert!(coarse.rows < fine.rows);
+            assert_eq!(fine.coarse_blocks, coarse.blocks);
+            assert_eq!(fine.coarse_solution, coarse.solution);
+            assert!(fine.inverses + 4 * fine.rows <= fine.right, "{fine:?}");
+            assert!(fine.extents + 2 * fine.rows <= coarse.blocks, "{fine:?}");
+        }
+    }
+}
