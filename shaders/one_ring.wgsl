@@ -1,30 +1,7 @@
-// A free vertex and the triangles around it.
-
-// A patch: a free vertex `at` with its one-ring, `ring[start..end]`. Edges are multiplied by `unit`, which brings them
-// near length one, so that nothing overflows or vanishes.
-struct Patch {
-    start: u32,
-    end: u32,
-    at: vec4<f32>,
-    unit: f32,
-    ideal: Ideal,
-    // The target map or local map of the vertex, and the factor that brings its entries near one.
-    own: vec3<f32>,
-    map_unit: f32,
-}
+// A free vertex and the triangles around it: a patch of the one-ring `ring[start..end]`.
 
 fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
     return edge(p.at, position(ring[i])) * p.unit;
-}
-
-// Returns the power of two that scales an edge to a length near one.
-fn unit_of(e: vec2<f32>) -> f32 {
-    let exponent = bitcast<u32>(max(abs(e.x), abs(e.y))) & 0x7f800000u;
-    return bitcast<f32>(0x7f000000u - clamp(exponent, 0x00800000u, 0x7e800000u));
-}
-
-fn inverse_mean_ratio(t: Corner) -> f32 {
-    return 0.28867513459 * squared_length_sum(t) / doubled_area(t);
 }
 
 fn patch_of(vertex: u32) -> Patch {

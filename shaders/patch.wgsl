@@ -49,3 +49,26 @@ fn squared_length_sum(t: Corner) -> f32 {
 fn displaced(t: Corner, d: vec2<f32>) -> Corner {
     return Corner(t.a - d, t.b - d, t.ideal);
 }
+
+// A patch: a vertex `at` with the triangles around it, given by the entries from `start` to `end` of a list. Edges are
+// multiplied by `unit`, which brings them near length one, so that nothing overflows or vanishes.
+struct Patch {
+    start: u32,
+    end: u32,
+    at: vec4<f32>,
+    unit: f32,
+    ideal: Ideal,
+    // The target map or local map of the vertex, and the factor that brings its entries near one.
+    own: vec3<f32>,
+    map_unit: f32,
+}
+
+// Returns the power of two that scales an edge to a length near one.
+fn unit_of(e: vec2<f32>) -> f32 {
+    let exponent = bitcast<u32>(max(abs(e.x), abs(e.y))) & 0x7f800000u;
+    return bitcast<f32>(0x7f000000u - clamp(exponent, 0x00800000u, 0x7e800000u));
+}
+
+fn inverse_mean_ratio(t: Corner) -> f32 {
+    return 0.28867513459 * squared_length_sum(t) / doubled_area(t);
+}

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gpu_smooth::plane::Plane;
-use gpu_smooth::{Backend, Metric, Outcome as RunOutcome, Quality as MeshQuality};
+use gpu_smooth::{Backend, Metric, Options, Outcome as RunOutcome, Quality as MeshQuality};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -28,12 +28,13 @@ impl Outcome {
     pub(crate) fn new(
         outcome: RunOutcome,
         prepared: Arc<Prepared>,
-        base: Metric,
+        options: &Options,
         backend: &Backend,
     ) -> Self {
+        let base = options.scheme.base();
         let engine = match backend {
             Backend::Cpu => "cpu".to_owned(),
-            Backend::Gpu(_) if prepared.smoother.slides() => "cpu".to_owned(),
+            Backend::Gpu(_) if prepared.smoother.slides_on_cpu(options) => "cpu".to_owned(),
             Backend::Gpu(gpu) => gpu.adapter().name.clone(),
         };
         Self { outcome, prepared, base, engine }

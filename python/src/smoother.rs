@@ -60,7 +60,7 @@ impl Smoother {
         let observer = RunObserver::new(&run);
         let outcome = threads::watched(py, &observer, || plan.run(smoother, &observer))?;
         let outcome = finished(py, &observer, outcome)?;
-        Ok(Outcome::new(outcome, Arc::clone(&self.0), plan.options.scheme.base(), &plan.backend))
+        Ok(Outcome::new(outcome, Arc::clone(&self.0), &plan.options, &plan.backend))
     }
 
     /// The flags of the vertices that are free: inside of the mesh and not fixed.

@@ -103,12 +103,12 @@ impl CpuEngine {
 
     /// Returns the sliding vertices of the state whose positions [`Engine::best_positions`] returns. `None` if no vertex
     /// slides.
-    pub(crate) fn best_curves(&self) -> Option<OnCurves> {
-        let mut curves = self.curves.clone()?;
-        if let Some(Best { params: Some(params), .. }) = &self.best {
+    pub(crate) async fn best_curves(&self) -> Result<Option<OnCurves>, GpuError> {
+        let mut curves = self.curves.clone();
+        if let (Some(curves), Some(Best { params: Some(params), .. })) = (&mut curves, &self.best) {
             curves.set_params(params);
         }
-        Some(curves)
+        Ok(curves)
     }
 
     /// Evaluates the tracked objectives. Copies the positions if the objective of the base metric is the lowest so far.

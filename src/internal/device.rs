@@ -26,6 +26,7 @@ pub fn run_on_gpu<'a>(
     plan: Plan,
 ) -> Result<impl Stepwise + 'a, GpuError> {
     let steps = plan.steps();
-    let engine = now(GpuEngine::new(gpu, problem, positions, plan.clone(), steps, Waiting::Block))?;
+    let engine =
+        now(GpuEngine::new(gpu, problem, positions, None, plan.clone(), steps, Waiting::Block))?;
     Ok(StepwiseRun::new(engine, plan))
 }

@@ -40,7 +40,8 @@ impl SearchRule {
         max_lengthening: None,
     };
 
-    /// Sliding along a curve. Only the CPU slides vertices, in double precision, so the slack is smaller than in sweeps.
+    /// Sliding along a curve in double precision, so the slack is smaller than in sweeps. Devices slide vertices with the
+    /// slack of sweeps.
     pub(crate) const CURVE: Self = Self { slack: 1e-12, ..Self::SWEEP };
 
     /// Improvement of the worst triangles. The Hessians of p-norms are nearly singular, so the eigenvalue floor is low.

@@ -38,6 +38,20 @@ pub(crate) struct Place {
     pub(crate) second: DVec2,
 }
 
+/// A given vertex of a curve, with the piece of the curve up to the next one.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Knot {
+    pub(crate) point: DVec2,
+    pub(crate) param: f64,
+    /// Slopes of the cubic relative to its line, at the start and at the end of the line.
+    pub(crate) slopes: [f64; 2],
+    /// Length of the line to the next knot; 0 after the last knot.
+    pub(crate) length: f64,
+    /// Largest allowed distance from the lines between moved vertices.
+    pub(crate) bound: f64,
+}
+
 /// The bound on the distance of a given vertex from the line between two moved vertices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limit {
@@ -115,6 +129,18 @@ impl Curve {
     /// Returns the parameters of the given vertices, without the repeated vertex of a closed curve.
     pub(crate) fn params(&self) -> &[f64] {
         &self.params[..self.params.len() - usize::from(self.is_closed)]
+    }
+
+    /// Returns the given vertices with the pieces of the curve after them.
+    #[cfg(feature = "gpu")]
+    pub(super) fn knots(&self) -> impl Iterator<Item = Knot> + '_ {
+        let next = self.params.iter().skip(1).map(Some).chain([None]);
+        let pieces = self.slopes.iter().copied().chain([[0.0; 2]]);
+        let all = self.knots.iter().zip(&self.params).zip(next).zip(pieces).zip(&self.bounds);
+        all.map(|((((&point, &param), next), slopes), &bound)| {
+            let length = next.map_or(0.0, |next| next - param);
+            Knot { point, param, slopes, length, bound }
+        })
     }
 
     /// Returns the total length of the lines, which is the period of a closed curve.

@@ -18,12 +18,20 @@ mod proof;
 mod rigid;
 mod side;
 mod sliding;
+#[cfg(feature = "gpu")]
+mod table;
 mod track;
 mod way;
 
 pub use crate::periodic::{Motion, Periodic};
 pub(crate) use newton::OfPatch;
+#[cfg(feature = "gpu")]
+pub(crate) use newton::{HALVINGS, MAX_STEP_SHARE};
+#[cfg(feature = "gpu")]
+pub(crate) use on_curves::FREEZES_AFTER;
 pub(crate) use on_curves::{OnCurves, Tangents};
 pub use options::Slide;
 pub(crate) use params::Params;
 pub(crate) use sliding::Sliding;
+#[cfg(feature = "gpu")]
+pub(crate) use table::{CurveTable, Knot, Place, SlidingVertex};

@@ -12,7 +12,7 @@ use crate::slide::curve::{Curve, Place};
 use crate::slide::side::BoundaryCurve;
 
 /// Limit of a step, as a share of the parameter distance to the neighboring vertex on the curve.
-const MAX_STEP_SHARE: f64 = 0.8;
+pub(crate) const MAX_STEP_SHARE: f64 = 0.8;
 
 /// Curve parameters of a vertex (`at`) and of its neighbors before (`low`) and after (`high`).
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +86,7 @@ impl Reach {
 const ROUNDING: f64 = 1e-9;
 
 /// Number of halvings by which a step finds its end at a bound. The end is then within 1e-6 of the step.
-const HALVINGS: u32 = 20;
+pub(crate) const HALVINGS: u32 = 20;
 
 /// The result of a visit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,7 +18,7 @@ use crate::slide::track::Track;
 /// Number of successive sweeps that press a vertex against a bound, after which the vertex stays for the rest of the run.
 /// Two neighbors at their common bound could otherwise follow the bound in tiny steps, which keep a run from ending. In a
 /// prototype, two and three sweeps made no difference.
-const FREEZES_AFTER: i8 = 3;
+pub(crate) const FREEZES_AFTER: i8 = 3;
 
 /// Length of a Newton step below which the step is short.
 const SHORT: f64 = 0.2;
@@ -96,6 +96,34 @@ impl OnCurves {
 
     pub(crate) fn params(&self) -> &Params {
         &self.params
+    }
+
+    /// Returns the largest distance of each vertex from its given position, in the unit of the mesh.
+    #[cfg(feature = "gpu")]
+    pub(super) fn reach(&self) -> &Params {
+        &self.reach
+    }
+
+    /// Returns for each vertex the number of latest sweeps that pressed it against a bound.
+    #[cfg(feature = "gpu")]
+    pub(super) fn presses(&self) -> &[Vec<i8>] {
+        &self.presses
+    }
+
+    /// Sets the numbers that [`presses`](Self::presses) returns.
+    #[cfg(feature = "gpu")]
+    pub(super) fn set_presses(&mut self, presses: impl Iterator<Item = Vec<i8>>) {
+        self.presses = presses.collect();
+    }
+
+    /// Writes the positions of all sliding vertices at their parameters.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn write_positions(&self, problem: &Problem, positions: &mut [DVec2]) {
+        for (track, params) in self.sliding.tracks.iter().zip(&self.params) {
+            for (k, &param) in params.iter().enumerate() {
+                track.follow(problem, k, param, positions);
+            }
+        }
     }
 
     /// Returns the sliding vertices that have moved, as indices in the mesh with their positions in the unit of the mesh.

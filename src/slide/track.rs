@@ -25,6 +25,12 @@ impl Track {
         self.sides[0].vertices.len()
     }
 
+    /// Returns whether the curve ends at its start.
+    #[cfg(feature = "gpu")]
+    pub(super) fn is_closed(&self) -> bool {
+        self.slides(0)
+    }
+
     pub(super) fn slides(&self, k: usize) -> bool {
         self.sides[0].slides(k)
     }

@@ -57,8 +57,8 @@ impl Smoother<'_> {
         let began = Instant::now();
         options.check_with(&self.features())?;
         self.check_movable()?;
-        // Only the CPU slides vertices.
-        let device = device.filter(|_| self.sliding.is_none() && self.problem.free_count() > 0);
+        let device = device.filter(|_| self.problem.free_count() > 0);
+        let device = device.filter(|_| !self.slides_on_cpu(options));
         let (device, fault) = self.checked(device, policy).await?;
         let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
         let mut about = self.about(problem, options).await;

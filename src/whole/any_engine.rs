@@ -35,12 +35,9 @@ macro_rules! on {
 
 impl AnyEngine<'_> {
     /// Returns the sliding vertices of the state whose positions [`Engine::best_positions`] returns. `None` if no vertex
-    /// slides, as on devices.
-    pub(crate) fn best_curves(&self) -> Option<OnCurves> {
-        match self {
-            AnyEngine::Cpu(engine) => engine.best_curves(),
-            AnyEngine::Device(_) => None,
-        }
+    /// slides.
+    pub(crate) async fn best_curves(&self) -> Result<Option<OnCurves>, GpuError> {
+        on!(self, engine => engine.best_curves().await)
     }
 }
 

@@ -7,6 +7,7 @@ use crate::gpu::{Gpu, GpuEngine, Waiting};
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
 use crate::run::{Plan, SweepParams};
+use crate::slide::OnCurves;
 
 /// The engine on a device.
 pub(crate) type DeviceEngine<'s> = Box<GpuEngine<'s>>;
@@ -44,9 +45,12 @@ impl<'s> Device<'s> {
         self,
         problem: &Problem,
         from: &[DVec2],
+        curves: Option<&OnCurves>,
         plan: Plan,
         steps: Vec<SweepParams>,
     ) -> Result<DeviceEngine<'s>, GpuError> {
-        GpuEngine::new(self.gpu, problem, from, plan, steps, self.waiting).await.map(Box::new)
+        GpuEngine::new(self.gpu, problem, from, curves, plan, steps, self.waiting)
+            .await
+            .map(Box::new)
     }
 }

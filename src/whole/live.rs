@@ -37,7 +37,7 @@ pub(crate) struct Spec<'s> {
     pub(crate) phase: Phase,
     /// Whether stages on the host move vertices between sweeps.
     pub(crate) is_staged: bool,
-    /// The sliding vertices at the start of the run, `None` if no vertex slides. Such a run has no device.
+    /// The sliding vertices at the start of the run, `None` if no vertex slides.
     pub(crate) curves: Option<&'s OnCurves>,
 }
 
@@ -220,8 +220,9 @@ impl<'s> Live<'s> {
         let mut stop = session.advance(leg, checkpointer, observe).await?;
         if stop.is_none() && session.needs_double() {
             let positions = session.engine.best_positions().await?;
+            let curves = session.engine.best_curves().await?;
             let on_cpu = |problem: &Problem| {
-                let engine = CpuEngine::new(problem, positions, None, &self.plan);
+                let engine = CpuEngine::new(problem, positions, curves, &self.plan);
                 Ok(AnyEngine::Cpu(Box::new(engine)))
             };
             session.continue_in_double(on_cpu).await?;
@@ -229,7 +230,7 @@ impl<'s> Live<'s> {
             stop = session.advance(leg, checkpointer, observe).await?;
         }
         let positions = session.engine.best_positions().await?;
-        self.curves = session.engine.best_curves();
+        self.curves = session.engine.best_curves().await?;
         self.session = Some(session);
         Ok((positions, stop))
     }
@@ -250,7 +251,9 @@ impl<'s> Live<'s> {
                 let is_judged_by_host = corrected || self.spec.is_staged;
                 let judged = if is_judged_by_host { plan.clone().endless() } else { plan.clone() };
                 let steps = steps(plan, corrected);
-                AnyEngine::Device(device.engine(problem, positions, judged, steps).await?)
+                AnyEngine::Device(
+                    device.engine(problem, positions, curves.as_ref(), judged, steps).await?,
+                )
             }
         };
         let corrections = corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged));
@@ -382,6 +385,10 @@ impl<'s> Live<'s> {
             Some(1..) => (opened, on_cpu),
             _ => (opened + on_cpu, 0),
         };
+        // The sweeps that opened triangles moved no vertex along a curve.
+        let is_from_opening =
+            self.opened.as_ref().is_some_and(|opened| opened.least < history.least());
+        let curves = if is_from_opening { self.spec.curves.cloned() } else { curves };
         let (mut history, positions) = match self.opened {
             Some(opened) => opened.followed_by(history, positions),
             None => (history.into_log(), positions),

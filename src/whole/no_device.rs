@@ -6,6 +6,7 @@ use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
 use crate::run::{Plan, SweepParams};
+use crate::slide::OnCurves;
 
 /// The device of a run. The type has no value, as no device exists.
 pub(crate) type Device<'s> = &'s NoDevice;
@@ -29,6 +30,7 @@ impl NoDevice {
         &self,
         _: &Problem,
         _: &[DVec2],
+        _: Option<&OnCurves>,
         _: Plan,
         _: Vec<SweepParams>,
     ) -> Result<DeviceEngine<'s>, GpuError> {

@@ -4,7 +4,8 @@
 use std::ops::ControlFlow;
 
 use gpu_smooth::{
-    Backend, Gpu, GpuError, Mesh, MeshSize, Method, Metric, Options, Outcome, Smoother, Stop,
+    Backend, Gpu, GpuError, Mesh, MeshSize, Method, Metric, Options, Outcome, Slide, Smoother,
+    Stop,
     gpu::{DeviceMesh, Sweeps, UntanglingSweeps, VertexBuffer},
     wgpu,
 };
@@ -45,6 +46,25 @@ fn run(app: &App, mesh: &Mesh, options: &Options) -> Outcome {
 /// Returns the history of f by `metric`, starting before the first sweep.
 fn f(outcome: &Outcome, metric: Metric) -> Vec<f64> {
     outcome.history.iter().map(|objectives| objectives.of(metric).unwrap()).collect()
+}
+
+#[test]
+fn vertices_slide_to_the_same_places_part_by_part() {
+    let mesh = mesh();
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    assert!(smoother.set_slide(Some(&Slide::default())).unwrap() > 100);
+    let options = Options {
+        method: Method::RELAXED,
+        scheme: "imr+rms".parse().unwrap(),
+        max_sweeps: 20,
+        ..Options::default()
+    };
+    let slid = devices(&mesh).map(|app| {
+        let backend = Backend::Gpu(app.another_gpu());
+        smoother.run(&options).on(&backend).block().unwrap()
+    });
+    assert!(slid[0].slid.unwrap().moved > 100);
+    assert_eq!(slid[0].points, slid[1].points);
 }
 
 #[test]

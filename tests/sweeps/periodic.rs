@@ -2,8 +2,9 @@
 
 use crate::{backends, name, run};
 use gpu_smooth::{
-    Backend, Mesh, MeshError, Metric, Options, Slide, SmoothError, Smoother, Stop, Stopping,
-    Topology,
+    Backend, Mesh, MeshError, Method, Metric, Options, Slide, SmoothError, Smoother, Stop,
+    Stopping, Topology,
+    options::Relaxed,
     precision::Precision,
     slide::{Motion, Periodic},
     topology,
@@ -101,9 +102,11 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
     assert_eq!(smoother.pairs(), [inner[0], 0]);
     let held = run(&sliding(&mesh, &alone).0, &Options::default(), &Backend::Cpu);
     let topology = Topology::new(&mesh).unwrap();
-    for backend in backends() {
+    let by_sweeps = Options { method: Method::Relaxed(Relaxed::default()), ..Options::default() };
+    let methods = [Options::default(), by_sweeps];
+    for (backend, options) in backends().iter().flat_map(|b| methods.each_ref().map(|o| (b, o))) {
         let label = name(backend);
-        let outcome = run(&smoother, &Options::default(), backend);
+        let outcome = run(&smoother, options, backend);
         assert_eq!(outcome.stop, Stop::Converged, "{label}");
         let slid = outcome.slid.unwrap();
         assert_eq!((slid.moved, slid.pairs), (count, inner[0]), "{label}");

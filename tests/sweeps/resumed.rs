@@ -6,7 +6,8 @@ use std::time::Duration;
 use gpu_smooth::{
     Backend, Checkpoint, CheckpointPolicy, Goal, Method, Metric, Options, Outcome, Progress,
     Quality, Slide, SmoothError, Smoother, Stop, Stopping, TargetField, Targets, Topology,
-    options::WorstBy, targets::Surface,
+    options::{Relaxed, WorstBy},
+    targets::Surface,
 };
 
 use super::flat::{bent, pressed_to_a_line};
@@ -141,8 +142,14 @@ fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
     let limited = Options { max_move: Some(0.2), ..default() };
     let kept = Options { keep_altitude: true, ..default() };
     let worst = Options { improve_worst: Some(WorstBy::Imr), ..default() };
+    let relaxed = Options {
+        method: Method::Relaxed(Relaxed::default()),
+        scheme: "imr+edge".parse().unwrap(),
+        ..default()
+    };
     for (name_of_case, options, slides, has_field) in [
         ("slide", default(), true, false),
+        ("slide by sweeps alone", relaxed, true, false),
         ("max move", limited.clone(), false, false),
         ("slide and max move", limited, true, false),
         ("keep altitude", kept.clone(), false, false),

@@ -99,8 +99,8 @@ fn prepared<'a>(
     }
 }
 
-/// Sets targets and sliding vertices of a prepared mesh, and measures its quality. If vertices slide, the CPU replaces
-/// `taken`.
+/// Sets targets and sliding vertices of a prepared mesh, and measures its quality. If vertices slide on the CPU
+/// alone, the CPU replaces `taken`.
 pub(super) fn set_up<'a>(
     input: &Input<'a>,
     subject: Subject<'a>,
@@ -141,8 +141,11 @@ pub(super) fn set_up<'a>(
         follow.remark(&vertices.remark);
         sliding = Some(vertices);
     }
-    let taken = match smoother.slides() {
-        true => OpenEngine::new(Backend::Cpu, Some("vertices slide on the CPU alone".into())),
+    let taken = match smoother.slides_on_cpu(&request.options(file.precision())) {
+        true => OpenEngine::new(
+            Backend::Cpu,
+            Some("vertices slide on a GPU only by --method relaxed or paper".into()),
+        ),
         false => taken,
     };
     let before = Quality::on(surface, &mesh.points, smoother.topology())?;

@@ -99,8 +99,8 @@ impl Gpu {
     /// Afterwards neither [`Sweeps::new`](crate::gpu::Sweeps::new) nor the binding of a buffer waits for the compiler;
     /// a frame never does. Kernels compiled earlier take no time. Any thread may call this method.
     ///
-    /// Meshes with targets, and meshes so large that their positions take two bindings, need other kernels, which are
-    /// not included.
+    /// Meshes with targets, with vertices that slide, and meshes so large that their positions take two bindings, need
+    /// other kernels, which are not included.
     ///
     /// # Errors
     /// [`SmoothError::Option`] if an option is out of its range, or [`SmoothError::Gpu`] if the device fails.

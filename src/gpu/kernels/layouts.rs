@@ -164,6 +164,23 @@ bind_layouts! {
         best_positions: ReadWrite array<vec4f>,
     }
 
+    /// A run on a mesh with vertices that slide along curves.
+    Slide, SlideBindings, ["params.wgsl", "pairs.wgsl", "patch.wgsl"] {
+        params: Uniform Params,
+        part: DynamicUniform Part,
+        positions: Positions,
+        control: Read Control,
+        /// The sliding vertices by color, each with its partner.
+        sliding: Read array<SlidingVertex>,
+        /// The given vertices of all curves, curve by curve.
+        knots: Read array<Knot>,
+        /// The other two vertices of each triangle around a sliding vertex, counter-clockwise.
+        corners: Read array<vec2u>,
+        /// The present parameters of all vertices of curves.
+        places: ReadWrite array<CurvePlace>,
+        best_places: ReadWrite array<CurvePlace>,
+    }
+
     /// A mesh and a vertex buffer of an application.
     Exchange, ExchangeBindings, ["pairs.wgsl", "exchange.wgsl"] {
         exchange: Uniform Exchange,

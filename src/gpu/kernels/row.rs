@@ -26,6 +26,8 @@ pub(crate) struct Row {
 pub(crate) enum User {
     /// Sweeps, and all other calls that an application's frame may encode, except corrections.
     Sweeps,
+    /// Vertices that slide along curves.
+    Curves,
     /// Corrections from coarser levels.
     Corrections,
     /// Newton steps of all vertices at the end of a run.

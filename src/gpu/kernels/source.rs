@@ -6,9 +6,9 @@ use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::row::{Composition, Source};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
-    ALTITUDE_ERROR, AT_DISC, BISECTIONS, FINISH_WORKGROUP, HELD, HIDDEN, HISTORY, INVERTED,
-    MIN_NORMAL, NO_GUARD, SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS, STEP_TRIALS, TINY,
-    WORKGROUP, WORST,
+    ALTITUDE_ERROR, AT_DISC, BISECTIONS, CURVE_ERROR, FINISH_WORKGROUP, HELD, HIDDEN, HISTORY,
+    INVERTED, MIN_NORMAL, NO_GUARD, SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS,
+    STEP_TRIALS, TINY, WORKGROUP, WORST,
 };
 use crate::layout::MapKind;
 use crate::metric::Metric;
@@ -24,6 +24,7 @@ use crate::run::multilevel::{MIN_FIRST_LENGTH, NONE, SMOOTHING};
 use crate::run::secant::MIN_CURVATURE;
 use crate::run::truncated::{ErrorBound, StepRequest, StepSearch, aggregation};
 use crate::run::{JITTER, MIN_SCALE, NOISE, line_search, regularization};
+use crate::slide::{FREEZES_AFTER, HALVINGS, MAX_STEP_SHARE};
 
 const POSITIONS: &str = include_str!("../../../shaders/positions.wgsl");
 const POSITIONS_IN_TWO: &str = include_str!("../../../shaders/positions_in_two.wgsl");
@@ -126,6 +127,8 @@ fn constants() -> String {
         ("MOST_ITERATIONS", StepRequest::MOST_ITERATIONS),
         ("BISECTIONS", BISECTIONS),
         ("FALLS_OVER", ErrorBound::FALLS_OVER as u32),
+        ("HALVINGS", HALVINGS),
+        ("FREEZES_AFTER", FREEZES_AFTER.unsigned_abs().into()),
     ] {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");
     }
@@ -156,6 +159,8 @@ fn constants() -> String {
         ("TINY", TINY),
         ("MIN_CIRCLE_CURVATURE", MIN_CIRCLE_CURVATURE),
         ("ALTITUDE_ERROR", ALTITUDE_ERROR),
+        ("MAX_STEP_SHARE", MAX_STEP_SHARE),
+        ("CURVE_ERROR", CURVE_ERROR),
         ("MIN_FIRST_LENGTH", MIN_FIRST_LENGTH),
         ("MAX_FIRST_LENGTH", MAX_FIRST_LENGTH),
         ("CLOSE", CLOSE),

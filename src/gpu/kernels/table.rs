@@ -127,6 +127,28 @@ kernels! {
         source: ["keep_best.wgsl"],
     }
 
+    /// Newton steps along curves, on the sliding vertices of one color.
+    Slide(metric: Metric) {
+        entry_point: "slide",
+        layout: Slide,
+        width: WORKGROUP,
+        sees_maps: true,
+        sees_bounds: true,
+        user: Curves,
+        source: [ActiveMetric, "slide/curve.wgsl", "slide/visit.wgsl"],
+    }
+
+    /// Copies the parameters of the sliding vertices if the base objective is the lowest so far.
+    KeepBestPlaces {
+        entry_point: "keep_best_places",
+        layout: Slide,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Curves,
+        source: ["slide/keep_best_places.wgsl"],
+    }
+
     /// Reads positions from an application's vertex buffer.
     Import {
         entry_point: "import_positions",

@@ -1,9 +1,12 @@
 //! The structs that Rust and the kernels share: uniforms, and the structs in storage buffers. Each is declared once.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 
 use crate::metric::{Metric, Smoothing};
+use crate::run::SweepParams;
 use crate::run::multilevel::NONE;
 
 /// Length of the history of evaluations on the device. The host reads entries before the device overwrites them.
@@ -35,6 +38,8 @@ pub(crate) const AT_DISC: f64 = 1.0 - 1e-5;
 /// Error of an altitude in single precision, as a share of the longest edge. The error of an area is 3e-7 times the product
 /// of two edges.
 pub(crate) const ALTITUDE_ERROR: f64 = 1e-6;
+/// Error of the distance of a given vertex from a line in single precision, as a share of the length of the line.
+pub(crate) const CURVE_ERROR: f64 = 1e-6;
 /// Replaces a radius of zero in divisions.
 pub(crate) const TINY: f64 = 1e-30;
 
@@ -171,6 +176,56 @@ shared_structs! {
         max_lengthening: f32,
         /// Reciprocal of the inverse mean ratio toward which EDGE's penalty grows; 0 without a penalty.
         inverse_penalty_guard: f32,
+    }
+
+    /// A vertex that slides along a curve, alone or with a partner on a second curve of equal parameters.
+    SlidingVertex {
+        /// The vertex and its partner, NONE without a partner.
+        vertices: vec2u,
+        /// The vertex and its neighbors on the curve, as indices in `places`. If the neighbor before has no smaller index,
+        /// or the neighbor after no larger one, the neighbor is on another turn around the curve.
+        place: u32,
+        low: u32,
+        high: u32,
+        /// Index of the first knot of the curve in `knots`. The knots of the partner's curve follow.
+        knots: u32,
+        /// Number of knots on each curve. A closed curve repeats its first knot at the end.
+        knot_count: u32,
+        is_closed: u32,
+        /// Number of the vertex's given position among the knots of the curve.
+        own: u32,
+        /// Range in `corners` of the triangles around the vertex, after which those around the partner follow.
+        first_corner: u32,
+        partner_corner: u32,
+        last_corner: u32,
+        /// Largest distance from the given position. NO_GUARD allows any distance.
+        reach: f32,
+        padding: u32,
+        more_padding: vec2u,
+    }
+
+    /// A given vertex of a curve, and the piece of the curve up to the next one.
+    Knot {
+        at: vec4f,
+        /// A pair of floats: the parameter.
+        param: vec2f,
+        /// Slopes of the cubic relative to the line to the next knot, at the two ends of the line.
+        slopes: vec2f,
+        /// Length of the line to the next knot.
+        length: f32,
+        /// Largest distance from the lines between moved vertices.
+        bound: f32,
+        padding: vec2u,
+    }
+
+    /// The place of a vertex on its curve.
+    CurvePlace {
+        /// A pair of floats: the parameter.
+        param: vec2f,
+        /// Number of the last knot up to the parameter.
+        piece: u32,
+        /// Number of latest sweeps that pressed the vertex against a bound, negative toward smaller parameters.
+        presses: i32,
     }
 
     /// An operation of a correction on the free vertices or triangles of the mesh. Offsets are relative to the binding.
@@ -569,6 +624,22 @@ impl Params {
             floor: 0.0,
             padding: 0,
             more_padding: [0; 2],
+        }
+    }
+}
+
+impl Part {
+    /// Returns the uniform of a dispatch that visits a range of vertices by a step.
+    pub(crate) fn of_step(step: &SweepParams, vertices: &Range<u32>, ring_base: u32) -> Self {
+        Self {
+            first: vertices.start,
+            count: vertices.end - vertices.start,
+            omega: step.omega as f32,
+            sharpness: step.sharpness,
+            shape_guard: step.shape_guard.min(NO_GUARD) as f32,
+            ring_base,
+            max_lengthening: step.max_lengthening as f32,
+            inverse_penalty_guard: step.penalty_guard.recip() as f32,
         }
     }
 }

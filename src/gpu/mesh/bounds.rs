@@ -7,7 +7,7 @@ use crate::layout::Problem;
 use crate::run::multilevel::NONE;
 
 /// Share by which radii are smaller than on the CPU, more than the error of a point of the circle in single precision.
-const RESERVE: f64 = 1e-6;
+pub(super) const RESERVE: f64 = 1e-6;
 /// Rounding error of a pair of floats, relative to its value, with a margin.
 const PAIR_ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 

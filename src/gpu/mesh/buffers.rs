@@ -12,7 +12,7 @@ use crate::gpu::device::readback::{self, Waiting};
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
 use crate::gpu::kernels::layouts::BoundPositions;
 use crate::gpu::kernels::uniforms::split;
-use crate::gpu::mesh::{Changes, Parts, bounds, of_part};
+use crate::gpu::mesh::{Changes, Curves, Parts, bounds, of_part};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::parallel::pace::now;
@@ -24,6 +24,8 @@ pub(crate) struct MeshBuffers {
     pub(crate) ring_start: wgpu::Buffer,
     pub(crate) ring: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
+    /// The vertices that slide along curves. `None` if no vertex slides.
+    pub(crate) curves: Option<Curves>,
     /// Counters of the application's changes to the mesh.
     pub(crate) changes: Changes,
     /// Ranges of the buffers that are bound at once.
@@ -48,7 +50,7 @@ impl MeshBuffers {
         let ring = filled_with_pauses(gpu, "one-rings", &[ring], Usage::STORAGE).await?;
         let triangles = filled_with_pauses(gpu, "triangles", &[triangles], Usage::STORAGE).await?;
         let changes = scoped(&gpu.device, || Changes::new(gpu))?;
-        Ok(Self { positions, ring_start, ring, triangles, changes, parts })
+        Ok(Self { positions, ring_start, ring, triangles, curves: None, changes, parts })
     }
 
     /// Creates a mesh at other `positions`, with its own counters of changes. Both meshes share all other buffers.
@@ -88,13 +90,14 @@ impl MeshBuffers {
         })
     }
 
-    /// Returns a mesh with its own positions and counters of changes, which shares all other buffers.
+    /// Returns a mesh with its own positions and counters of changes, which shares all other buffers. No vertex of it slides.
     fn at(&self, gpu: &Gpu, positions: wgpu::Buffer) -> Self {
         Self {
             positions,
             ring_start: self.ring_start.clone(),
             ring: self.ring.clone(),
             triangles: self.triangles.clone(),
+            curves: None,
             changes: Changes::new(gpu),
             parts: self.parts.clone(),
         }

@@ -3,8 +3,10 @@
 pub(crate) mod bounds;
 mod buffers;
 mod changes;
+mod curves;
 mod parts;
 
 pub(crate) use buffers::MeshBuffers;
 pub(crate) use changes::Changes;
+pub(crate) use curves::Curves;
 pub(crate) use parts::{Parts, RingPart, of_part};

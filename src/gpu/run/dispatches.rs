@@ -13,9 +13,9 @@ use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::layouts::RunBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::kernels::uniforms::{Control, NO_GUARD, Params, Part, WORKGROUP, pair};
-use crate::gpu::mesh::MeshBuffers;
-use crate::gpu::mesh::{Parts, bounds, of_part};
+use crate::gpu::kernels::uniforms::{Control, Params, Part, WORKGROUP, pair};
+use crate::gpu::mesh::{MeshBuffers, Parts, bounds, of_part};
+use crate::gpu::run::slides::Slides;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Metric;
@@ -36,6 +36,8 @@ pub(crate) struct Dispatches {
     objective: Pipeline,
     finish: Pipeline,
     keep_best: Option<Pipeline>,
+    /// The visits of sliding vertices. `None` if no vertex slides.
+    slides: Option<Slides>,
     objective_groups: u32,
     uniforms: Uniforms,
 }
@@ -83,16 +85,7 @@ impl Uniforms {
     fn bytes(&self) -> Vec<u8> {
         let mut parts = Vec::new();
         for step in &self.steps {
-            let of_color = |d: &ColorPart| Part {
-                first: d.vertices.start,
-                count: d.vertices.end - d.vertices.start,
-                omega: step.omega as f32,
-                sharpness: step.sharpness,
-                shape_guard: step.shape_guard.min(NO_GUARD) as f32,
-                ring_base: d.ring_base,
-                max_lengthening: step.max_lengthening as f32,
-                inverse_penalty_guard: step.penalty_guard.recip() as f32,
-            };
+            let of_color = |d: &ColorPart| Part::of_step(step, &d.vertices, d.ring_base);
             parts.extend(self.sweep.iter().map(of_color));
         }
         // The kernels of triangles and of free vertices use no parameters of sweeps.
@@ -160,7 +153,7 @@ impl Dispatches {
         let partial_bytes =
             (plan.tracked().len() as u64 + 2) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
-        let uniforms = Uniforms::new(gpu, steps, problem.colors(), &mesh.parts);
+        let uniforms = Uniforms::new(gpu, steps.clone(), problem.colors(), &mesh.parts);
         let params = params(problem, &plan, partials);
 
         let (control, best, params, bind_groups) = scoped(&gpu.device, || {
@@ -197,6 +190,13 @@ impl Dispatches {
             let bind_groups = bind_groups.collect();
             (control, best, params, bind_groups)
         })?;
+        let slides = match &mesh.curves {
+            Some(curves) if !steps.is_empty() => {
+                let buffers = [&params, &control];
+                Some(Slides::new(gpu, mesh, curves, buffers, steps, keep_best.is_some()).await?)
+            }
+            _ => None,
+        };
         Ok(Self {
             plan,
             control,
@@ -207,6 +207,7 @@ impl Dispatches {
             objective,
             finish,
             keep_best,
+            slides,
             objective_groups: partials / WORKGROUP,
             uniforms,
         })
@@ -221,7 +222,7 @@ impl Dispatches {
         })
     }
 
-    /// Encodes one sweep over all colors by one of the run's steps.
+    /// Encodes one sweep over all colors, and over the sliding vertices, by one of the run's steps.
     pub(crate) fn encode_sweep(&self, passes: &mut Passes<'_>, step: &SweepParams) {
         let key = (step.metric, step.derivatives);
         let pipeline = self.sweeps.iter().find(|known| (known.0, known.1) == key);
@@ -235,6 +236,9 @@ impl Dispatches {
                 self.bind(pass, *part, first + i);
                 dispatch(pass, vertices.end - vertices.start);
             });
+        }
+        if let Some(slides) = &self.slides {
+            slides.encode_visits(passes, step);
         }
     }
 
@@ -257,6 +261,9 @@ impl Dispatches {
                 self.bind(pass, part, self.uniforms.of_free() + part);
                 dispatch(pass, vertices.end - vertices.start);
             });
+        }
+        if let Some(slides) = &self.slides {
+            slides.encode_keep_best(passes);
         }
     }
 

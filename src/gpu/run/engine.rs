@@ -11,7 +11,7 @@ use crate::gpu::device::buffers::write_by_pieces;
 use crate::gpu::device::readback::{self, Copied, Waiting};
 use crate::gpu::encode::{Passes, sealed::Target};
 use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
-use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::mesh::{Curves, MeshBuffers};
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::levels::{Fitting, Levels};
 use crate::gpu::run::secants::Secants;
@@ -24,6 +24,7 @@ use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
 use crate::run::truncated::{NewtonStep, StepRequest};
 use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Stop, SweepParams};
+use crate::slide::OnCurves;
 
 /// Relative error of f that the device sums from terms in single precision. Repeated evaluations on lavapipe differ by
 /// 3e-8.
@@ -61,9 +62,9 @@ pub(crate) struct GpuEngine<'a> {
 }
 
 impl<'a> GpuEngine<'a> {
-    /// Uploads the problem with its vertices at the normalized positions `start`, in the problem's order. Creates the
-    /// pipelines for `steps`, all possible steps of a run by the plan. The device ends [`Engine::sweeps`] by the plan's
-    /// stop rule.
+    /// Uploads the problem with its vertices at the normalized positions `start`, in the problem's order, and with the
+    /// sliding vertices `curves` at these positions. Creates the pipelines for `steps`, all possible steps of a run by the
+    /// plan. The device ends [`Engine::sweeps`] by the plan's stop rule.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
@@ -71,13 +72,17 @@ impl<'a> GpuEngine<'a> {
         gpu: &'a Gpu,
         problem: &Problem,
         start: &[DVec2],
+        curves: Option<&OnCurves>,
         plan: Plan,
         steps: Vec<SweepParams>,
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
         gpu.device.check()?;
-        let mesh = MeshBuffers::new(gpu, problem, start).await?;
+        let mut mesh = MeshBuffers::new(gpu, problem, start).await?;
         let keep_best = !plan.is_monotone();
+        if let Some(curves) = curves {
+            mesh.curves = Some(Curves::new(gpu, problem, curves, keep_best)?);
+        }
         let dispatches = Dispatches::new(gpu, problem, &mesh, plan, steps, keep_best).await?;
         let start = paced::copied(start).await;
         let (levels, secants, hierarchy) = (None, None, None);
@@ -204,6 +209,49 @@ impl<'a> GpuEngine<'a> {
         positions
     }
 
+    /// Returns the sliding vertices in the state whose positions [`Engine::best_positions`] returns. `None` if no vertex
+    /// slides.
+    pub(crate) async fn best_curves(&self) -> Result<Option<OnCurves>, GpuError> {
+        let Some(curves) = &self.mesh.curves else { return Ok(None) };
+        let is_last = self.dispatches.plan.is_monotone();
+        self.read_curves(if is_last { &curves.places } else { &curves.best }).await
+    }
+
+    /// Returns the sliding vertices in the present state. `None` if no vertex slides.
+    async fn present_curves(&self) -> Result<Option<OnCurves>, GpuError> {
+        let Some(curves) = &self.mesh.curves else { return Ok(None) };
+        self.read_curves(&curves.places).await
+    }
+
+    async fn read_curves(&self, state: &wgpu::Buffer) -> Result<Option<OnCurves>, GpuError> {
+        let Some(curves) = &self.mesh.curves else { return Ok(None) };
+        Ok(Some(curves.read(self.gpu, &self.problem, state, self.waiting).await?))
+    }
+
+    /// Returns the sliding vertices to a saved state. Returns false if the state belongs to other curves.
+    fn restore_curves(&mut self, state: &EngineState) -> Result<bool, GpuError> {
+        let Some(curves) = &mut self.mesh.curves else { return Ok(true) };
+        let mut restored = curves.set().clone();
+        let Some(best_params) = restored.restore(state) else { return Ok(false) };
+        let best = best_params.map(|params| {
+            let mut best = restored.clone();
+            best.set_params(&params);
+            best
+        });
+        if best.is_none() && !self.dispatches.plan.is_monotone() {
+            return Ok(false);
+        }
+        let best = best.filter(|_| !self.dispatches.plan.is_monotone());
+        curves.write(self.gpu, &self.problem, &restored, best.as_ref())?;
+        Ok(true)
+    }
+
+    /// Returns the number of leading vertices whose positions a saved state has: the free vertices, or all if some of the
+    /// others slide.
+    fn saved_count(&self) -> usize {
+        if self.mesh.curves.is_some() { self.start.len() } else { self.problem.free_count() }
+    }
+
     /// Returns the proposal, given the four totals of the objective along the correction.
     async fn proposal(&self, totals: Copied<'_, [f32; 2]>) -> Result<Proposal, GpuError> {
         let totals = totals.values(self.waiting).await?;
@@ -274,7 +322,11 @@ impl Engine for GpuEngine<'_> {
     async fn positions(&mut self) -> Result<Cow<'_, [DVec2]>, GpuError> {
         let free = self.problem.free_count();
         let moved = self.mesh.read_positions(self.gpu, free, self.waiting).await?;
-        Ok(Cow::Owned(self.moved(moved).await))
+        let mut positions = self.moved(moved).await;
+        if let Some(curves) = self.present_curves().await? {
+            curves.write_positions(&self.problem, &mut positions);
+        }
+        Ok(Cow::Owned(positions))
     }
 
     async fn best_positions(&mut self) -> Result<Vec<DVec2>, GpuError> {
@@ -283,7 +335,11 @@ impl Engine for GpuEngine<'_> {
             true => self.mesh.read_positions(self.gpu, free, self.waiting).await?,
             false => readback::read(self.gpu, &self.dispatches.best, free, self.waiting).await?,
         };
-        Ok(self.moved(moved).await)
+        let mut positions = self.moved(moved).await;
+        if let Some(curves) = self.best_curves().await? {
+            curves.write_positions(&self.problem, &mut positions);
+        }
+        Ok(positions)
     }
 
     fn take_hierarchy(&mut self) -> Option<Hierarchy> {
@@ -350,8 +406,10 @@ impl Engine for GpuEngine<'_> {
         request: &StepRequest,
     ) -> Result<Option<NewtonStep>, GpuError> {
         let Self { gpu, problem, mesh, dispatches, truncated, waiting, .. } = self;
-        // In single precision, steps on strongly stretched triangles do not end a run.
-        if problem.has_local_maps() || mesh.parts.count() > 1 {
+        // In single precision, steps on strongly stretched triangles do not end a run. The Hessian is not bound in parts, and steps
+        // move no sliding vertices.
+        let is_left = problem.has_local_maps() || mesh.parts.count() > 1 || mesh.curves.is_some();
+        if is_left {
             return Ok(None);
         }
         if truncated.is_none() {
@@ -406,15 +464,22 @@ impl Engine for GpuEngine<'_> {
 
     async fn save(&mut self, whole: bool) -> Result<EngineState, GpuError> {
         let (gpu, waiting, free) = (self.gpu, self.waiting, self.problem.free_count());
-        let positions = self.mesh.read_positions(gpu, free, waiting).await?;
+        let positions = self.mesh.read_positions(gpu, self.saved_count(), waiting).await?;
+        let curves = self.present_curves().await?;
         let mut state =
             EngineState { engine: gpu.adapter().name.clone(), ..EngineState::default() };
+        let mut best_curves = None;
         if !self.dispatches.plan.is_monotone() {
             let best = readback::read(gpu, &self.dispatches.best, free, waiting).await?;
             if whole {
                 state.add(BEST, &best);
             }
-            state.best = Some(self.moved(best).await);
+            let mut best = self.moved(best).await;
+            best_curves = self.best_curves().await?;
+            if let Some(curves) = &best_curves {
+                curves.write_positions(&self.problem, &mut best);
+            }
+            state.best = Some(best);
         }
         if whole {
             state.add(POSITIONS, &positions);
@@ -428,12 +493,17 @@ impl Engine for GpuEngine<'_> {
             }
         }
         state.positions = self.moved(positions).await;
+        if let Some(curves) = curves {
+            curves.write_positions(&self.problem, &mut state.positions);
+            curves.save(best_curves.as_ref().map(OnCurves::params), &mut state);
+        }
         Ok(state)
     }
 
     async fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
         let (gpu, free) = (self.gpu, self.problem.free_count());
-        let Some(positions) = state.own::<[f32; 4]>(POSITIONS, free) else { return Ok(false) };
+        let saved = state.own::<[f32; 4]>(POSITIONS, self.saved_count());
+        let Some(positions) = saved else { return Ok(false) };
         let Some([control]) = state
             .own::<Control>(CONTROL, 1)
             .as_deref()
@@ -443,6 +513,9 @@ impl Engine for GpuEngine<'_> {
             return Ok(false);
         };
         if control.done != 0 || !positions.as_flattened().iter().all(|x| x.is_finite()) {
+            return Ok(false);
+        }
+        if !self.restore_curves(state)? {
             return Ok(false);
         }
         self.mesh.write_positions(gpu, &positions)?;

@@ -6,7 +6,10 @@ mod levels;
 mod listing;
 mod pages;
 mod secants;
+mod slides;
 pub(crate) mod stiffness;
+#[cfg(test)]
+mod tests;
 mod truncated;
 
 pub(crate) use dispatches::Dispatches;

@@ -94,7 +94,7 @@ impl<'a> Engines<'a> {
             now(cpu.sweep(&sweep)).unwrap();
         }
         let swept = now(cpu.positions()).unwrap().into_owned();
-        let device = GpuEngine::new(gpu, problem, &swept, plan, steps, Waiting::Block);
+        let device = GpuEngine::new(gpu, problem, &swept, None, plan, steps, Waiting::Block);
         Self { cpu, device: now(device).unwrap(), sweep }
     }
 
