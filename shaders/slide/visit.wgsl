@@ -260,7 +260,7 @@ fn slide(
     inverse_penalty_guard = part.inverse_penalty_guard;
     visited = sliding[part.first + index];
     let place = places[visited.place];
-    if abs(place.presses) >= i32(FREEZES_AFTER) {
+    if abs(place.presses) >= i32(FREEZES_AFTER) || (visited.pinned | visited.masked) != 0u {
         return;
     }
     window = Window(places[visited.low].param, place.param, places[visited.high].param);

@@ -2,14 +2,19 @@
 
 use crate::error::SmoothError;
 use crate::gpu::{DeviceMesh, Gpu};
+use crate::slide::Sliding;
 
 use super::prepared::Smoother;
 
 impl Smoother<'_> {
     /// Uploads the mesh as [`DeviceMesh::new`] does, but reuses the prepared layout and targets: only the upload
     /// remains, and sweeps reproduce the bits of a run. Only a mesh with [`Mesh::fixed`](crate::Mesh::fixed) vertices
-    /// is laid out again. A field of targets is evaluated once, at the vertices before a run; no vertex slides on a
-    /// device.
+    /// is laid out again. A field of targets is evaluated once, at the vertices before a run.
+    ///
+    /// After [`set_slide`](Self::set_slide), [`Sweeps`](crate::gpu::Sweeps) slide vertices along their curves, partners
+    /// together. A vertex that the application moves along its curve goes on sliding from its new place, and a vertex that
+    /// it moves off the curve stays there until it is back. Pins and masks hold sliding vertices too, with their partners.
+    /// On a projected mesh no vertex slides.
     ///
     /// After [`project_from_sphere`](Self::project_from_sphere), vertices on the device move in the Mercator projection.
     /// Vertex buffers have coordinates of the projection, and are declared by
@@ -26,6 +31,8 @@ impl Smoother<'_> {
         if let Some(opened) = &self.opened {
             return opened.to_device(gpu);
         }
-        DeviceMesh::of(gpu, &self.mesh, &self.problem)
+        let slide = self.slide.as_ref().filter(|_| !self.problem.is_projected());
+        let sliding = slide.map(|slide| Sliding::new(&self.mesh.points, &self.topology, slide));
+        DeviceMesh::of(gpu, &self.mesh, &self.problem, sliding)
     }
 }

@@ -22,6 +22,7 @@ mod passes;
 mod pins;
 mod readback;
 mod refusals;
+mod sliding;
 mod sphere;
 mod sweeps;
 mod targets;

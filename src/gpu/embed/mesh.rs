@@ -1,6 +1,7 @@
 //! A mesh that stays on an application's device.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use glam::DVec2;
 use wgpu::BufferUsages as Usage;
@@ -13,13 +14,13 @@ use crate::gpu::device::buffers::filled;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::embed::clamped_move::Moves;
 use crate::gpu::embed::objective::Run;
-use crate::gpu::embed::pins::{Change, Pins};
+use crate::gpu::embed::pins::{Change, Pins, SlidingPins};
 use crate::gpu::embed::window::Window;
 use crate::gpu::embed::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, LastValid, VertexBuffer,
 };
 use crate::gpu::kernels::uniforms::join;
-use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::mesh::{Curves, MeshBuffers};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::layout::{prepare, prepare_like, prepare_to_untangle};
@@ -28,6 +29,7 @@ use crate::options::{Feature, Options};
 use crate::parallel::pace::now;
 use crate::run::Plan;
 use crate::run::multilevel::NONE;
+use crate::slide::{OnCurves, Sliding};
 use crate::targets::Targets;
 
 /// A mesh on an application's device. The triangles never change. [`Sweeps`](crate::gpu::Sweeps) move the vertices, and
@@ -49,6 +51,7 @@ pub struct DeviceMesh {
     /// Map from the application's vertex indices to device numbers; [`NONE`] for a vertex of no triangle.
     places: Vec<u32>,
     pins: Pins,
+    sliding_pins: SlidingPins,
     /// Vertices that no triangle uses, with their points. The device does not store these vertices.
     unused: Vec<(u32, [f64; 2])>,
 }
@@ -91,16 +94,29 @@ impl DeviceMesh {
     }
 
     /// Uploads a mesh with the layout, the projection and the targets of `prepared`, a problem of the same mesh. Only
-    /// meshes with fixed vertices or without free vertices are laid out again.
-    pub(crate) fn of(gpu: &Gpu, mesh: &Mesh, prepared: &Problem) -> Result<Self, SmoothError> {
-        if mesh.fixed.is_empty() && prepared.free_count() > 0 {
-            return Self::uploaded(gpu, mesh, prepared.clone());
-        }
-        let mut problem = prepare_like(&unconstrained(mesh), prepared)?;
-        if prepared.targets().is_some() {
-            problem.take_targets(prepared, &places(mesh, prepared));
-        }
-        Self::uploaded(gpu, mesh, problem)
+    /// meshes with fixed vertices or without free vertices are laid out again. The vertices of `sliding` slide, which are
+    /// numbered as in the mesh.
+    pub(crate) fn of(
+        gpu: &Gpu,
+        mesh: &Mesh,
+        prepared: &Problem,
+        sliding: Option<Sliding>,
+    ) -> Result<Self, SmoothError> {
+        let mut uploaded = match mesh.fixed.is_empty() && prepared.free_count() > 0 {
+            true => Self::uploaded(gpu, mesh, prepared.clone())?,
+            false => {
+                let mut problem = prepare_like(&unconstrained(mesh), prepared)?;
+                if prepared.targets().is_some() {
+                    problem.take_targets(prepared, &places(mesh, prepared));
+                }
+                Self::uploaded(gpu, mesh, problem)?
+            }
+        };
+        let Some(sliding) = sliding else { return Ok(uploaded) };
+        let sliding = sliding.numbered(&uploaded.problem, mesh.points.len());
+        let on_curves = OnCurves::new(Arc::new(sliding), None, 0.0);
+        uploaded.buffers.curves = Some(Curves::of_application(gpu, &uploaded.problem, &on_curves)?);
+        Ok(uploaded)
     }
 
     fn made(gpu: &Gpu, mesh: &Mesh, targets: Option<&Targets>) -> Result<Self, SmoothError> {
@@ -131,8 +147,18 @@ impl DeviceMesh {
             fixed.extend(Some(place).filter(|&place| place < free));
         }
         let pins = Pins::new(gpu, &problem, &buffers, &fixed)?;
-        let gpu = gpu.clone();
-        Ok(Self { gpu, problem, buffers, numbers, vertex_count, places, pins, unused })
+        let (gpu, sliding_pins) = (gpu.clone(), SlidingPins::default());
+        Ok(Self {
+            gpu,
+            problem,
+            buffers,
+            numbers,
+            vertex_count,
+            places,
+            pins,
+            sliding_pins,
+            unused,
+        })
     }
 
     /// Pins vertices, given by zero-based index: sweeps leave pinned vertices in place, like the vertices of
@@ -143,8 +169,7 @@ impl DeviceMesh {
     /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then nothing is pinned. [`SmoothError::Gpu`]
     /// if the device fails.
     pub fn pin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
-        let places = self.free_places(vertices)?;
-        self.change_pins(Change::Pin(&places))
+        self.change_pins(Change::Pin(&self.all_places(vertices)?))
     }
 
     /// Unpins vertices in submissions after the call. Vertices of [`Mesh::fixed`] and of the boundary stay fixed. If a
@@ -154,8 +179,7 @@ impl DeviceMesh {
     /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then nothing is unpinned. [`SmoothError::Gpu`]
     /// if the device fails.
     pub fn unpin(&self, vertices: &[u32]) -> Result<(), SmoothError> {
-        let places = self.free_places(vertices)?;
-        self.change_pins(Change::Unpin(&places))
+        self.change_pins(Change::Unpin(&self.all_places(vertices)?))
     }
 
     /// Pins exactly the given vertices and unpins all others, in later submissions.
@@ -164,12 +188,15 @@ impl DeviceMesh {
     /// [`MeshError::IndexOutOfRange`] if the mesh lacks a listed vertex; then no pin changes. [`SmoothError::Gpu`] if
     /// the device fails.
     pub fn set_pinned(&self, vertices: &[u32]) -> Result<(), SmoothError> {
-        let places = self.free_places(vertices)?;
-        self.change_pins(Change::PinThese(&places))
+        self.change_pins(Change::PinThese(&self.all_places(vertices)?))
     }
 
     fn change_pins(&self, change: Change<'_>) -> Result<(), SmoothError> {
-        Ok(self.pins.change(&self.gpu, &self.problem, &self.buffers, change)?)
+        let Self { gpu, problem, buffers, pins, sliding_pins, .. } = self;
+        if let Some(curves) = &buffers.curves {
+            sliding_pins.change(gpu, curves, &buffers.changes, &change)?;
+        }
+        Ok(pins.change(gpu, problem, buffers, &change)?)
     }
 
     /// Binds a mask in a buffer of the application: one u32 per vertex of the mesh from byte `offset` on, nonzero for a
@@ -196,12 +223,9 @@ impl DeviceMesh {
         LastValid::new(&self.gpu, &self.problem, &self.buffers)
     }
 
-    /// Returns the device numbers of the given vertices, without vertices of the boundary and of no triangle, which no
-    /// sweep moves.
-    fn free_places(&self, vertices: &[u32]) -> Result<Vec<u32>, MeshError> {
-        let free = self.problem.free_count() as u32;
-        let places: Result<Vec<u32>, _> = vertices.iter().map(|&v| self.place_of(v)).collect();
-        Ok(places?.into_iter().filter(|&place| place < free).collect())
+    /// Returns the device numbers of the given vertices.
+    fn all_places(&self, vertices: &[u32]) -> Result<Vec<u32>, MeshError> {
+        vertices.iter().map(|&v| self.place_of(v)).collect()
     }
 
     /// Returns the numbers of vertices, including vertices of no triangle, and of triangles.

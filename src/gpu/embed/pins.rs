@@ -1,5 +1,6 @@
 //! Holds vertices in place, by pins of the host and by masks of the application.
 
+use std::collections::BTreeSet;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use wgpu::BufferUsages as Usage;
@@ -11,11 +12,11 @@ use crate::gpu::embed::window::Window;
 use crate::gpu::encode::Encoder;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::form::Positions;
-use crate::gpu::kernels::layouts::MaskBindings;
+use crate::gpu::kernels::layouts::{MaskBindings, SlidingMaskBindings};
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{HELD, Mask};
-use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::mesh::{Changes, Curves, MeshBuffers};
 use crate::gpu::scope::{check_alive, scoped, scoped_to_buffer};
 use crate::layout::Problem;
 
@@ -68,13 +69,14 @@ impl Pins {
         gpu: &Gpu,
         problem: &Problem,
         mesh: &MeshBuffers,
-        change: Change<'_>,
+        change: &Change<'_>,
     ) -> Result<(), GpuError> {
         let mut flags = self.flags();
         let mut changed = Vec::new();
         let mut set = |flags: &mut [u8], places: &[u32], wanted: u8| {
             for &place in places {
-                let flag = &mut flags[place as usize];
+                // Sweeps over the free vertices do not visit others.
+                let Some(flag) = flags.get_mut(place as usize) else { continue };
                 if *flag & PINNED != wanted {
                     *flag ^= PINNED;
                     changed.push(place);
@@ -133,6 +135,41 @@ impl Pins {
     }
 }
 
+/// Sliding vertices that the host holds in place, by device number. A pinned vertex holds its partner.
+#[derive(Default)]
+pub(crate) struct SlidingPins(Mutex<BTreeSet<u32>>);
+
+impl SlidingPins {
+    /// Applies a change, sends the changed vertices to the device, and counts a change of the mesh. Does nothing if no
+    /// vertex changes.
+    pub(crate) fn change(
+        &self,
+        gpu: &Gpu,
+        curves: &Curves,
+        changes: &Changes,
+        change: &Change<'_>,
+    ) -> Result<(), GpuError> {
+        let mut pinned = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = pinned.clone();
+        match change {
+            Change::Pin(places) => pinned.extend(*places),
+            Change::Unpin(places) => places.iter().for_each(|place| _ = pinned.remove(place)),
+            Change::PinThese(places) => *pinned = places.iter().copied().collect(),
+        }
+        let holds = |pins: &BTreeSet<u32>, pair: &[u32; 2]| pair.iter().any(|v| pins.contains(v));
+        let all = curves.pairs.iter().enumerate();
+        let now = all.map(|(index, pair)| (index, holds(&before, pair), holds(&pinned, pair)));
+        let changed: Vec<_> = now.filter(|(_, before, now)| before != now).collect();
+        if changed.is_empty() {
+            return Ok(());
+        }
+        scoped(&gpu.device, || {
+            changed.iter().for_each(|&(index, _, now)| curves.pin(gpu, index, now));
+        })?;
+        changes.count(gpu)
+    }
+}
+
 /// A change of the pinned vertices, given by device numbers.
 pub(crate) enum Change<'a> {
     Pin(&'a [u32]),
@@ -164,6 +201,8 @@ pub struct BoundMask {
     pipeline: Pipeline,
     bind_group: wgpu::BindGroup,
     count: u32,
+    /// The kernel for sliding vertices, with its bind group and their number. `None` if no vertex slides.
+    sliding: Option<(Pipeline, wgpu::BindGroup, u32)>,
 }
 
 impl BoundMask {
@@ -190,7 +229,25 @@ impl BoundMask {
             gpu.pipelines.bind(&gpu.device, Positions::Whole, bindings)
         })?;
         let pipeline = gpu.pipelines.get(&gpu.device, &Kernel::HoldByMask, Positions::Whole)?;
-        Ok(Self { pipeline, bind_group, count })
+        let Some(curves) = &mesh.curves else {
+            return Ok(Self { pipeline, bind_group, count, sliding: None });
+        };
+        let slides = curves.pairs.len() as u32;
+        let of_sliding = scoped_to_buffer(&gpu.device, || {
+            let mask = Mask { vertices: slides, ..mask };
+            let uniform = filled(gpu, "mask of sliding vertices", &[mask], Usage::UNIFORM);
+            let bindings = SlidingMaskBindings {
+                to_hold: uniform.as_entire_binding(),
+                sliding: curves.vertices.as_entire_binding(),
+                numbers: numbers.as_entire_binding(),
+                mask: window.binding(),
+                changes: mesh.changes.buffer.as_entire_binding(),
+            };
+            gpu.pipelines.bind(&gpu.device, Positions::Whole, bindings)
+        })?;
+        let kernel = Kernel::HoldSlidingByMask;
+        let hold = gpu.pipelines.get(&gpu.device, &kernel, Positions::Whole)?;
+        Ok(Self { pipeline, bind_group, count, sliding: Some((hold, of_sliding, slides)) })
     }
 
     /// Encodes the holding of vertices by the mask. When the command buffer runs, vertices with a nonzero word in the
@@ -198,9 +255,15 @@ impl BoundMask {
     /// [pinned](crate::gpu::DeviceMesh::pin) vertices stay held. Encode this call again after any change of the mask,
     /// and after unpinning a masked vertex.
     pub fn encode_mask(&self, encoder: &mut impl Encoder) {
-        encoder.passes("gpu-smooth mask").run(&self.pipeline, None, |pass| {
+        let mut passes = encoder.passes("gpu-smooth mask");
+        passes.run(&self.pipeline, None, |pass| {
             pass.set_bind_group(0, &self.bind_group, &[]);
             dispatch(pass, self.count);
+        });
+        let Some((pipeline, bind_group, count)) = &self.sliding else { return };
+        passes.run(pipeline, None, |pass| {
+            pass.set_bind_group(0, bind_group, &[]);
+            dispatch(pass, *count);
         });
     }
 }

@@ -187,6 +187,9 @@ impl Sweeps {
             dispatches.encode_evaluation(passes);
             judged.encode(passes, &judged.resume);
         }
+        if sweeps > 0 {
+            dispatches.encode_take_up(passes);
+        }
         for _ in 0..sweeps {
             self.done = self.done.saturating_add(1);
             match corrections {

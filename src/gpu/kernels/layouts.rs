@@ -236,6 +236,18 @@ bind_layouts! {
         changes: ReadWrite array<atomic<u32>, 2>,
     }
 
+    /// Sliding vertices of a mesh, and a mask of an application.
+    SlidingMask, SlidingMaskBindings, [] {
+        to_hold: Uniform Mask,
+        /// The sliding vertices by color, each with its partner.
+        sliding: ReadWrite array<SlidingVertex>,
+        /// The application's number of each vertex.
+        numbers: Read array<u32>,
+        mask: Read array<u32>,
+        /// Two counters: changes of the mesh by kernels; changes of pins, and restarts, by the host.
+        changes: ReadWrite array<atomic<u32>, 2>,
+    }
+
     /// A mesh, and the vertices that an application moves toward targets.
     Move, MoveBindings, ["pairs.wgsl", "patch.wgsl", "clamp/common.wgsl"] {
         movement: Uniform Movement,

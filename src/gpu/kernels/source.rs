@@ -7,7 +7,7 @@ use crate::gpu::kernels::row::{Composition, Source};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     ALTITUDE_ERROR, AT_DISC, BISECTIONS, CURVE_ERROR, FINISH_WORKGROUP, HELD, HIDDEN, HISTORY,
-    INVERTED, MIN_NORMAL, NO_GUARD, SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS,
+    INVERTED, MIN_NORMAL, NO_GUARD, OFF_CURVE, SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS,
     STEP_TRIALS, TINY, WORKGROUP, WORST,
 };
 use crate::layout::MapKind;
@@ -128,6 +128,7 @@ fn constants() -> String {
         ("BISECTIONS", BISECTIONS),
         ("FALLS_OVER", ErrorBound::FALLS_OVER as u32),
         ("HALVINGS", HALVINGS),
+        ("OFF_CURVE", OFF_CURVE),
         ("FREEZES_AFTER", FREEZES_AFTER.unsigned_abs().into()),
     ] {
         let _ = writeln!(text, "const {name}: u32 = {value}u;");

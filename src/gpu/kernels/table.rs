@@ -149,6 +149,28 @@ kernels! {
         source: ["slide/keep_best_places.wgsl"],
     }
 
+    /// Takes up the places of sliding vertices that an application has moved.
+    TakeUp {
+        entry_point: "take_up",
+        layout: Slide,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Curves,
+        source: ["slide/curve.wgsl", "slide/take_up.wgsl"],
+    }
+
+    /// Holds sliding vertices by a mask of the application.
+    HoldSlidingByMask {
+        entry_point: "hold_sliding_by_mask",
+        layout: SlidingMask,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Curves,
+        source: ["slide/hold_by_mask.wgsl"],
+    }
+
     /// Reads positions from an application's vertex buffer.
     Import {
         entry_point: "import_positions",

@@ -38,6 +38,8 @@ pub(crate) const AT_DISC: f64 = 1.0 - 1e-5;
 /// Error of an altitude in single precision, as a share of the longest edge. The error of an area is 3e-7 times the product
 /// of two edges.
 pub(crate) const ALTITUDE_ERROR: f64 = 1e-6;
+/// Stands for a number of presses at a vertex off its curve. The vertex stays, as after too many presses.
+pub(crate) const OFF_CURVE: u32 = 100;
 /// Error of the distance of a given vertex from a line in single precision, as a share of the length of the line.
 pub(crate) const CURVE_ERROR: f64 = 1e-6;
 /// Replaces a radius of zero in divisions.
@@ -200,8 +202,10 @@ shared_structs! {
         last_corner: u32,
         /// Largest distance from the given position. NO_GUARD allows any distance.
         reach: f32,
+        /// Not 0 if the application holds the vertex or its partner, by pins or by a mask.
+        pinned: u32,
+        masked: u32,
         padding: u32,
-        more_padding: vec2u,
     }
 
     /// A given vertex of a curve, and the piece of the curve up to the next one.
@@ -224,7 +228,8 @@ shared_structs! {
         param: vec2f,
         /// Number of the last knot up to the parameter.
         piece: u32,
-        /// Number of latest sweeps that pressed the vertex against a bound, negative toward smaller parameters.
+        /// Number of latest sweeps that pressed the vertex against a bound, negative toward smaller parameters; OFF_CURVE for
+        /// a vertex that an application has moved off its curve.
         presses: i32,
     }
 
@@ -502,7 +507,7 @@ shared_structs! {
 
     /// An application's mask of held vertices.
     Mask {
-        /// Number of free and held vertices. All further vertices are on the boundary.
+        /// Number of free and held vertices, after which all further vertices are on the boundary, or of sliding vertices.
         vertices: u32,
         /// Offset of the first vertex in the binding, in words.
         offset: u32,

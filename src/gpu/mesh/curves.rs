@@ -1,5 +1,6 @@
 //! The buffers of sliding vertices: their curves, the triangles around them, and their places on the curves.
 
+use std::mem::offset_of;
 use std::ops::Range;
 
 use wgpu::BufferUsages as Usage;
@@ -30,13 +31,30 @@ pub(crate) struct Curves {
     pub(crate) best: wgpu::Buffer,
     /// Ranges of the sliding vertices of each color.
     pub(crate) colors: Vec<Range<u32>>,
+    /// Each sliding vertex and its partner ([`NONE`] without one), in the order of `vertices`.
+    pub(crate) pairs: Vec<[u32; 2]>,
     /// Number of entries in `places`.
     pub(crate) count: usize,
+    /// Whether an application may move the vertices.
+    pub(crate) is_of_application: bool,
     /// The state that the host last set, which has all digits of parameters.
     set: OnCurves,
 }
 
 impl Curves {
+    /// Uploads the sliding vertices of a mesh that stays in an application.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub(crate) fn of_application(
+        gpu: &Gpu,
+        problem: &Problem,
+        on_curves: &OnCurves,
+    ) -> Result<Self, GpuError> {
+        let curves = Self::new(gpu, problem, on_curves, false)?;
+        Ok(Self { is_of_application: true, ..curves })
+    }
+
     /// Uploads sliding vertices. With `keeps_best`, there is room for the best state.
     ///
     /// # Errors
@@ -63,16 +81,29 @@ impl Curves {
             let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
             let bytes = (kept * size_of::<CurvePlace>()) as u64;
             Self {
-                vertices: filled(gpu, "sliding vertices", &vertices, Usage::STORAGE),
+                vertices: filled(
+                    gpu,
+                    "sliding vertices",
+                    &vertices,
+                    Usage::STORAGE | Usage::COPY_DST,
+                ),
                 knots: filled(gpu, "curves", &knots, Usage::STORAGE),
                 corners: filled(gpu, "triangles of sliding vertices", &corners, Usage::STORAGE),
                 places: filled(gpu, "curve parameters", &places, usage),
                 best: zeroed(gpu, "best curve parameters", bytes, usage),
                 colors,
+                pairs: vertices.iter().map(|vertex| vertex.vertices).collect(),
+                is_of_application: false,
                 count: places.len(),
                 set: on_curves.clone(),
             }
         })
+    }
+
+    /// Pins or releases a sliding vertex with its partner, given by the index in `pairs`. To be called in an error scope.
+    pub(crate) fn pin(&self, gpu: &Gpu, index: usize, is_pinned: bool) {
+        let at = index * size_of::<SlidingVertex>() + offset_of!(SlidingVertex, pinned);
+        gpu.queue.write_buffer(&self.vertices, at as u64, &u32::from(is_pinned).to_le_bytes());
     }
 
     /// Returns the state that the host last set.
@@ -155,7 +186,8 @@ fn uploaded_vertex(of: &slide::SlidingVertex) -> SlidingVertex {
         partner_corner: own.end,
         last_corner: partner.end,
         reach: (of.reach * (1.0 - RESERVE)).min(NO_GUARD) as f32,
+        pinned: 0,
+        masked: 0,
         padding: 0,
-        more_padding: [0; 2],
     }
 }

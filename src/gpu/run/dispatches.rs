@@ -242,6 +242,13 @@ impl Dispatches {
         }
     }
 
+    /// Encodes the search for sliding vertices that an application has moved since the last sweeps.
+    pub(crate) fn encode_take_up(&self, passes: &mut Passes<'_>) {
+        if let Some(slides) = &self.slides {
+            slides.encode_take_up(passes);
+        }
+    }
+
     /// Encodes an evaluation: the sums of the objectives, the stop rule, and the copy of the best positions if the run
     /// keeps them.
     pub(crate) fn encode_evaluation(&self, passes: &mut Passes<'_>) {

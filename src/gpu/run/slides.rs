@@ -25,6 +25,8 @@ pub(crate) struct Slides {
     bind_group: wgpu::BindGroup,
     visits: Vec<(Metric, Pipeline)>,
     keep_best: Option<Pipeline>,
+    /// Takes up the places of vertices that an application has moved.
+    take_up: Option<Pipeline>,
     /// Distinct steps of the run.
     steps: Vec<SweepParams>,
     colors: Vec<Range<u32>>,
@@ -55,6 +57,8 @@ impl Slides {
         }
         let keep_best = keeps_best.then(|| pipeline(Kernel::KeepBestPlaces)).transpose()?;
         pause().await;
+        let take_up = curves.is_of_application.then(|| pipeline(Kernel::TakeUp)).transpose()?;
+        pause().await;
         let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
         let stride = alignment.max(size_of::<Part>() as u32);
         let colors = curves.colors.clone();
@@ -80,7 +84,7 @@ impl Slides {
             gpu.pipelines.bind(&gpu.device, form, bindings)
         })?;
         let count = curves.count as u32;
-        Ok(Self { bind_group, visits, keep_best, steps, colors, count, stride })
+        Ok(Self { bind_group, visits, keep_best, take_up, steps, colors, count, stride })
     }
 
     /// Encodes a visit of every sliding vertex by one of the run's steps.
@@ -102,6 +106,13 @@ impl Slides {
     pub(crate) fn encode_keep_best(&self, passes: &mut Passes<'_>) {
         if let Some(keep_best) = &self.keep_best {
             self.run(passes, keep_best, 0, self.count);
+        }
+    }
+
+    /// Encodes the search for vertices that an application has moved since the last sweeps.
+    pub(crate) fn encode_take_up(&self, passes: &mut Passes<'_>) {
+        if let Some(take_up) = &self.take_up {
+            self.run(passes, take_up, 0, self.count);
         }
     }
 
