@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepRequest {
     /// f before the sweep, relative to which a device judges gains.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code))]
     pub(crate) objective: f64,
     /// Share of the model's gain within which conjugate gradients solve for the step.
     pub(crate) forcing: f64,
