@@ -35,3 +35,20 @@ fn pulled_back(d: Derivatives, map: vec3<f32>) -> Derivatives {
     let right = mapped(map, vec2(first.y, second.y));
     return Derivatives(d.value, mapped(map, d.gradient), vec3(left, right.y));
 }
+
+// Returns the patch of a vertex with the triangles `start..end` around it, in the given unit.
+fn patch_around(vertex: u32, start: u32, end: u32, unit: f32) -> Patch {
+    var p: Patch;
+    p.start = start;
+    p.end = end;
+    p.at = position(vertex);
+    p.unit = unit;
+    p.own = map_at(vertex);
+    p.map_unit = 1.0;
+    if MAPPED {
+        p.map_unit = unit_of(p.own.xz);
+    }
+    let scale = p.unit * select(1.0, p.map_unit, HAS_TARGETS);
+    p.ideal = Ideal(params.mean_area * scale * scale, params.size_weight);
+    return p;
+}

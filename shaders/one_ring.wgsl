@@ -5,19 +5,10 @@ fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
 }
 
 fn patch_of(vertex: u32) -> Patch {
-    var p: Patch;
-    p.start = ring_place(ring_start[vertex]);
-    p.end = ring_place(ring_start[vertex + 1u]);
-    p.at = position(vertex);
-    p.unit = unit_of(edge(p.at, position(ring[p.start])));
-    p.own = map_at(vertex);
-    p.map_unit = 1.0;
-    if MAPPED {
-        p.map_unit = unit_of(p.own.xz);
-    }
-    let scale = p.unit * select(1.0, p.map_unit, HAS_TARGETS);
-    p.ideal = Ideal(params.mean_area * scale * scale, params.size_weight);
-    return p;
+    let start = ring_place(ring_start[vertex]);
+    let end = ring_place(ring_start[vertex + 1u]);
+    let unit = unit_of(edge(position(vertex), position(ring[start])));
+    return patch_around(vertex, start, end, unit);
 }
 
 // Returns the target map of the triangle between neighbor i and the previous neighbor: the mean of three maps, scaled

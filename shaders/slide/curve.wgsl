@@ -8,7 +8,7 @@ struct OnCurve {
     at: vec4<f32>,
     first: vec2<f32>,
     second: vec2<f32>,
-    // Number of the last knot up to the parameter, from 0 at the start of the curve, and the way from this knot.
+    // Index of the knot at which the piece with the parameter begins, from 0 at the start of the curve, and the way from this knot.
     piece: u32,
     way: f32,
 }
@@ -37,7 +37,7 @@ fn wrapped(v: SlidingVertex, param: vec2<f32>) -> vec2<f32> {
     return within;
 }
 
-// Returns the number of the last knot up to a parameter of the first turn. The search begins at the knot `near`.
+// Returns the index of the knot at which the piece with a parameter of the first turn begins. The search begins at the knot `near`.
 fn piece_at(v: SlidingVertex, param: vec2<f32>, near: u32) -> u32 {
     var piece = min(near, v.knot_count - 2u);
     while piece + 2u < v.knot_count && !pair_less(param, knots[v.knots + piece + 1u].param) {

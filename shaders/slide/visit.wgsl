@@ -16,7 +16,7 @@ var<private> after: array<OnCurve, 2>;
 // places.
 var<private> there: array<OnCurve, 2>;
 
-// The parameters of a vertex and of its neighbors before and after.
+// The parameters of a vertex and of its two neighbors on the curve.
 struct Window {
     low: vec2<f32>,
     at: vec2<f32>,
@@ -30,22 +30,6 @@ struct AlongCurve {
     slope: f32,
     curvature: f32,
     limit: f32,
-}
-
-fn patch_around(vertex: u32, start: u32, end: u32, unit: f32) -> Patch {
-    var p: Patch;
-    p.start = start;
-    p.end = end;
-    p.at = position(vertex);
-    p.unit = unit;
-    p.own = map_at(vertex);
-    p.map_unit = 1.0;
-    if MAPPED {
-        p.map_unit = unit_of(p.own.xz);
-    }
-    let scale = p.unit * select(1.0, p.map_unit, HAS_TARGETS);
-    p.ideal = Ideal(params.mean_area * scale * scale, params.size_weight);
-    return p;
 }
 
 // Returns the target map of a triangle, the mean of three maps, scaled near one. Without targets, the map is the identity.
@@ -264,7 +248,7 @@ fn slide(
         return;
     }
     window = Window(places[visited.low].param, place.param, places[visited.high].param);
-    // The neighbors of the first and of the last vertex of a closed curve are on another turn.
+    // On a closed curve, a neighbor of the first vertex and a neighbor of the last vertex have parameters of another turn.
     if visited.low >= visited.place {
         window.low = pair_add(window.low, -period_of(visited));
     }

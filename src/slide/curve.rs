@@ -38,7 +38,7 @@ pub(crate) struct Place {
     pub(crate) second: DVec2,
 }
 
-/// A given vertex of a curve, with the piece of the curve up to the next one.
+/// A given vertex of a curve, with the piece of the curve that begins at the vertex.
 #[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Knot {

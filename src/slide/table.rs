@@ -29,7 +29,7 @@ pub(crate) struct SlidingVertex {
     pub(crate) vertex: u32,
     pub(crate) partner: Option<u32>,
     pub(crate) place: u32,
-    /// Places of the neighbors before and after the vertex.
+    /// Places of the two neighbors on the curve.
     pub(crate) neighbors: [u32; 2],
     /// Range of the knots of the vertex's own curve.
     pub(crate) knots: Range<u32>,

@@ -222,10 +222,15 @@ fn the_gain_lost_to_rounding_is_reported() {
     for backend in backends() {
         let lost = run(&Smoother::new(&coarse).unwrap(), &Options::default(), backend).lost;
         assert_eq!(lost, 1.0, "on the {}", name(backend));
-        let fine = fan(12, 1);
-        let lost = run(&Smoother::new(&fine).unwrap(), &Options::default(), backend).lost;
-        // A device evaluates f with an error of some 1e-7.
-        assert!(lost < 1e-4, "{lost} on the {}", name(backend));
+        // A device evaluates f with an error of some 1e-7, a larger share of the small gain on the fan.
+        let fine = match backend {
+            Backend::Cpu => vec![fan(12, 1), support::perturb_random(&plate(300), 1.0, 1)],
+            Backend::Gpu(_) => vec![support::perturb_random(&plate(300), 1.0, 1)],
+        };
+        for mesh in fine {
+            let lost = run(&Smoother::new(&mesh).unwrap(), &Options::default(), backend).lost;
+            assert!(lost < 1e-5, "{lost} on the {}", name(backend));
+        }
     }
 }
 

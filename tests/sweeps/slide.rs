@@ -442,7 +442,7 @@ fn both_engines_slide_vertices_by_sweeps_alone() {
     }
 }
 
-/// Returns the number of dispatches that a device has got so far.
+/// Returns the number of dispatches on a device since it was opened.
 fn dispatches(backend: &Backend) -> u64 {
     match backend {
         Backend::Cpu => 0,

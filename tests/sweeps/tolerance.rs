@@ -178,6 +178,38 @@ fn newton_steps_on_a_device_bound_the_rest_on_graded_meshes() {
     }
 }
 
+/// On the same meshes, runs that keep corrections extrapolate the decay of f in single precision.
+#[test]
+fn the_rest_above_the_limit_is_not_below_the_error_of_single_precision() {
+    let gpu = &backends()[1];
+    let mut most: f64 = 0.0;
+    for ratio in [1e-3, 1e-4] {
+        let mesh = support::perturb_random(&support::graded(32, ratio), 0.3, 5);
+        let smoother = Smoother::new(&mesh).unwrap();
+        for metric in [Metric::ShapeSize, Metric::SoftSize, Metric::Tmop94] {
+            // These runs end on the device. Longer runs end on the CPU.
+            for max_sweeps in [40, 50, 60, 70] {
+                // No vertex reaches its disc, but runs with discs take no Newton steps.
+                let max_move = Some(1e3);
+                let options =
+                    Options { scheme: metric.into(), max_sweeps, max_move, ..Options::default() };
+                let outcome = run(&smoother, &options, gpu);
+                assert_eq!((outcome.stop, outcome.closing_sweeps), (Stop::MaxSweeps, 0));
+                let Some(told) = outcome.remaining else { continue };
+                let f = smoother.f(metric, &outcome.points).unwrap();
+                let error = (history(&outcome, metric).last().unwrap() / f - 1.0).abs();
+                let label = format!("{metric} at {ratio}, {max_sweeps} sweeps");
+                assert!(
+                    error <= told * (1.0 + 1e-6),
+                    "{label}: {told:e} with an error of {error:e}"
+                );
+                most = most.max(error);
+            }
+        }
+    }
+    assert!(most > 1e-6, "{most:e}: the test has no hard mesh");
+}
+
 /// Returns the outcome of a run on a mesh with targets, and the gain of further sweeps on the CPU, as a share of f. The
 /// run from the start to a tolerance of 1e-11 has the least f.
 pub(crate) fn with_gain_left(

@@ -64,7 +64,8 @@ impl MeshSize {
 
     /// Returns an upper bound on the device memory for the mesh and its sweeps, in bytes: about 84 for each vertex.
     /// Schemes that lower f in every sweep take 68 bytes per vertex. Corrections from coarser levels are not included:
-    /// some 60 bytes more for each vertex, and another 40 while corrections are accelerated. If the sum overflows,
+    /// some 60 bytes more for each vertex, and another 40 while corrections are accelerated. Newton steps take some 230 bytes more for
+    /// each vertex in place of corrections. If the sum overflows,
     /// returns [`u64::MAX`].
     pub fn bytes(self) -> u64 {
         self.needs(Positions::Whole).iter().fold(0, |sum, need| sum.saturating_add(need.bytes))

@@ -416,11 +416,6 @@ impl BindLayout {
         self.bindings().iter().any(|binding| binding.access == Access::Positions)
     }
 
-    /// Returns whether each dispatch of a kernel of this layout has a uniform of its own.
-    pub(crate) fn has_operation(self) -> bool {
-        self.bindings().iter().any(|binding| binding.access == Access::DynamicUniform)
-    }
-
     /// Returns the form in which kernels of this layout bind positions, for a mesh that needs the form `positions`.
     /// Layouts without positions have one form only, [`Positions::Whole`].
     pub(crate) fn sees(self, positions: Positions) -> Positions {

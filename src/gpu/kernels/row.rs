@@ -70,14 +70,14 @@ impl Arguments for Metric {
     }
 }
 
-/// A metric that is a function of the invariants of a triangle.
+/// A smooth metric: every metric but EDGE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct OfInvariants(pub(crate) Metric);
+pub struct SmoothMetric(pub(crate) Metric);
 
-impl Arguments for OfInvariants {
+impl Arguments for SmoothMetric {
     fn list(plan: Option<&Plan>) -> Vec<Self> {
         let metrics = <Metric as Arguments>::list(plan).into_iter();
-        metrics.filter(|metric| metric.curved().is_some()).map(Self).collect()
+        metrics.filter(|metric| metric.is_smooth()).map(Self).collect()
     }
 }
 
@@ -126,8 +126,8 @@ impl From<Metric> for Composition {
     }
 }
 
-impl From<OfInvariants> for Composition {
-    fn from(metric: OfInvariants) -> Self {
+impl From<SmoothMetric> for Composition {
+    fn from(metric: SmoothMetric) -> Self {
         metric.0.into()
     }
 }

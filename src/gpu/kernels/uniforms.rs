@@ -38,7 +38,7 @@ pub(crate) const AT_DISC: f64 = 1.0 - 1e-5;
 /// Error of an altitude in single precision, as a share of the longest edge. The error of an area is 3e-7 times the product
 /// of two edges.
 pub(crate) const ALTITUDE_ERROR: f64 = 1e-6;
-/// Stands for a number of presses at a vertex off its curve. The vertex stays, as after too many presses.
+/// Number of presses that marks a vertex off its curve. The vertex stays, like a vertex with too many presses.
 pub(crate) const OFF_CURVE: u32 = 100;
 /// Error of the distance of a given vertex from a line in single precision, as a share of the length of the line.
 pub(crate) const CURVE_ERROR: f64 = 1e-6;
@@ -208,7 +208,7 @@ shared_structs! {
         padding: u32,
     }
 
-    /// A given vertex of a curve, and the piece of the curve up to the next one.
+    /// A given vertex of a curve, with the piece of the curve that begins at the vertex.
     Knot {
         at: vec4f,
         /// A pair of floats: the parameter.
@@ -222,11 +222,11 @@ shared_structs! {
         padding: vec2u,
     }
 
-    /// The place of a vertex on its curve.
+    /// The parameter of a vertex on its curve, and the presses against its bounds.
     CurvePlace {
         /// A pair of floats: the parameter.
         param: vec2f,
-        /// Number of the last knot up to the parameter.
+        /// Index of the knot at which the piece with the parameter begins.
         piece: u32,
         /// Number of latest sweeps that pressed the vertex against a bound, negative toward smaller parameters; OFF_CURVE for
         /// a vertex that an application has moved off its curve.

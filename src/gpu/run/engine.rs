@@ -246,8 +246,8 @@ impl<'a> GpuEngine<'a> {
         Ok(true)
     }
 
-    /// Returns the number of leading vertices whose positions a saved state has: the free vertices, or all if some of the
-    /// others slide.
+    /// Returns the number of leading vertices whose positions a saved state has: the free vertices, or all vertices if
+    /// vertices slide.
     fn saved_count(&self) -> usize {
         if self.mesh.curves.is_some() { self.start.len() } else { self.problem.free_count() }
     }

@@ -269,7 +269,7 @@ impl Levels {
         let op = match step.op {
             Op::Fine(op) => Op::Fine(FineOp { length, ..op }.smoothed(self.smoothing)),
             // These operations have neither a length nor a metric.
-            Op::Transfer(_) | Op::Coarse(_) | Op::Step(_) | Op::Lattice(_) => step.op,
+            _ => step.op,
         };
         let at = u64::from(step.number * self.stride);
         gpu.queue.write_buffer(&self.ops, at, op.bytes());

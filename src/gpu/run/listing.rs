@@ -39,6 +39,8 @@ pub(super) enum Op {
     Coarse(CoarseOp),
     Step(StepOp),
     Lattice(LatticeOp),
+    /// The kernel's layout has no uniform of its own for each dispatch.
+    None,
 }
 
 impl Op {
@@ -49,6 +51,7 @@ impl Op {
             Op::Coarse(op) => op.rows,
             Op::Step(op) => op.rows,
             Op::Lattice(op) => op.rows,
+            Op::None => 0,
         }
     }
 
@@ -59,6 +62,7 @@ impl Op {
             Op::Coarse(op) => bytemuck::bytes_of(op),
             Op::Step(op) => bytemuck::bytes_of(op),
             Op::Lattice(op) => bytemuck::bytes_of(op),
+            Op::None => &[],
         }
     }
 }
@@ -336,10 +340,8 @@ pub(super) fn encode(
     step: &Dispatch,
 ) {
     passes.run(&step.pipeline, None, |pass| {
-        // Trials have no operation of their own.
         let uniform = [step.number * stride];
-        let offsets =
-            if step.pipeline.kernel.layout().has_operation() { &uniform[..] } else { &[] };
+        let offsets = if matches!(step.op, Op::None) { &[] } else { &uniform[..] };
         pass.set_bind_group(0, &bind_groups[step.bind_group], offsets);
         match step.groups {
             Groups::ForRows => dispatch(pass, step.op.rows()),

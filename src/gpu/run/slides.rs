@@ -25,7 +25,7 @@ pub(crate) struct Slides {
     bind_group: wgpu::BindGroup,
     visits: Vec<(Metric, Pipeline)>,
     keep_best: Option<Pipeline>,
-    /// Takes up the places of vertices that an application has moved.
+    /// Finds the parameters of vertices that an application has moved along their curves.
     take_up: Option<Pipeline>,
     /// Distinct steps of the run.
     steps: Vec<SweepParams>,

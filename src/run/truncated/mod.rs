@@ -3,6 +3,8 @@
 
 pub(crate) mod aggregation;
 mod bound;
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod search;
 mod step;
 mod tail;

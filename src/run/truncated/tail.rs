@@ -73,10 +73,10 @@ impl Tail {
         StepRequest { objective, forcing, least_gain, least_ritz, is_exact }
     }
 
-    /// Records a step. `scale` is f, relative to which gains are judged, and `noise` the relative error of f on the engine. Returns the gain that remains at most, as a share
-    /// of f, and whether the step was whole. The gain is `None` after a shortened step, and after a step whose bound is of
-    /// another function: with negative curvature, or with curvatures of curves left out. It is `None` too if the step would end
-    /// the run and another step must agree.
+    /// Records a step. `scale` is f, relative to which gains are judged, and `noise` the relative error of f on the engine.
+    /// Returns an upper limit of the remaining gain, as a share of f, and whether the step was whole. The limit is `None` after a
+    /// shortened step, and after a step whose bound is of another function: with negative curvature, or with curvatures of curves
+    /// left out. The limit is `None` too if the step would end the run and another step must agree.
     pub(crate) fn record(
         &mut self,
         step: &NewtonStep,
@@ -92,17 +92,19 @@ impl Tail {
         // Rounding of f hides tiny gains, so that no length lowers f enough.
         let is_tiny = step.length == 0.0 && step.model_gain + step.bound <= noise * scale;
         let is_whole = (step.length == 1.0 || is_tiny) && !step.is_curved_down;
-        let seen = (step.swept - step.excess - step.model_gain).abs();
-        // Single precision hides a small discrepancy. The model's gain then stands for it, as at the end of any run.
-        let is_hidden = noise > NOISE && seen <= noise * scale;
-        let discrepancy = if is_hidden { seen.min(step.model_gain.abs()) } else { seen };
+        let seen = step.swept - step.excess;
+        let off = (seen - step.model_gain).abs();
+        // Single precision hides small gains and discrepancies. The model's gain then stands for both, as at the end of any run.
+        let (gain, discrepancy) = match noise > NOISE && off <= noise * scale {
+            true => (step.model_gain, off.min(step.model_gain.abs())),
+            false => (seen, off),
+        };
         let [low, high] = FORCING;
         self.forcing = match discrepancy / step.model_gain {
             share if is_whole && share.is_finite() => share.clamp(low, high),
             _ => high,
         };
         // Where the model misses much of the gain, successive gains shrink slowly, and the next may be as large as this one.
-        let gain = step.swept - step.excess;
         let is_far = discrepancy > low * step.model_gain.abs();
         let next = if is_far { gain } else { 0.0 };
         let left = (step.bound + discrepancy).max(next) / scale;
@@ -206,6 +208,19 @@ mod tests {
         assert!((left - 1.1e-15).abs() < 1e-20);
         let larger = NewtonStep { model_gain: 1e-3, ..step };
         assert_eq!(Tail::new().record(&larger, 1.0, TOLERANCE, NOISE), (None, false));
+    }
+
+    /// A device in single precision does not see whether a small step gained what the model promised.
+    #[test]
+    fn a_discrepancy_below_the_error_of_f_counts_as_the_gain_of_the_model() {
+        let noise = 2e-7;
+        let step = NewtonStep { excess: 0.5 - 9e-8, model_gain: 1e-9, bound: 1e-10, ..STEP };
+        let left = |noise| Tail::new().record(&step, 1.0, TOLERANCE, noise).0.unwrap();
+        assert!((left(noise) - 1.1e-9).abs() < 1e-15, "{}", left(noise));
+        // The same step on the CPU shows that the model is wrong.
+        assert!(left(NOISE) > 8e-8);
+        let seen = NewtonStep { excess: 0.5 - 9e-7, ..step };
+        assert!(Tail::new().record(&seen, 1.0, TOLERANCE, noise).0.unwrap() > 8e-7);
     }
 
     #[test]

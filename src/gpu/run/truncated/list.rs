@@ -12,7 +12,7 @@ use crate::gpu::kernels::layouts::{
     CoarseBindings, FineBindings, HessianBindings, LatticeBindings, SolutionBindings,
     TrialsBindings,
 };
-use crate::gpu::kernels::row::OfInvariants;
+use crate::gpu::kernels::row::SmoothMetric;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     CoarseOp, FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepOp, StepState, WORKGROUP,
@@ -79,6 +79,8 @@ impl<'g> List<'g> {
         mesh: &MeshBuffers,
         dispatches: &Dispatches,
     ) -> Result<Self, GpuError> {
+        // Before the levels, which take longer to make than all other lists.
+        check(gpu, problem.ring().len() as u64 * ROW)?;
         let nest = Nest::new(problem).await;
         let free = problem.free_count() as u32;
         let alignment = gpu.device.limits().min_storage_buffer_offset_alignment;
@@ -86,27 +88,12 @@ impl<'g> List<'g> {
         let form = mesh.parts.form();
         let (set_up, iteration, trials) = (Vec::new(), Vec::new(), Vec::new());
         let mut list = Self { gpu, form, nest, listed: 0, step, set_up, iteration, trials };
-        list.check(problem)?;
-        list.list_set_up(OfInvariants(dispatches.plan.scheme.base())).await?;
+        let lists = size_of_val(&list.nest.structure[..]) as u64;
+        check(gpu, list.fine_bytes().max(u64::from(list.nest.rows) * ROW).max(lists))?;
+        list.list_set_up(SmoothMetric(dispatches.plan.scheme.base())).await?;
         list.list_iteration().await?;
         list.list_trials(problem, dispatches).await?;
         Ok(list)
-    }
-
-    /// Returns [`GpuError::Limit`] if a buffer is larger than a binding.
-    fn check(&self, problem: &Problem) -> Result<(), GpuError> {
-        let limits = self.gpu.device.limits();
-        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let Nest { structure, rows, .. } = &self.nest;
-        let largest = [
-            problem.ring().len() as u64 * ROW,
-            self.fine_bytes(),
-            u64::from(*rows) * ROW,
-            size_of_val(&structure[..]) as u64,
-        ];
-        let needed = largest.into_iter().fold(0, u64::max);
-        let what = || "the Hessian and the levels of Newton steps".to_owned();
-        check_limit("max_storage_buffer_binding_size", most, &what, needed)
     }
 
     fn fine_bytes(&self) -> u64 {
@@ -150,9 +137,14 @@ impl<'g> List<'g> {
         self.dispatch(kernel, Bound::Lattice, Groups::ForRows, Op::Lattice(op)).await
     }
 
+    /// Returns the dispatch of a kernel that judges trials, which has no operation.
+    async fn of_trials(&mut self, kernel: Kernel) -> Result<Dispatch, GpuError> {
+        self.dispatch(kernel, Bound::Trials, Groups::Just(1), Op::None).await
+    }
+
     /// Lists the positive part of the Hessian and the levels, which follow from it. The Hessian itself then overwrites its positive
     /// part.
-    async fn list_set_up(&mut self, metric: OfInvariants) -> Result<(), GpuError> {
+    async fn list_set_up(&mut self, metric: SmoothMetric) -> Result<(), GpuError> {
         let StepOp { vertices, .. } = self.step;
         let aggregates = self.nest.op(0).rows;
         let place = Op::Step(StepOp { rows: aggregates, ..self.step });
@@ -256,16 +248,12 @@ impl<'g> List<'g> {
         let sum = CoarseOp { partial_sums: SUMS, totals: TOTALS, ..coarse_op(partials) };
         let whole = Groups::Just(partials / WORKGROUP);
         let movement = FineOp { rows: self.step.vertices, ..fine };
-        let none = || Op::Step(self.step);
-        let (begins, judges) = (none(), none());
+        let begin = self.of_trials(Kernel::BeginTrials).await?;
         let kernel = Kernel::ObjectiveAlongCorrection(metric);
-        let begin =
-            self.dispatch(Kernel::BeginTrials, Bound::Trials, Groups::Just(1), begins).await?;
         let objective = self.dispatch(kernel, Bound::Fine, whole, Op::Fine(fine)).await?;
         let kernel = Kernel::SumAlongCorrection;
         let sum = self.dispatch(kernel, Bound::Coarse, Groups::Just(1), Op::Coarse(sum)).await?;
-        let judge =
-            self.dispatch(Kernel::JudgeLength, Bound::Trials, Groups::Just(1), judges).await?;
+        let judge = self.of_trials(Kernel::JudgeLength).await?;
         let kernel = Kernel::MoveAlongCorrection;
         let op = Op::Fine(movement);
         let movement = self.dispatch(kernel, Bound::Fine, Groups::ForRows, op).await?;
@@ -419,6 +407,14 @@ impl Buffers {
             vectors: self.vectors.as_entire_binding(),
         }
     }
+}
+
+/// Returns [`GpuError::Limit`] if a buffer of this number of bytes is larger than a binding.
+fn check(gpu: &Gpu, needed: u64) -> Result<(), GpuError> {
+    let limits = gpu.device.limits();
+    let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let what = || "the Hessian and the levels of Newton steps".to_owned();
+    check_limit("max_storage_buffer_binding_size", most, &what, needed)
 }
 
 /// Returns the operation on the free vertices and the first level of aggregates.

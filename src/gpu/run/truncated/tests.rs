@@ -6,14 +6,13 @@ use crate::cpu::CpuEngine;
 use crate::gpu::Gpu;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::run::GpuEngine;
-use crate::layout::{Problem, prepare};
-use crate::mesh::Mesh;
+use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::options::Options;
 use crate::parallel::pace::now;
+use crate::run::truncated::fixtures::{hub, lattice, problem, with_targets};
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
 use crate::run::{Corrections, Engine, Plan, SweepParams};
-use crate::targets::Targets;
 
 const REQUEST: StepRequest = StepRequest {
     objective: 1.0,
@@ -22,59 +21,6 @@ const REQUEST: StepRequest = StepRequest {
     least_ritz: 0.1,
     is_exact: true,
 };
-
-/// A displaced lattice of right triangles with `side` vertices on a side.
-fn lattice(side: u32) -> Mesh {
-    let shift = |k: u32, by: f64| 0.2 * (f64::from(k) * by).sin();
-    let is_inside = |k: u32| k > 0 && k + 1 < side;
-    let point = |k: u32| {
-        let (column, row) = (k % side, k / side);
-        let by = if is_inside(column) && is_inside(row) { 1.0 } else { 0.0 };
-        [f64::from(column) + by * shift(k, 1.7), f64::from(row) + by * shift(k, 2.9)]
-    };
-    let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
-    let triangles = cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]);
-    Mesh {
-        points: (0..side * side).map(point).collect(),
-        triangles: triangles.collect(),
-        fixed: Vec::new(),
-    }
-}
-
-/// A hub of `around` neighbors, with rings around it.
-fn hub(around: u32) -> Mesh {
-    let mut points = vec![[0.1, 0.05]];
-    for ring in 1..5u32 {
-        points.extend((0..around).map(|k| {
-            let part = f64::from(k) + 0.2 * f64::from(ring);
-            let turn = std::f64::consts::TAU * part / f64::from(around);
-            [f64::from(ring) * turn.cos(), f64::from(ring) * turn.sin()]
-        }));
-    }
-    let at = |ring: u32, k: u32| 1 + ring * around + k % around;
-    let mut triangles: Vec<[u32; 3]> = (0..around).map(|k| [0, at(0, k), at(0, k + 1)]).collect();
-    for (ring, k) in (0..3).flat_map(|ring| (0..around).map(move |k| (ring, k))) {
-        triangles.push([at(ring, k), at(ring + 1, k), at(ring + 1, k + 1)]);
-        triangles.push([at(ring, k), at(ring + 1, k + 1), at(ring, k + 1)]);
-    }
-    Mesh { points, triangles, fixed: Vec::new() }
-}
-
-fn problem(mesh: &Mesh) -> Problem {
-    prepare(mesh).unwrap().1
-}
-
-/// Targets that turn and stretch from place to place.
-fn with_targets(mesh: &Mesh) -> Problem {
-    let mut problem = problem(mesh);
-    let tensor = |p: &[f64; 2]| {
-        let (sin, cos) = (0.1 * p[0] + 0.05 * p[1]).sin_cos();
-        [1.0 + 2.0 * cos * cos, 2.0 * sin * cos, 1.0 + 2.0 * sin * sin]
-    };
-    let tensors: Vec<[f64; 3]> = mesh.points.iter().map(tensor).collect();
-    problem.set_targets(&Targets::tensors(&tensors).unwrap());
-    problem
-}
 
 /// The two engines of one run, at equal positions.
 struct Engines<'a> {
@@ -135,16 +81,16 @@ fn compare(gpu: &Gpu, problem: &Problem, metric: Metric) {
 #[test]
 fn steps_of_the_device_are_those_of_the_cpu() {
     let gpu = Gpu::open(None).unwrap();
-    let lattice_of_21 = problem(&lattice(21));
+    let lattice_of_21 = problem(&lattice(21, 1.0));
     for metric in Metric::ALL.iter().filter(|metric| metric.curved().is_some()) {
         compare(&gpu, &lattice_of_21, *metric);
     }
     // Levels that are solved directly at once, several levels, and a vertex whose aggregate leaves out its neighbors.
-    for mesh in [lattice(4), lattice(61), hub(40)] {
+    for mesh in [lattice(4, 1.0), lattice(61, 1.0), hub(40)] {
         compare(&gpu, &problem(&mesh), Metric::Imr);
     }
-    compare(&gpu, &with_targets(&lattice(21)), Metric::Imr);
-    compare(&gpu, &with_targets(&lattice(21)), Metric::Tmop94);
+    compare(&gpu, &with_targets(&lattice(21, 1.0)), Metric::Imr);
+    compare(&gpu, &with_targets(&lattice(21, 1.0)), Metric::Tmop94);
 }
 
 /// A submission holds a few iterations and two trials. Steps that need more go on in further submissions.
@@ -164,7 +110,7 @@ fn long_steps_take_several_submissions() {
 #[test]
 fn the_bound_is_that_of_the_coefficients() {
     let gpu = Gpu::open(None).unwrap();
-    let problem = problem(&lattice(21));
+    let problem = problem(&lattice(21, 1.0));
     for least_ritz in [0.1, 0.9] {
         let mut engines = Engines::new(&gpu, &problem, Metric::Imr, 3);
         let request = StepRequest { least_ritz, least_gain: 1e-6, ..REQUEST };
