@@ -1,11 +1,13 @@
 //! The assessment of a run: its final positions as coordinates that can be stored, and the gain of the run there.
 
+use std::mem::take;
 use std::time::Duration;
 
 use glam::DVec2;
 
 use crate::cpu::mean_excess;
 use crate::error::{MeshError, SmoothError};
+use crate::layout::Problem;
 use crate::metric::{Corner, Ideal, Metric};
 use crate::options::Options;
 use crate::outcome::{Floored, GoalOutcome, Improved, Outcome, Slid};
@@ -34,6 +36,36 @@ pub(super) struct JudgedBy<'r> {
     pub(super) initial: f64,
 }
 
+/// Returns f by a metric after a sweep of a run that has ended.
+fn f_after(ended: &RunEnd, metric: Metric, sweep: usize) -> f64 {
+    ended.history[sweep].of(metric).unwrap_or(f64::INFINITY)
+}
+
+/// Returns the sweep after which f was least.
+fn best_sweep(ended: &RunEnd, options: &Options) -> usize {
+    let f = |k: usize| f_after(ended, options.scheme.base(), k);
+    let evaluations = ended.history.len();
+    match Plan::new(options).is_monotone() {
+        true => evaluations - 1,
+        false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
+    }
+}
+
+/// Returns how far a run has come toward its goal, from the objective `initial` to `best`.
+fn came_to(
+    goal: GoalOutcome,
+    options: &Options,
+    over_all: &OverAll<'_>,
+    [initial, best]: [f64; 2],
+) -> GoalOutcome {
+    let gone = (initial - best) / (initial - goal.desired);
+    // 0 / 0 means that the initial objective equals the desired one.
+    let best_fraction = if gone.is_nan() { 1.0 } else { gone };
+    let given = options.stopping.goal().and_then(|goal| goal.desired);
+    let desired = given.unwrap_or_else(|| over_all.f(options.scheme.base(), goal.desired));
+    GoalOutcome { best_fraction, desired, ..goal }
+}
+
 impl Smoother<'_> {
     /// Converts the final positions of the sweeps to coordinates, and evaluates the result. Rounding, and vertices that
     /// were set back, may have cost more than the sweeps gained. A device also moves the vertices of an optimal mesh by
@@ -48,33 +80,13 @@ impl Smoother<'_> {
         observe: &mut dyn Observer,
     ) -> Result<Outcome, SmoothError> {
         let base = options.scheme.base();
-        let f = |k: usize| ended.history[k].of(base).unwrap_or(f64::INFINITY);
-        let evaluations = ended.history.len();
-        let best_sweep = match Plan::new(options).is_monotone() {
-            true => evaluations - 1,
-            false => (0..evaluations).fold(0, |best, k| if f(k) < f(best) { k } else { best }),
-        };
-        let swept = f(best_sweep);
+        let best_sweep = best_sweep(&ended, options);
+        let swept = f_after(&ended, base, best_sweep);
         let mut problem = over_all.problem.clone();
         stages.set_targets_at(&mut problem, &ended.positions)?;
-        let before_stage = match options.improve_worst {
-            Some(_) => paced::copied(&ended.positions).await,
-            None => Vec::new(),
-        };
-        let mut improving = Improvement::after(&mut ended, options, &problem, observe).await;
+        let (improving, mut points, mut returned) =
+            self.improved(options, &problem, &mut ended, observe).await?;
         let mut curves = ended.curves.take();
-        let (mut points, mut returned) =
-            self.as_stored(options, curves.as_ref(), &ended.positions).await?;
-        if let Some(improving) = &mut improving {
-            let without = self.as_stored(options, curves.as_ref(), &before_stage).await?;
-            let [old, new] = [&without.0, &points];
-            let old = self.problem.normalized(old, Vec::new()).await;
-            let new = self.problem.normalized(new, Vec::new()).await;
-            if !improving.holds_as_stored(&problem, &old, &new).await {
-                (points, returned) = without;
-                ended.positions = before_stage;
-            }
-        }
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
         // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
         let is_as_swept =
@@ -85,33 +97,21 @@ impl Smoother<'_> {
                 Some(base.ideal_squared() + mean_excess(base, &problem, &ended.positions).await)
             }
         };
-        let mut judged = self.problem.normalized(&points, ended.positions).await;
+        let mut judged = self.problem.normalized(&points, take(&mut ended.positions)).await;
         stages.set_targets_at(&mut problem, &judged)?;
         let problem = &problem;
         // f of the sweeps as stored, before the floor trades some of it for better triangles.
         let rounded = base.ideal_squared() + mean_excess(base, problem, &judged).await;
-        let (mut written, mut floored, mut all_moved) = (rounded, None, 0);
-        if let Some(floor) = self.lacking_floor(options, &points).await {
-            let (was_canceled, sweep) = (ended.stop == Stop::Canceled, evaluations as u32 - 1);
-            let now = Progress { phase: Phase::Improving, sweep, f: rounded };
-            // A canceled run ends soon, but not with a worse triangle than before.
-            let goes_on = || {
-                let goes_on = was_canceled || observe(&now).is_continue();
-                if !goes_on {
-                    ended.stop = Stop::Canceled;
-                }
-                goes_on
-            };
-            let swept = points.iter().zip(&self.mesh.points).filter(|(to, from)| to != from);
-            all_moved = swept.count();
-            let raised = floor
-                .raise(options, problem, curves.as_mut(), &judged, &mut points, goes_on)
-                .await?;
-            judged = self.problem.normalized(&points, judged).await;
-            written = base.ideal_squared() + mean_excess(base, problem, &judged).await;
-            floored =
-                Some(Floored { f: [rounded, written].map(|f| over_all.f(base, f)), ..raised });
-        }
+        let all_moved = self.moved(&points);
+        let (to, at, curves_at) = (&mut points, &mut judged, curves.as_mut());
+        let raised = self.raised(options, problem, rounded, &mut ended, curves_at, to, at, observe);
+        let (written, mut floored) = match raised.await? {
+            Some((written, raised)) => {
+                let f = [rounded, written].map(|f| over_all.f(base, f));
+                (written, Some(Floored { f, ..raised }))
+            }
+            None => (rounded, None),
+        };
         let mut gains =
             initial - written > NOISE * initial + ROUNDING && self.is_lower(base, &points).await?;
         if let (false, Some(improving)) = (gains, &improving) {
@@ -147,19 +147,12 @@ impl Smoother<'_> {
             }
             None => None,
         };
-        let goal = goal.map(|goal| {
-            let gone = (initial - best) / (initial - goal.desired);
-            // 0 / 0 means that the initial objective equals the desired one.
-            let best_fraction = if gone.is_nan() { 1.0 } else { gone };
-            let given = options.stopping.goal().and_then(|goal| goal.desired);
-            let desired = given.unwrap_or_else(|| over_all.f(base, goal.desired));
-            GoalOutcome { best_fraction, desired, ..goal }
-        });
-        let history = ended.history.into_iter().map(|now| over_all.objectives(now)).collect();
+        let goal = goal.map(|goal| came_to(goal, options, over_all, [initial, best]));
+        let history = ended.history.iter().map(|now| over_all.objectives(*now)).collect();
         Ok(Outcome {
             points,
             stop: ended.stop,
-            sweeps: evaluations as u32 - 1,
+            sweeps: ended.history.len() as u32 - 1,
             alternated: ended.counts.alternated,
             corrections: ended.counts.corrections,
             newton_steps: ended.counts.newton_steps,
@@ -186,6 +179,70 @@ impl Smoother<'_> {
             device_fault: ended.fault,
             smooth: Duration::ZERO,
         })
+    }
+
+    /// Improves the worst triangles if the options ask for that, and returns the improvement, the points as they are stored, and
+    /// the number of vertices set back. An improvement that storing undoes is dropped.
+    async fn improved(
+        &self,
+        options: &Options,
+        problem: &Problem,
+        ended: &mut RunEnd,
+        observe: &mut dyn Observer,
+    ) -> Result<(Option<Improvement>, Vec<[f64; 2]>, usize), SmoothError> {
+        let before_stage = match options.improve_worst {
+            Some(_) => paced::copied(&ended.positions).await,
+            None => Vec::new(),
+        };
+        let mut improving = Improvement::after(ended, options, problem, observe).await;
+        let curves = ended.curves.as_ref();
+        let (points, returned) = self.as_stored(options, curves, &ended.positions).await?;
+        let Some(stage) = &mut improving else { return Ok((None, points, returned)) };
+        let without = self.as_stored(options, curves, &before_stage).await?;
+        let old = self.problem.normalized(&without.0, Vec::new()).await;
+        let new = self.problem.normalized(&points, Vec::new()).await;
+        if stage.holds_as_stored(problem, &old, &new).await {
+            return Ok((improving, points, returned));
+        }
+        ended.positions = before_stage;
+        Ok((improving, without.0, without.1))
+    }
+
+    /// Raises the result to the floor if a measure has become worse. `rounded` is f of the result before. Returns f after, and
+    /// the record of the floor.
+    #[allow(clippy::too_many_arguments)]
+    async fn raised(
+        &self,
+        options: &Options,
+        problem: &Problem,
+        rounded: f64,
+        ended: &mut RunEnd,
+        curves: Option<&mut OnCurves>,
+        points: &mut [[f64; 2]],
+        judged: &mut Vec<DVec2>,
+        observe: &mut dyn Observer,
+    ) -> Result<Option<(f64, Floored)>, MeshError> {
+        let Some(floor) = self.lacking_floor(options, points).await else { return Ok(None) };
+        let (was_canceled, sweep) = (ended.stop == Stop::Canceled, ended.history.len() as u32 - 1);
+        let now = Progress { phase: Phase::Improving, sweep, f: rounded };
+        // A canceled run ends soon, but not with a worse triangle than before.
+        let goes_on = || {
+            let goes_on = was_canceled || observe(&now).is_continue();
+            if !goes_on {
+                ended.stop = Stop::Canceled;
+            }
+            goes_on
+        };
+        let raised = floor.raise(options, problem, curves, judged, points, goes_on).await?;
+        *judged = self.problem.normalized(points, take(judged)).await;
+        let base = options.scheme.base();
+        let written = base.ideal_squared() + mean_excess(base, problem, judged).await;
+        Ok(Some((written, raised)))
+    }
+
+    /// Returns the number of vertices at other points than in the mesh.
+    fn moved(&self, points: &[[f64; 2]]) -> usize {
+        points.iter().zip(&self.mesh.points).filter(|(to, from)| to != from).count()
     }
 
     /// Returns the points of normalized positions as they are stored: in the unit of the mesh, rounded, and with vertices set

@@ -45,6 +45,16 @@ async fn is_beyond_precision(problem: &Problem, metric: Metric, objective: f64) 
     !metric.is_smooth() && beyond.await.iter().any(can_move)
 }
 
+/// Returns the objective at which a run reaches its goal, for a run that begins at the objective `initial`.
+fn target_of(goal: &GoalOutcome, initial: f64) -> f64 {
+    match goal.desired < initial {
+        true => initial - goal.fraction * (initial - goal.desired),
+        // The goal is reached from the start. The target is above f by a margin, as f on a device may be a little above
+        // `initial`.
+        false => 2.0 * initial + 1.0,
+    }
+}
+
 impl Smoother<'_> {
     pub(super) async fn run_at(
         &self,
@@ -67,16 +77,7 @@ impl Smoother<'_> {
         let base = options.scheme.base();
         let initial = objective(problem, base, problem.positions()).await;
         if !is_usable(problem, base, initial).await {
-            let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
-            let mut usable = Vec::new();
-            for &metric in Metric::ALL.iter() {
-                let f = objective(problem, metric, problem.positions()).await;
-                if is_usable(problem, metric, f).await {
-                    usable.push(metric.name());
-                }
-            }
-            let metric = base.name();
-            return Err(MeshError::BeyondPrecision { triangle, metric, usable }.into());
+            return Err(self.refusal(problem, base).await?.into());
         }
         let over_all = OverAll::new(problem, &Plan::new(options).tracked()).await;
         let mut observe = |now: &Progress| match now.phase {
@@ -90,23 +91,16 @@ impl Smoother<'_> {
                 Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
             }
             (Some(goal), None) => {
-                let found = self
-                    .resolve_goal(&over_all, goal, options, device, policy, &mut observe)
-                    .await?;
-                match found {
+                let found =
+                    self.resolve_goal(&over_all, goal, options, device, policy, &mut observe);
+                match found.await? {
                     Some(aimed) => Some(aimed),
                     None => return Ok(self.unchanged(base, over_all.f(base, initial), began)),
                 }
             }
             (None, _) => None,
         };
-        let target = goal.as_ref().map(|goal| match goal.desired < initial {
-            true => initial - goal.fraction * (initial - goal.desired),
-            // The goal is reached from the start. The target is above f by a margin, as f on a device may be a little
-            // above `initial`.
-            false => 2.0 * initial + 1.0,
-        });
-
+        let target = goal.as_ref().map(|goal| target_of(goal, initial));
         about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
         let mut checkpointer = Checkpointer::new(policy);
         let mut plan = Plan::toward(options, target);
@@ -128,6 +122,19 @@ impl Smoother<'_> {
         let outcome = self.judged(options, judged, goal, ended, stages, &mut observe).await?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
+    }
+
+    /// Returns the error of a run by a metric that cannot judge the mesh, with the metrics that can.
+    async fn refusal(&self, problem: &Problem, metric: Metric) -> Result<MeshError, MeshError> {
+        let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
+        let mut usable = Vec::new();
+        for &metric in Metric::ALL.iter() {
+            let f = objective(problem, metric, problem.positions()).await;
+            if is_usable(problem, metric, f).await {
+                usable.push(metric.name());
+            }
+        }
+        Ok(MeshError::BeyondPrecision { triangle, metric: metric.name(), usable })
     }
 
     /// Returns the description of a run with these options that its checkpoints carry.

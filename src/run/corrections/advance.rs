@@ -183,49 +183,23 @@ impl Corrections {
             self.stage = Stage::Without { since: done };
             return self.sweep_without(engine).await;
         }
-        let (short, least_first) = match self.metric().is_smooth() {
-            true => (SHORT, MIN_FIRST_LENGTH),
-            false => (SHORT_FOR_EDGE, MIN_FIRST_FOR_EDGE),
-        };
-        let mut length = Search::first_length(last_length, least_first);
+        let is_smooth = self.metric().is_smooth();
+        let least_first = if is_smooth { MIN_FIRST_LENGTH } else { MIN_FIRST_FOR_EDGE };
+        let length = Search::first_length(last_length, least_first);
         let step = self.step(OMEGA_BETWEEN);
         let mut proposal = engine.sweep_and_propose(&step, length, self.accelerated).await?;
         // If the correction of all vertices leads uphill, the levels no longer fit the stiffness of the mesh.
-        let misleads = proposal.slope > 0.0 && !self.metric().is_smooth();
+        let misleads = proposal.slope > 0.0 && !is_smooth;
         let proposed = if misleads { self.drop_levels(engine) } else { proposed + 1 };
         let can_break = step.shape_guard.is_finite() || self.problem.floor() > 0.0;
         if proposal.slope < 0.0 && proposal.there.is_none() && can_break {
             proposal = engine.exclude_broken(length, !self.accelerated).await?;
         }
-        let Proposal { here, slope, there } = proposal;
-        // The slope is the squared norm of the gradient, weighted by the levels: about twice the gain left in smooth
-        // modes. Sweeps remove the other modes, most of them in a single sweep.
-        let ideal = self.metric().ideal_squared();
-        let scale = (here + ideal).max(MIN_SCALE);
-        let swept = self.lowered.last().map_or(f64::INFINITY, |f| f - ideal - here);
-        self.settled = slope.abs() <= NOISE * scale
-            && swept <= (SWEPT * self.plan.stop.tolerance).max(NOISE) * scale;
-        let mut search = Search::new(here, slope);
-        if slope < 0.0 && !self.settled {
-            let mut next = search.tried(length, there);
-            while let Some(another) = next {
-                length = another;
-                next = search.tried(length, engine.excess_along(length).await?);
-            }
-        }
-        // If f may rise, the engine evaluates the objectives and stores the best state.
-        let is_evaluated = self.plan.track_all || !self.plan.is_monotone();
-        let (moved, excess) = search.best().map_or((None, here), |(by, there)| (Some(by), there));
-        let evaluated = match moved {
-            Some(by) if is_evaluated => Some(engine.objectives_after_move(by).await?),
-            None if is_evaluated => Some(engine.objectives().await?),
-            Some(by) => {
-                engine.move_along(by).await?;
-                None
-            }
-            None => None,
-        };
-        self.taken += u32::from(moved.is_some());
+        let best = self.search_along(engine, &proposal, length).await?;
+        let Proposal { here, slope, .. } = proposal;
+        let (moved, excess) = best.map_or((None, here), |(by, there)| (Some(by), there));
+        let evaluated = self.apply(engine, moved).await?;
+        let short = if is_smooth { SHORT } else { SHORT_FOR_EDGE };
         let refused = if moved.is_some_and(|by| by >= short) { 0 } else { refused + 1 };
         let length = moved.unwrap_or(last_length);
         // Secant pairs may be the reason why a direction fails, so a refused correction drops them.
@@ -243,11 +217,59 @@ impl Corrections {
             }
             _ => Stage::Correcting(Correcting { since, length, proposed, refused }),
         };
-        self.lowered.push(ideal + excess);
+        let f = self.metric().ideal_squared() + excess;
+        self.lowered.push(f);
         Ok(evaluated.unwrap_or_else(|| {
             let mut objectives = Objectives::empty();
-            objectives.set(self.metric(), ideal + excess);
+            objectives.set(self.metric(), f);
             objectives
         }))
+    }
+
+    /// Searches along a correction from its first length, and finds whether the run is settled. Returns the best length with
+    /// f - ideal² there; `None` if no length lowers f.
+    async fn search_along(
+        &mut self,
+        engine: &mut impl Engine,
+        proposal: &Proposal,
+        mut length: f64,
+    ) -> Result<Option<(f64, f64)>, GpuError> {
+        let Proposal { here, slope, there } = *proposal;
+        // The slope is the squared norm of the gradient, weighted by the levels: about twice the gain left in smooth
+        // modes. Sweeps remove the other modes, most of them in a single sweep.
+        let ideal = self.metric().ideal_squared();
+        let scale = (here + ideal).max(MIN_SCALE);
+        let swept = self.lowered.last().map_or(f64::INFINITY, |f| f - ideal - here);
+        self.settled = slope.abs() <= NOISE * scale
+            && swept <= (SWEPT * self.plan.stop.tolerance).max(NOISE) * scale;
+        let mut search = Search::new(here, slope);
+        if slope < 0.0 && !self.settled {
+            let mut next = search.tried(length, there);
+            while let Some(another) = next {
+                length = another;
+                next = search.tried(length, engine.excess_along(length).await?);
+            }
+        }
+        Ok(search.best())
+    }
+
+    /// Moves the vertices by a length along a correction, if given. Returns the objectives if the engine evaluates them.
+    async fn apply(
+        &mut self,
+        engine: &mut impl Engine,
+        moved: Option<f64>,
+    ) -> Result<Option<Objectives>, GpuError> {
+        // If f may rise, the engine evaluates the objectives and stores the best state.
+        let is_evaluated = self.plan.track_all || !self.plan.is_monotone();
+        self.taken += u32::from(moved.is_some());
+        Ok(match moved {
+            Some(by) if is_evaluated => Some(engine.objectives_after_move(by).await?),
+            None if is_evaluated => Some(engine.objectives().await?),
+            Some(by) => {
+                engine.move_along(by).await?;
+                None
+            }
+            None => None,
+        })
     }
 }

@@ -37,76 +37,34 @@ impl Corrections {
     /// Restores the state from the words that [`save`](Self::save) returned after `evaluations`. Without levels in the
     /// engine, the next correction begins by building levels. Returns false for invalid words.
     pub(crate) fn restore(&mut self, words: &[u64], evaluations: usize, has_levels: bool) -> bool {
-        let Some(([stage, at, length, attempts, taken, proposed, refused], rest)) =
-            words.split_first_chunk()
-        else {
-            return false;
-        };
-        let Some((
-            &[
-                settled,
-                accelerated,
-                left_out,
-                was_reopened,
-                in_plane,
-                from_end,
-                has_slope,
-                slope,
-                ref estimates @ ..,
-                alternated,
-                sharpness,
-                built,
-                fitted,
-                needs_double,
-                can_step,
-                least_ritz,
-                forcing,
-                idle,
-                is_exact,
-                agreed,
-                steps,
-                iterations,
-            ],
-            lowered,
-        )) = rest.split_first_chunk::<{ 21 + ESTIMATES }>()
-        else {
-            return false;
-        };
-        let sharpness = u32::try_from(sharpness).ok();
-        let Some(sharpness) = sharpness.filter(|k| exponents(&self.plan).contains(k)) else {
-            return false;
-        };
-        let estimates: [u64; ESTIMATES] = *estimates;
-        self.sharpness = sharpness;
+        self.restored(words, evaluations, has_levels).is_some()
+    }
+
+    /// Restores the state as [`restore`](Self::restore) does. `None` for invalid words.
+    fn restored(&mut self, words: &[u64], evaluations: usize, has_levels: bool) -> Option<()> {
+        let (&[stage, at, length], rest) = words.split_first_chunk()?;
+        let (&[attempts, taken, proposed, refused], rest) = rest.split_first_chunk()?;
+        let (flags, rest) = rest.split_first_chunk()?;
+        let [settled, accelerated, left_out, was_reopened, in_plane, from_end] =
+            flags.map(|flag: u64| flag != 0);
+        let (&[has_slope, slope], rest) = rest.split_first_chunk()?;
+        let (estimates, rest) = rest.split_first_chunk::<ESTIMATES>()?;
+        let (&[alternated, sharpness, built, fitted], rest) = rest.split_first_chunk()?;
+        let (&[needs_double, can_step], rest) = rest.split_first_chunk()?;
+        let (tail, lowered) = rest.split_first_chunk()?;
+        let sharpness = u32::try_from(sharpness).ok()?;
+        self.sharpness = Some(sharpness).filter(|k| exponents(&self.plan).contains(k))?;
         self.lowered = lowered.iter().map(|&f| f64::from_bits(f)).collect();
-        if self.lowered.len() > evaluations || !self.lowered.iter().all(|f| f.is_finite()) {
-            return false;
-        }
+        let is_log = |f: &[f64]| f.len() <= evaluations && f.iter().all(|f| f.is_finite());
+        is_log(&self.lowered).then_some(())?;
         // No event can have occurred more often than the number of sweeps.
-        let small = |word: &u64| u32::try_from(*word).ok().filter(|n| *n as usize <= evaluations);
-        let (
-            Some(attempts),
-            Some(alternated),
-            Some(taken),
-            Some(proposed),
-            Some(refused),
-            Some(built),
-            Some(fitted),
-            Some(at),
-        ) = (
-            small(attempts),
-            small(&alternated),
-            small(taken),
-            small(proposed),
-            small(refused),
-            small(&built).filter(|&n| (n as usize) < evaluations.max(1)),
-            small(&fitted).filter(|&n| (n as usize) < evaluations.max(1)),
-            u32::try_from(*at).ok(),
-        )
-        else {
-            return false;
-        };
-        let (since, length) = (at as usize, f64::from_bits(*length));
+        let small = |word: u64| u32::try_from(word).ok().filter(|n| *n as usize <= evaluations);
+        let index = |word: u64| small(word).map(|n| n as usize).filter(|&n| n < evaluations.max(1));
+        self.attempts = small(attempts)?;
+        (self.alternated, self.taken) = (small(alternated)?, small(taken)?);
+        (self.built, self.fitted) = (index(built)?, index(fitted)?);
+        let (proposed, refused) = (small(proposed)?, small(refused)?);
+        let (since, length) = (u32::try_from(at).ok()? as usize, f64::from_bits(length));
         self.stage = match stage {
             0 if length == 0.0 => Stage::Before { until: since },
             1 if since < evaluations && length > 0.0 && length.is_finite() => {
@@ -115,26 +73,19 @@ impl Corrections {
             }
             2 if since < evaluations => Stage::Without { since },
             3 if can_step != 0 && self.can_step => Stage::Stepping { left: None },
-            _ => return false,
+            _ => return None,
         };
-        (self.attempts, self.alternated, self.taken) = (attempts, alternated, taken);
-        (self.built, self.fitted) = (built as usize, fitted as usize);
-        (self.settled, self.accelerated) = (settled != 0, accelerated != 0);
-        (self.was_left_out, self.has_levels) = (left_out != 0, has_levels);
-        (self.was_reopened, self.from_end) = (was_reopened != 0, from_end != 0);
+        (self.settled, self.accelerated) = (settled, accelerated);
+        (self.was_left_out, self.has_levels) = (left_out, has_levels);
+        (self.was_reopened, self.from_end) = (was_reopened, from_end);
         self.needs_double = needs_double != 0;
         self.can_step &= can_step != 0;
-        let Some(tail) =
-            Tail::of_words([least_ritz, forcing, idle, is_exact, agreed, steps, iterations])
-        else {
-            return false;
-        };
-        self.tail = tail;
-        if in_plane != 0 {
+        self.tail = Tail::of_words(*tail)?;
+        if in_plane {
             self.problem.set_levels_in_plane();
         }
         self.slope = (has_slope != 0).then(|| f64::from_bits(slope));
         self.estimates = estimates.map(f64::from_bits);
-        true
+        Some(())
     }
 }
