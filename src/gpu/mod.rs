@@ -18,7 +18,7 @@ pub(crate) mod scope;
 pub use device::{Gpu, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};
 pub use embed::{
-    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, LastValid,
+    BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Doubt, LastValid,
     ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer,
 };
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};

@@ -32,6 +32,14 @@ impl Problem {
     /// after their target maps are applied if the mesh has targets. Without targets, a free vertex with more than a
     /// thousand triangles suffices.
     pub(crate) fn is_strongly_stretched(&self, positions: &[DVec2]) -> bool {
+        let degrees = self.ring_start().windows(2).map(|ends| ends[1] - ends[0]);
+        (self.targets().is_none() && degrees.max() > Some(HUB))
+            || self.share_stretched(positions, STRETCHED) > SHARE
+    }
+
+    /// Returns the share of the free vertices whose triangles are longer than wide by more than a ratio, after their target maps
+    /// are applied if the mesh has targets.
+    pub(crate) fn share_stretched(&self, positions: &[DVec2], ratio: f64) -> f64 {
         let step = self.free_count().div_ceil(SAMPLES).max(1);
         let samples = (0..self.free_count()).step_by(step);
         let count = samples.len();
@@ -41,11 +49,9 @@ impl Problem {
         };
         let is_stretched = |&v: &usize| {
             let [low, high] = shape_at(self, v, transformed).eigenvalues();
-            high / low > STRETCHED
+            high / low > ratio
         };
-        let degrees = self.ring_start().windows(2).map(|ends| ends[1] - ends[0]);
-        (self.targets().is_none() && degrees.max() > Some(HUB))
-            || samples.filter(is_stretched).count() as f64 > SHARE * count as f64
+        samples.filter(is_stretched).count() as f64 / count.max(1) as f64
     }
 
     /// Sets the local maps of the free vertices, for vertices at `positions`. A local map transforms the triangles

@@ -4,6 +4,7 @@ mod budget;
 mod clamped_move;
 mod corrections;
 mod debug;
+mod doubt;
 mod exchange;
 mod last_valid;
 mod mesh;
@@ -17,6 +18,7 @@ mod window;
 
 pub use budget::Budget;
 pub use clamped_move::BoundMove;
+pub use doubt::Doubt;
 pub use exchange::BoundVertices;
 pub use last_valid::LastValid;
 pub use mesh::DeviceMesh;

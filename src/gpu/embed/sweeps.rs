@@ -8,7 +8,7 @@ use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::readback::Waiting;
 use crate::gpu::embed::corrections::EncodedCorrections;
 use crate::gpu::embed::objective::Run;
-use crate::gpu::embed::{BoundObjective, Budget, DeviceMesh};
+use crate::gpu::embed::{BoundObjective, Budget, DeviceMesh, Doubt};
 use crate::gpu::encode::{Encoder, Passes};
 use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::layouts::RestartBindings;
@@ -32,6 +32,7 @@ pub struct Sweeps {
     run: Run,
     judged: Option<SelfStopping>,
     corrections: Option<EncodedCorrections>,
+    doubt: Option<Doubt>,
     done: u32,
 }
 
@@ -55,7 +56,8 @@ impl Sweeps {
     /// optimum after a dozen corrected sweeps instead of hundreds of sweeps alone. A corrected sweep takes as long as
     /// some four sweeps alone. The default, [`Method::Auto`], means sweeps alone here. A correction is taken only if it
     /// lowers f, inverts no triangle and breaks no shape guard; corrections pause while a triangle is inverted. EDGE
-    /// and alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)).
+    /// and alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)). Sweeps on a mesh with
+    /// stretched triangles or a vertex of many neighbors are not corrected; [`doubt`](Self::doubt) tells.
     ///
     /// The call builds the levels on the host, after it has waited for all submitted work and read back a number for each
     /// free vertex. The numbers come from a copy of the mesh after ten sweeps, so levels of a rough mesh fit the mesh
@@ -119,12 +121,17 @@ impl Sweeps {
         ending: Ending,
         waiting: Waiting,
     ) -> Result<Self, SmoothError> {
-        let is_corrected = options.method == Method::Multilevel;
+        let asks_corrections = options.method == Method::Multilevel;
         let mut features = mesh.features();
         features.push(Feature::Encoded);
-        features.extend(is_corrected.then_some(Feature::EncodedCorrections));
+        features.extend(asks_corrections.then_some(Feature::EncodedCorrections));
         options.check_with(&features)?;
-        let plan = Plan::new(options);
+        let doubt = Doubt::of(&mesh.problem);
+        let is_corrected = asks_corrections && doubt.is_none();
+        let plan = match asks_corrections && !is_corrected {
+            true => Plan::new(&Options { method: Method::Auto, ..options.clone() }),
+            false => Plan::new(options),
+        };
         let endless = plan.clone().endless();
         let steps = match is_corrected {
             true => vec![between(&plan)],
@@ -151,7 +158,7 @@ impl Sweeps {
             }
             false => None,
         };
-        Ok(Self { gpu: gpu.clone(), run, judged, corrections, done: 0 })
+        Ok(Self { gpu: gpu.clone(), run, judged, corrections, doubt, done: 0 })
     }
 
     /// Encodes `sweeps` further sweeps, each followed by a correction if the sweeps are corrected. Alternating metrics
@@ -203,6 +210,12 @@ impl Sweeps {
                 dispatches.encode_evaluation(passes);
             }
         }
+    }
+
+    /// Returns why the sweeps are slow on the mesh as it was uploaded, and may end too early. `None` for most meshes. Sweeps with
+    /// a doubt have no corrections, which would take longer than the sweeps that they save.
+    pub fn doubt(&self) -> Option<Doubt> {
+        self.doubt
     }
 
     /// Returns the scheme of the sweeps.
