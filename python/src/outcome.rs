@@ -34,7 +34,7 @@ impl Outcome {
         let base = options.scheme.base();
         let engine = match backend {
             Backend::Cpu => "cpu".to_owned(),
-            Backend::Gpu(_) if prepared.smoother.slides_on_cpu(options) => "cpu".to_owned(),
+            Backend::Gpu(_) if prepared.smoother.slides_on_cpu() => "cpu".to_owned(),
             Backend::Gpu(gpu) => gpu.adapter().name.clone(),
         };
         Self { outcome, prepared, base, engine }

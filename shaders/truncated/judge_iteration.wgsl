@@ -129,10 +129,14 @@ fn judge(curvature: f32) {
     // The solution minimizes the model over the directions so far, so its gain is half of the descent.
     state.descent = 2.0 * state.model_gain;
     let wanted = state.forcing * state.model_gain;
-    let accuracy = select(state.least_gain, wanted, wanted > NEAR_LEAST * state.least_gain);
-    let is_last = accuracy <= state.least_gain;
+    let slides = state.slides != 0u;
+    var accuracy = select(state.least_gain, wanted, wanted > NEAR_LEAST * state.least_gain);
+    if slides {
+        accuracy = max(wanted, state.least_gain);
+    }
+    let is_last = slides || accuracy <= state.least_gain;
     // Only a solution that may end the run needs a safe bound.
-    if is_last && remaining(bound, alpha) <= accuracy {
+    if is_last && remaining(bound, alpha) <= min(accuracy, 2.0 * state.least_gain) {
         bound = refined(bound, count, ritz);
     }
     let left = remaining(bound, alpha);

@@ -32,7 +32,8 @@ fn judge_length() {
         state.is_broken = 1u;
     }
     state.next_length = next;
-    let is_last = state.trials % STEP_TRIALS == 0u;
+    // The host places sliding vertices before each trial.
+    let is_last = state.slides != 0u || state.trials % STEP_TRIALS == 0u;
     if state.trials == MOST_STEP_TRIALS || !is_positive(next) || !is_positive(state.descent) {
         state.is_searched = 1u;
         state.there = here;

@@ -14,7 +14,7 @@ fn multiply(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var i = ring_place(ring_start[v]); i < end; i++) {
             let k = ring[i];
             // Fixed vertices do not move.
-            let other = select(vec2(0.0), fine[direction_at(min(k, op.vertices - 1u))], k < op.vertices);
+            let other = select(vec2(0.0), fine[direction_at(min(k, op.movers - 1u))], k < op.movers);
             let block = entries[i];
             let apart = other - own;
             product += block.xy * apart.x + block.zw * apart.y;

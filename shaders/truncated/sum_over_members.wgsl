@@ -27,6 +27,16 @@ fn by_motion(place: vec2<f32>, block: mat2x2<f32>, share: f32, there: vec2<f32>)
     );
 }
 
+// Returns the projection to the moves that a vertex admits: all moves of a free vertex, those along the tangent of a sliding
+// one.
+fn admitted(v: u32) -> mat2x2<f32> {
+    if v < op.vertices {
+        return mat2x2(1.0, 0.0, 0.0, 1.0);
+    }
+    let t = fine[tangent_at(v)];
+    return mat2x2(t * t.x, t * t.y);
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn sum_over_members(
     @builtin(global_invocation_id) id: vec3<u32>,
@@ -49,24 +59,46 @@ fn sum_over_members(
     for (var i = structure[op.member_starts + row]; i < last; i++) {
         let v = structure[op.members + i];
         let place = fine[place_at(v)];
-        let ring_end = ring_place(ring_start[v + 1u]);
+        let is_free = v < op.vertices;
+        var range = vec2<u32>();
+        if is_free {
+            range = vec2(ring_place(ring_start[v]), ring_place(ring_start[v + 1u]));
+        } else {
+            range = 2u * corners_of(v);
+        }
+        let along = admitted(v);
         // The vertex's own block is minus the sum of its other blocks.
         var rest = mat2x2<f32>();
-        for (var k = ring_place(ring_start[v]); k < ring_end; k++) {
-            let neighbor = ring[k];
-            let block = mat2x2(entries[k].xy, entries[k].zw);
+        for (var k = range.x; k < range.y; k++) {
+            var neighbor = NONE;
+            var entry = vec4(0.0);
+            if is_free {
+                neighbor = ring[k];
+                entry = entries[k];
+            } else {
+                neighbor = corner_at(k);
+                entry = entries[op.slide_entries + k];
+            }
+            var block = mat2x2(entry.xy, entry.zw);
             var column = NONE;
             var there = vec2(0.0);
-            if neighbor < op.vertices {
+            if neighbor < op.movers {
                 column = structure[op.aggregate_of + neighbor];
                 there = fine[place_at(neighbor)];
             }
-            if column == row {
+            if column == row && is_free && neighbor < op.vertices {
                 own += by_motion(place, block, 0.0, there - place);
                 continue;
             }
             rest += block;
             if column == NONE {
+                continue;
+            }
+            if !is_free || neighbor >= op.vertices {
+                block = along * block * admitted(neighbor);
+            }
+            if column == row {
+                own += by_motion(place, block, 1.0, there);
                 continue;
             }
             if column != of_other {
@@ -77,6 +109,12 @@ fn sum_over_members(
                 other = mat4x4<f32>();
             }
             other += by_motion(place, block, 1.0, there);
+        }
+        if !is_free {
+            rest = along * rest * along;
+            let bend = spread(place, fine[tangent_at(v)]);
+            let stiffness = fine[inverse_at(v) + 1u].y;
+            own += stiffness * mat4x4(bend * bend.x, bend * bend.y, bend * bend.z, bend * bend.w);
         }
         own += by_motion(place, rest, -1.0, -place);
     }

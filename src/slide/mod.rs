@@ -21,9 +21,11 @@ mod sliding;
 #[cfg(feature = "gpu")]
 mod table;
 mod track;
+mod vertices;
 mod way;
 
 pub use crate::periodic::{Motion, Periodic};
+pub(crate) use movers::Movers;
 pub(crate) use newton::OfPatch;
 #[cfg(feature = "gpu")]
 pub(crate) use newton::{HALVINGS, MAX_STEP_SHARE};

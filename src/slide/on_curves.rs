@@ -79,6 +79,27 @@ pub(crate) struct Tangents {
     pub(crate) curvatures: Vec<f64>,
 }
 
+impl Tangents {
+    /// Makes the tangents of vertices that stay zero. If not `is_exact`, negative curvatures count as 0. Returns whether all
+    /// curvatures are exact.
+    pub(crate) fn restrict(&mut self, is_exact: bool) -> bool {
+        let mut all_exact = true;
+        let mut count = |curvature: &mut f64| {
+            if !is_exact && *curvature < 0.0 {
+                (*curvature, all_exact) = (0.0, false);
+            }
+        };
+        for vertex in &mut self.vertices {
+            if vertex.is_held {
+                (vertex.along, vertex.curvature) = (DVec2::ZERO, 0.0);
+            }
+            count(&mut vertex.curvature);
+        }
+        self.curvatures.iter_mut().for_each(count);
+        all_exact
+    }
+}
+
 impl OnCurves {
     /// Returns the sliding vertices at their given positions. `reach` limits the distances of vertices from these positions,
     /// if given. `floor` is the lower limit of altitudes, 0 for no limit.
@@ -119,10 +140,8 @@ impl OnCurves {
     /// Writes the positions of all sliding vertices at their parameters.
     #[cfg(feature = "gpu")]
     pub(crate) fn write_positions(&self, problem: &Problem, positions: &mut [DVec2]) {
-        for (track, params) in self.sliding.tracks.iter().zip(&self.params) {
-            for (k, &param) in params.iter().enumerate() {
-                track.follow(problem, k, param, positions);
-            }
+        for (vertex, at) in self.placed(problem, &self.params) {
+            positions[vertex as usize] = at;
         }
     }
 
@@ -204,12 +223,12 @@ impl OnCurves {
         })
     }
 
-    /// Returns the sliding vertices as unknowns of a Newton step of the metric of `step`.
+    /// Returns the sliding vertices as unknowns of a Newton step. `gradient` returns the gradient of the sum of q² at the vertex of
+    /// a fan.
     pub(crate) fn tangents(
         &mut self,
         problem: &Problem,
-        positions: &[DVec2],
-        step: &SweepParams,
+        gradient: impl Fn(&Fan) -> DVec2,
     ) -> Tangents {
         let mut tangents = Tangents::default();
         let joins = self.short < MOST_SHORT;
@@ -221,12 +240,8 @@ impl OnCurves {
             for k in (0..params.len()).filter(|&k| track.slides(k)) {
                 for side in &track.sides {
                     let Some(fan) = &side.fans[k] else { continue };
-                    let vertex = fan.own();
-                    let patch = fan.patch(problem, positions, 0.0);
-                    let here = positions[vertex as usize].to_array();
-                    let gradient = step.of(&patch).expansion(here).gradient;
                     let Place { first, second, .. } = side.at(problem, params[k], k);
-                    let (gradient, speed) = (DVec2::from(gradient), first.length());
+                    let (gradient, speed) = (gradient(fan), first.length());
                     let along = first / speed;
                     slopes[k] += gradient.dot(along);
                     speeds[k] = speed;
@@ -294,14 +309,8 @@ impl OnCurves {
     }
 
     /// Returns the parameters after moves by the given lengths along the tangents, shortened where a move would break a bound.
-    /// Writes the positions of all sliding vertices there. `lengths` are in the order of `tangents`.
-    pub(crate) fn along(
-        &self,
-        problem: &Problem,
-        tangents: &Tangents,
-        lengths: impl Fn(usize) -> f64,
-        positions: &mut [DVec2],
-    ) -> Params {
+    /// `lengths` are in the order of `tangents`.
+    pub(crate) fn along(&self, tangents: &Tangents, lengths: impl Fn(usize) -> f64) -> Params {
         let mut at = 0;
         let mut all = self.params.clone();
         for ((track, to), (from, reach)) in
@@ -312,11 +321,21 @@ impl OnCurves {
                 at += track.sides.len();
             }
             track.shorten(from, to, reach);
-            for (k, &param) in to.iter().enumerate() {
-                track.follow(problem, k, param, positions);
-            }
         }
         all
+    }
+
+    /// Returns the sliding vertices at the given parameters, as indices in the problem with their positions.
+    pub(crate) fn placed(
+        &self,
+        problem: &Problem,
+        params: &Params,
+    ) -> impl Iterator<Item = (u32, DVec2)> {
+        let all = self.sliding.tracks.iter().zip(params);
+        all.flat_map(move |(track, params)| {
+            let each = params.iter().enumerate();
+            each.flat_map(move |(k, &param)| track.placed(problem, k, param))
+        })
     }
 
     /// Returns the number of vertices, partners included, that stay at a bound: those of the latest Newton step, or those that

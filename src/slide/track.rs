@@ -37,11 +37,21 @@ impl Track {
 
     /// Moves the vertices of index `k` on all sides to a parameter, if they slide.
     pub(super) fn follow(&self, problem: &Problem, k: usize, param: f64, positions: &mut [DVec2]) {
-        for side in &self.sides {
-            if let Some(fan) = &side.fans[k] {
-                positions[fan.own() as usize] = side.at(problem, param, k).point;
-            }
+        for (vertex, at) in self.placed(problem, k, param) {
+            positions[vertex as usize] = at;
         }
+    }
+
+    /// Returns the vertices of index `k` on all sides, if they slide, with their positions at a parameter.
+    pub(super) fn placed(
+        &self,
+        problem: &Problem,
+        k: usize,
+        param: f64,
+    ) -> impl Iterator<Item = (u32, DVec2)> {
+        let sliding =
+            self.sides.iter().filter_map(move |side| Some((side, side.fans[k].as_ref()?)));
+        sliding.map(move |(side, fan)| (fan.own(), side.at(problem, param, k).point))
     }
 
     /// Returns `known` for the vertex before (`to` = -1) or after (1) vertex `k`. On a closed curve, parameters

@@ -102,7 +102,7 @@ impl Smoother<'_> {
         let Start { positions, curves } = start;
         let mut plan = Plan::toward(options, None);
         set_guards(&mut plan, options.guard, problem, positions).await;
-        let device = device.filter(|_| !self.slides_on_cpu(options));
+        let device = device.filter(|_| !self.slides_on_cpu());
         let (phase, curves) = (Phase::Reference, curves.as_ref());
         let spec = Spec { problem, device, options, phase, is_staged: false, curves };
         let mut checkpointer = Checkpointer::new(policy);

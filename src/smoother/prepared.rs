@@ -291,14 +291,11 @@ impl<'a> Smoother<'a> {
         self.sliding.is_some()
     }
 
-    /// Returns whether a run with these options is on the CPU, whatever its backend is, because vertices slide: a
-    /// [multilevel](Options::is_multilevel) run, and every run in the projection of a sphere. A run by sweeps alone slides
-    /// vertices on a device.
-    pub fn slides_on_cpu(&self, options: &Options) -> bool {
-        // A device takes no Newton steps of all vertices. Of four coasts, two took 177 and 189 sweeps with corrections of
-        // the free vertices instead of 33 and 9 with Newton steps, and two had not converged after 1,000 instead of 17 and 20.
+    /// Returns whether runs are on the CPU, whatever their backend is, because vertices slide in the projection of a sphere, or
+    /// because no vertex is free.
+    pub fn slides_on_cpu(&self) -> bool {
         // Single precision has too few digits for curves in a projection.
-        self.slides() && (options.is_multilevel() || self.problem.is_projected())
+        self.slides() && (self.problem.is_projected() || self.problem.free_count() == 0)
     }
 
     fn stop_sliding(&mut self) {

@@ -68,7 +68,7 @@ impl Smoother<'_> {
         options.check_with(&self.features())?;
         self.check_movable()?;
         let device = device.filter(|_| self.problem.free_count() > 0);
-        let device = device.filter(|_| !self.slides_on_cpu(options));
+        let device = device.filter(|_| !self.slides_on_cpu());
         let (device, fault) = self.checked(device, policy).await?;
         let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
         let mut about = self.about(problem, options).await;

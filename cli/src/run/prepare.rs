@@ -141,10 +141,12 @@ pub(super) fn set_up<'a>(
         follow.remark(&vertices.remark);
         sliding = Some(vertices);
     }
-    let taken = match smoother.slides_on_cpu(&request.options(file.precision())) {
+    let taken = match smoother.slides_on_cpu() {
         true => OpenEngine::new(
             Backend::Cpu,
-            Some("vertices slide on a GPU only by --method relaxed or paper".into()),
+            Some(
+                "vertices slide on the CPU if the mesh is on a sphere or has no free vertex".into(),
+            ),
         ),
         false => taken,
     };

@@ -8,11 +8,11 @@
 
 use std::ops::Range;
 
-use super::movers::Movers;
 use crate::layout::Problem;
 use crate::parallel::paced;
 use crate::run::multilevel::{Aggregates, NONE};
 use crate::run::truncated::aggregation::MOST_DEGREES;
+use crate::slide::Movers;
 
 /// Number of vertices from which on a block ends. The vectors of a block then fit the first cache of a processor.
 const VERTICES: u32 = 2048;

@@ -8,7 +8,6 @@ mod couplings;
 mod derivatives;
 mod levels;
 mod matrix;
-mod movers;
 mod product;
 mod scalar;
 mod slides;
@@ -24,7 +23,7 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::truncated::{NewtonStep, StepRequest, StepSearch};
 use crate::run::{MIN_SCALE, SweepParams};
-use crate::slide::{OnCurves, Tangents};
+use crate::slide::{OfPatch, OnCurves, Params, Tangents};
 use solve::{Solved, Solver};
 
 /// A mesh prepared for Newton steps, in single or double precision. Strongly stretched triangles need double precision: in
@@ -67,35 +66,24 @@ impl Truncated {
         let count = problem.judged_triangles().len() as f64;
         let swept = mean_excess(metric, problem, positions).await;
         let scale = (swept + metric.ideal_squared()).max(MIN_SCALE);
-        let tangents = match &mut curves {
-            Some(curves) => curves.tangents(problem, positions, sweep),
+        let mut tangents = match &mut curves {
+            Some(curves) => {
+                let here = &*positions;
+                curves.tangents(problem, |fan| {
+                    let patch = fan.patch(problem, here, 0.0);
+                    sweep.of(&patch).expansion(here[fan.own() as usize].to_array()).gradient.into()
+                })
+            }
             None => Tangents::default(),
         };
-        let is_exact = request.is_exact;
-        let all_exact = on!(self, solver => {
-            solver.linearize(metric, problem, positions, &tangents, is_exact).await
-        });
+        let is_exact = tangents.restrict(request.is_exact);
+        on!(self, solver => solver.linearize(metric, problem, positions, &tangents).await);
         let least_gain = request.least_gain * scale * count;
         let solved = on!(self, solver => solver.solve(request, least_gain).await);
         let Solved { model_gain, descent, bound, least_ritz, is_curved_down, iterations } = solved;
-        let free = problem.free_count();
-        moved.clear();
-        moved.extend_from_slice(if curves.is_some() { positions } else { &positions[..free] });
-        let mut search = StepSearch::new(swept, descent / count);
-        let (mut params, mut accepted) = (None, None);
-        while let Some(length) = search.next() {
-            on!(self, solver => solver.write_moved(positions, length, &mut moved[..free]).await);
-            if let Some(curves) = &curves {
-                let steps = &*self;
-                let way = |slide: usize| length * on!(steps, solver => solver.way(slide));
-                params = Some(curves.along(problem, &tangents, way, moved));
-            }
-            let along = Along { positions, moved };
-            search.tried(length, mean_excess_along(sweep, problem, &along).await);
-            if search.best().0 == length {
-                accepted = params.take();
-            }
-        }
+        let search = StepSearch::new(swept, descent / count);
+        let on = curves.as_deref().map(|curves| (curves, &tangents));
+        let (search, accepted) = self.search(search, sweep, problem, positions, on, moved).await;
         let (length, excess) = search.best();
         if let Some(curves) = &mut curves {
             curves.record_step(length);
@@ -115,9 +103,44 @@ impl Truncated {
             length,
             is_curved_down,
             is_broken: search.is_broken(),
-            is_exact: all_exact,
+            is_exact,
+            slides: !tangents.vertices.is_empty(),
             held: tangents.vertices.iter().filter(|vertex| vertex.is_held).count(),
             iterations,
         }
+    }
+
+    /// Tries lengths along the solution, and writes the positions at the last of them to `moved`. Returns the search, and the
+    /// parameters of sliding vertices at the accepted length.
+    async fn search(
+        &self,
+        mut search: StepSearch,
+        sweep: &SweepParams,
+        problem: &Problem,
+        positions: &[DVec2],
+        curves: Option<(&OnCurves, &Tangents)>,
+        moved: &mut Vec<DVec2>,
+    ) -> (StepSearch, Option<Params>) {
+        let free = problem.free_count();
+        moved.clear();
+        moved.extend_from_slice(if curves.is_some() { positions } else { &positions[..free] });
+        let (mut params, mut accepted) = (None, None);
+        while let Some(length) = search.next() {
+            on!(self, solver => solver.write_moved(positions, length, &mut moved[..free]).await);
+            if let Some((curves, tangents)) = curves {
+                let way = |slide: usize| length * on!(self, solver => solver.way(slide));
+                let to = curves.along(tangents, way);
+                for (vertex, at) in curves.placed(problem, &to) {
+                    moved[vertex as usize] = at;
+                }
+                params = Some(to);
+            }
+            let along = Along { positions, moved };
+            search.tried(length, mean_excess_along(sweep, problem, &along).await);
+            if search.best().0 == length {
+                accepted = params.take();
+            }
+        }
+        (search, accepted)
     }
 }

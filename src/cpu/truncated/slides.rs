@@ -35,28 +35,20 @@ impl<T: Scalar> Slides<T> {
         Self { at, lines, curvatures: Vec::new(), values: Vec::new() }
     }
 
-    /// Sets the tangents of a step. If not `is_exact`, negative curvatures count as 0. Returns whether all are exact.
-    pub(super) fn set(&mut self, tangents: &Tangents, is_exact: bool) -> bool {
-        let counted = |curvature: f64| if is_exact { curvature } else { curvature.max(0.0) };
-        let mut all_exact = true;
+    /// Sets the tangents of a step.
+    pub(super) fn set(&mut self, tangents: &Tangents) {
         for (line, vertex) in self.lines.iter_mut().zip(&tangents.vertices) {
-            let curvature = counted(vertex.curvature);
-            all_exact &= vertex.is_held || curvature == vertex.curvature;
             *line = Line {
-                along: narrowed(if vertex.is_held { [0.0; 2] } else { vertex.along.to_array() }),
-                curvature: T::of(curvature),
-                stiffness: T::of(curvature.max(0.0)),
+                along: narrowed(vertex.along.to_array()),
+                curvature: T::of(vertex.curvature),
+                stiffness: T::of(vertex.curvature.max(0.0)),
                 unknown: vertex.unknown,
                 share: T::of(vertex.share),
             };
         }
         self.curvatures.clear();
+        self.curvatures.extend(tangents.curvatures.iter().map(|&curvature| T::of(curvature)));
         self.values.resize(tangents.curvatures.len(), T::default());
-        for &curvature in &tangents.curvatures {
-            all_exact &= counted(curvature) == curvature;
-            self.curvatures.push(T::of(counted(curvature)));
-        }
-        all_exact
     }
 
     /// Returns the place and the line of each sliding vertex.

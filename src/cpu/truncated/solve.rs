@@ -8,7 +8,6 @@ use super::couplings::Couplings;
 use super::derivatives::{Numbers, Source, extents, room};
 use super::levels::Levels;
 use super::matrix::{Quad, Square};
-use super::movers::Movers;
 use super::product::{Locals, inner};
 use super::scalar::Scalar;
 use super::slides::Slides;
@@ -18,7 +17,7 @@ use crate::parallel::paced;
 use crate::patch::lanes::with_instructions;
 use crate::run::truncated::aggregation::{STIFFNESS, UNKNOWNS};
 use crate::run::truncated::{ErrorBound, StepRequest};
-use crate::slide::{OnCurves, Tangents};
+use crate::slide::{Movers, OnCurves, Tangents};
 
 /// A mesh prepared for Newton steps of all vertices, with the vectors of the solution.
 pub(crate) struct Solver<T> {
@@ -78,19 +77,17 @@ impl<T: Scalar> Solver<T> {
         }
     }
 
-    /// Computes gradient, Hessians and levels at the positions, for moves along `tangents` of the sliding vertices. Their
-    /// negative curvatures count only if the step `is_exact`. Returns whether none was left out.
+    /// Computes gradient, Hessians and levels at the positions, for moves along `tangents` of the sliding vertices.
     pub(super) async fn linearize(
         &mut self,
         metric: Metric,
         problem: &Problem,
         positions: &[DVec2],
         tangents: &Tangents,
-        is_exact: bool,
-    ) -> bool {
+    ) {
         let Self { blocks, couplings, levels, numbers, slides, .. } = self;
-        let all_exact = slides.set(tangents, is_exact);
-        let Some(first) = levels.lattices.first_mut() else { return all_exact };
+        slides.set(tangents);
+        let Some(first) = levels.lattices.first_mut() else { return };
         extents(blocks, positions, &mut first.extents).await;
         let source = Source {
             problem,
@@ -116,7 +113,6 @@ impl<T: Scalar> Solver<T> {
             }
         }
         levels.update().await;
-        all_exact
     }
 
     /// Computes the step. `least_gain` is the sum over triangles of the request's least gain.

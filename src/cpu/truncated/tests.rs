@@ -4,7 +4,6 @@ use glam::DVec2;
 
 use super::Truncated;
 use super::blocks::Blocks;
-use super::movers::Movers;
 use super::solve::Solver;
 use crate::layout::Problem;
 use crate::metric::Metric;
@@ -13,7 +12,7 @@ use crate::parallel::pace::{now, polled};
 use crate::run::Plan;
 use crate::run::truncated::fixtures::{hub, lattice, problem, with_targets};
 use crate::run::truncated::{NewtonStep, StepRequest};
-use crate::slide::Tangents;
+use crate::slide::{Movers, Tangents};
 
 /// Returns vectors at the vertices that are no smooth function.
 fn noise<const N: usize>(count: usize, seed: f64) -> Vec<[f64; N]> {
@@ -27,7 +26,7 @@ fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 
 fn linearized(metric: Metric, problem: &Problem, positions: &[DVec2]) -> Solver<f64> {
     let mut solver = now(Solver::new(problem, None));
-    now(solver.linearize(metric, problem, positions, &Tangents::default(), true));
+    now(solver.linearize(metric, problem, positions, &Tangents::default()));
     solver
 }
 

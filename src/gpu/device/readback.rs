@@ -1,6 +1,7 @@
 //! Reads buffers back to the host. No other module maps buffers for reading.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use bytemuck::Pod;
 use futures_intrusive::channel::shared::{OneshotReceiver, oneshot_channel};
@@ -42,6 +43,16 @@ pub(crate) fn submit_and_copy<'g, T: Pod>(
     count: usize,
 ) -> Result<Copied<'g, T>, GpuError> {
     let size = (count * size_of::<T>()) as u64;
+    submit_and_copy_ranges(gpu, encode, &[(source, 0..size)])
+}
+
+/// Submits what `encode` encodes and, in the same submission, copies of ranges of bytes of buffers, one after the other.
+pub(crate) fn submit_and_copy_ranges<'g, T: Pod>(
+    gpu: &'g Gpu,
+    encode: impl FnOnce(&mut wgpu::CommandEncoder),
+    sources: &[(&wgpu::Buffer, Range<u64>)],
+) -> Result<Copied<'g, T>, GpuError> {
+    let size = sources.iter().map(|(_, range)| range.end - range.start).sum();
     let label = Some("gpu-smooth readback");
     let (sender, arrival) = oneshot_channel();
     let staging = scoped(&gpu.device, || {
@@ -54,7 +65,12 @@ pub(crate) fn submit_and_copy<'g, T: Pod>(
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
         encode(&mut encoder);
-        encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
+        let mut at = 0;
+        for (source, range) in sources {
+            let length = range.end - range.start;
+            encoder.copy_buffer_to_buffer(source, range.start, &staging, at, length);
+            at += length;
+        }
         gpu.queue.submit([encoder.finish()]);
         staging.map_async(wgpu::MapMode::Read, .., move |result| {
             // The receiver is dropped only if this function has already failed.

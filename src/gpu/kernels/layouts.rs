@@ -384,6 +384,31 @@ bind_layouts! {
         state: ReadWrite StepState,
     }
 
+    /// A mesh, and its Hessian at the sliding vertices.
+    SlideHessian, SlideHessianBindings, ["params.wgsl", "pairs.wgsl", "patch.wgsl"] {
+        params: Uniform Params,
+        op: DynamicUniform StepOp,
+        positions: Positions,
+        structure: Read array<u32>,
+        /// The Hessian's 2x2 blocks, column by column.
+        entries: ReadWrite array<vec4f>,
+        fine: ReadWrite array<vec2f>,
+        lines: Read array<StepLine>,
+    }
+
+    /// The vectors of conjugate gradients at the sliding vertices.
+    SlideSolution, SlideSolutionBindings, ["params.wgsl", "pairs.wgsl"] {
+        params: Uniform Params,
+        op: DynamicUniform StepOp,
+        structure: Read array<u32>,
+        /// The Hessian's 2x2 blocks, column by column.
+        entries: Read array<vec4f>,
+        fine: ReadWrite array<vec2f>,
+        rows: Read array<vec4f>,
+        lines: Read array<StepLine>,
+        state: Read StepState,
+    }
+
     /// The levels of aggregates of a Newton step.
     Lattice, LatticeBindings, [
         "params.wgsl", "pairs.wgsl", "patch.wgsl", "truncated/blocks.wgsl", "truncated/lattice.wgsl"

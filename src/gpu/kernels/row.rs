@@ -32,6 +32,8 @@ pub(crate) enum User {
     Corrections,
     /// Newton steps of all vertices at the end of a run.
     Steps,
+    /// Newton steps with vertices that slide along curves.
+    Slides,
     /// The arithmetic check of an adapter, made once.
     Check,
 }

@@ -552,7 +552,65 @@ kernels! {
         sees_maps: true,
         sees_bounds: false,
         user: Steps,
-        source: ["one_ring.wgsl", MetricSlopes, "truncated/vectors.wgsl", "truncated/find_hessian.wgsl"],
+        source: [
+            "one_ring.wgsl", MetricSlopes, "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
+            "truncated/find_hessian.wgsl"
+        ],
+    }
+
+    /// The Hessian at the sliding vertices, or the positive semidefinite part of it.
+    FindSlideHessian(metric: SmoothMetric) {
+        entry_point: "find_slide_hessian",
+        layout: SlideHessian,
+        width: WORKGROUP,
+        sees_maps: true,
+        sees_bounds: false,
+        user: Slides,
+        source: [
+            MetricSlopes, "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
+            "truncated/slide_corners.wgsl", "truncated/find_slide_hessian.wgsl"
+        ],
+    }
+
+    /// The residual at the sliding vertices, along their tangents.
+    ProjectResidual {
+        entry_point: "project_residual",
+        layout: SlideSolution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Slides,
+        source: [
+            "truncated/vectors.wgsl", "truncated/slide_lines.wgsl", "truncated/project_residual.wgsl"
+        ],
+    }
+
+    /// The preconditioned residual at the sliding vertices.
+    PreconditionSlides {
+        entry_point: "precondition_slides",
+        layout: SlideSolution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Slides,
+        source: [
+            "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/slide_lines.wgsl",
+            "truncated/precondition_slides.wgsl"
+        ],
+    }
+
+    /// The product of the Hessian and the direction at the sliding vertices.
+    MultiplySlides {
+        entry_point: "multiply_slides",
+        layout: SlideSolution,
+        width: WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        user: Slides,
+        source: [
+            "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/slide_lines.wgsl",
+            "truncated/multiply_slides.wgsl"
+        ],
     }
 
     /// The matrix of the first level of aggregates.
@@ -563,7 +621,9 @@ kernels! {
         sees_maps: false,
         sees_bounds: false,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/sum_over_members.wgsl"],
+        source: [
+            "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/sum_over_members.wgsl"
+        ],
     }
 
     /// Ends an iteration of conjugate gradients, and sums the residual over the aggregates.
@@ -585,7 +645,9 @@ kernels! {
         sees_maps: false,
         sees_bounds: false,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/precondition.wgsl"],
+        source: [
+            "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/precondition.wgsl"
+        ],
     }
 
     /// Begins an iteration of conjugate gradients.

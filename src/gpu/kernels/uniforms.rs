@@ -378,8 +378,34 @@ shared_structs! {
         step: u32,
         /// Offset in `rows` of its solution.
         solution: u32,
-        padding: u32,
-        more_padding: vec2u,
+        /// Number of vertices that vectors have room for: the free ones, or all if vertices slide.
+        movers: u32,
+        /// Offset in `structure` of the first triangle of each vertex that is not free, in `corners`.
+        corner_starts: u32,
+        /// Offset in `structure` of the other two vertices of each triangle around a sliding vertex, counter-clockwise.
+        corners: u32,
+        /// Offset in `entries` of the blocks by these vertices.
+        slide_entries: u32,
+        /// Offset in `fine` of the tangents of all vertices that are not free.
+        tangents: u32,
+        padding: vec2u,
+    }
+
+    /// A sliding vertex as an unknown of a Newton step, the length of its way. The host writes the tangents of each step.
+    StepLine {
+        /// Unit tangent; zero for a vertex that stays.
+        along: vec2f,
+        /// Second derivative of the objective by the length, because of the bend of the curve.
+        curvature: f32,
+        /// Share of the vertex in its unknown.
+        share: f32,
+        /// Second derivative by the unknown because of bounds.
+        of_bounds: f32,
+        vertex: u32,
+        /// Index in `lines` of the next vertex of the same unknown; NONE after the last one.
+        next: u32,
+        /// 1 for the first vertex of an unknown.
+        is_first: u32,
     }
 
     /// An operation on a level of aggregates, or between the level and the next coarser level. Offsets are in `structure`
@@ -450,7 +476,8 @@ shared_structs! {
         /// The request of the host (StepRequest in src/run/truncated/step.rs).
         forcing: f32,
         least_gain: f32,
-        padding: f32,
+        /// 1 if vertices slide.
+        slides: u32,
         /// Sums of q² - ideal² before and after the step, as pairs of floats.
         here: vec2f,
         there: vec2f,

@@ -138,14 +138,29 @@ impl MeshBuffers {
         gpu: &Gpu,
         positions: &[[f32; 4]],
     ) -> Result<(), GpuError> {
+        self.write_positions_from(gpu, 0, positions)
+    }
+
+    /// Writes the positions of the vertices from number `first` on.
+    pub(crate) fn write_positions_from(
+        &self,
+        gpu: &Gpu,
+        first: usize,
+        positions: &[[f32; 4]],
+    ) -> Result<(), GpuError> {
+        let first = first as u64;
         scoped(&gpu.device, || match self.parts.low_positions {
-            None => write_by_pieces(gpu, &self.positions, 0, bytemuck::cast_slice(positions)),
+            None => {
+                let bytes = bytemuck::cast_slice(positions);
+                write_by_pieces(gpu, &self.positions, first * POSITION, bytes);
+            }
             Some(low) => {
                 let half = |of: fn(&[f32; 4]) -> [f32; 2]| positions.iter().map(of).collect();
                 let (highs, lows): (Vec<_>, Vec<_>) =
                     (half(|p| [p[0], p[1]]), half(|p| [p[2], p[3]]));
-                write_by_pieces(gpu, &self.positions, 0, bytemuck::cast_slice(&highs));
-                write_by_pieces(gpu, &self.positions, low, bytemuck::cast_slice(&lows));
+                let at = first * PART;
+                write_by_pieces(gpu, &self.positions, at, bytemuck::cast_slice(&highs));
+                write_by_pieces(gpu, &self.positions, low + at, bytemuck::cast_slice(&lows));
             }
         })
     }

@@ -120,15 +120,20 @@ impl Curves {
         waiting: Waiting,
     ) -> Result<OnCurves, GpuError> {
         let found: Vec<CurvePlace> = readback::read(gpu, state, self.count, waiting).await?;
+        Ok(self.at(problem, &found))
+    }
+
+    /// Returns the state with the places that were read back.
+    pub(crate) fn at(&self, problem: &Problem, found: &[CurvePlace]) -> OnCurves {
         let mut places = self.set.places(problem);
-        for (place, found) in places.iter_mut().zip(&found) {
+        for (place, found) in places.iter_mut().zip(found) {
             // A vertex that has not moved keeps all digits, of which the device has 48.
             if found.param != pair(place.param) {
                 place.param = unpair(found.param);
             }
             place.presses = found.presses as i8;
         }
-        Ok(self.set.at_places(problem, &places))
+        self.set.at_places(problem, &places)
     }
 
     /// Sets the present state, and the best state if given.

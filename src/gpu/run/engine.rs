@@ -16,7 +16,7 @@ use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::levels::{Fitting, Levels};
 use crate::gpu::run::secants::Secants;
 use crate::gpu::run::stiffness;
-use crate::gpu::run::truncated::Truncated;
+use crate::gpu::run::truncated::{OnDevice, Truncated};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
@@ -405,10 +405,9 @@ impl Engine for GpuEngine<'_> {
         step: &SweepParams,
         request: &StepRequest,
     ) -> Result<Option<NewtonStep>, GpuError> {
-        let Self { gpu, problem, mesh, dispatches, truncated, waiting, .. } = self;
-        // In single precision, steps on strongly stretched triangles do not end a run. The Hessian is not bound in parts, and steps
-        // move no sliding vertices.
-        let is_left = problem.has_local_maps() || mesh.parts.count() > 1 || mesh.curves.is_some();
+        let Self { gpu, problem, start, mesh, dispatches, truncated, waiting, .. } = self;
+        // In single precision, steps on strongly stretched triangles do not end a run. The Hessian is not bound in parts.
+        let is_left = problem.has_local_maps() || mesh.parts.count() > 1;
         if is_left {
             return Ok(None);
         }
@@ -420,6 +419,11 @@ impl Engine for GpuEngine<'_> {
             };
         }
         let Some(truncated) = truncated else { return Ok(None) };
+        if mesh.curves.is_some() {
+            let waiting = *waiting;
+            let mut on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
+            return truncated.sweep_and_slide(&mut on, step, request).await.map(Some);
+        }
         let count = problem.judged_triangles().len() as f64;
         let taken = truncated.sweep_and_step(gpu, dispatches, step, request, count, *waiting);
         Ok(Some(taken.await?))

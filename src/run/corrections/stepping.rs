@@ -9,8 +9,10 @@ use crate::run::objectives::Objectives;
 use crate::run::stop::{MIN_SCALE, NOISE, Stop};
 use crate::run::truncated::Tail;
 
-/// Number of sweeps alone, after steps that stay short, before corrections begin.
+/// Number of sweeps alone, after steps that stay short, before corrections or steps begin again.
 const SWEEPS_AFTER: usize = 5;
+/// Number of times that steps begin, if vertices slide and no guard holds triangles.
+const MOST_BEGINNINGS: u32 = 5;
 
 impl Corrections {
     /// Sweeps once, and takes a Newton step of all vertices. `None`, and nothing happens, on an engine that takes none.
@@ -30,7 +32,9 @@ impl Corrections {
         let above = [history.last(), f].map(|f| f - self.least_objective());
         self.stage = match self.tail.is_stuck(&step, is_whole, above) {
             true => {
-                self.can_step = false;
+                // Corrections leave sliding vertices where they are. A guard that binds shortens all later steps too.
+                let is_guarded = self.step(1.0).shape_guard.is_finite();
+                self.can_step = step.slides && !is_guarded && self.attempts < MOST_BEGINNINGS;
                 Stage::Before { until: history.f().len() + SWEEPS_AFTER }
             }
             false => Stage::Stepping { left },

@@ -61,6 +61,8 @@ pub(crate) struct NewtonStep {
     pub(crate) is_broken: bool,
     /// Whether the model has the curvatures of all curves.
     pub(crate) is_exact: bool,
+    /// Whether vertices slide.
+    pub(crate) slides: bool,
     /// Number of sliding vertices that stayed at a bound.
     pub(crate) held: usize,
     /// Number of iterations of conjugate gradients.

@@ -129,7 +129,11 @@ impl Tail {
         let is_busy = is_whole || before - after >= BUSY * before;
         let more = if step.is_broken { BROKEN } else { 1 };
         self.idle = if is_busy { 0 } else { self.idle + more };
-        self.idle >= MOST_IDLE
+        let is_stuck = self.idle >= MOST_IDLE;
+        if is_stuck {
+            self.idle = 0;
+        }
+        is_stuck
     }
 
     /// Returns the number of steps, and of iterations in all steps.
@@ -173,6 +177,7 @@ mod tests {
         is_curved_down: false,
         is_broken: false,
         is_exact: true,
+        slides: false,
         held: 0,
         iterations: 7,
     };
@@ -229,6 +234,8 @@ mod tests {
         assert!((1..MOST_IDLE).all(|_| !tail.is_stuck(&STEP, false, [1.0, 0.99])));
         let again = tail;
         assert!(tail.is_stuck(&STEP, false, [1.0, 0.99]));
+        // A run that takes steps again later begins to count again.
+        assert!(!tail.is_stuck(&STEP, false, [1.0, 0.99]));
         for (is_whole, after) in [(true, 1.0), (false, 0.5)] {
             let mut tail = again;
             assert!(!tail.is_stuck(&STEP, is_whole, [1.0, after]));

@@ -2,22 +2,23 @@
 
 use wgpu::BufferUsages as Usage;
 
-use super::nest::Nest;
+use super::nest::{Nest, Slides};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{bytes, filled, filled_with_pauses, uniform, zeroed};
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::layouts::{
-    CoarseBindings, FineBindings, HessianBindings, LatticeBindings, SolutionBindings,
-    TrialsBindings,
+    Bindings, CoarseBindings, FineBindings, HessianBindings, LatticeBindings, SlideHessianBindings,
+    SlideSolutionBindings, SolutionBindings, TrialsBindings,
 };
 use crate::gpu::kernels::row::SmoothMetric;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
-    CoarseOp, FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepOp, StepState, WORKGROUP,
+    CoarseOp, FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepLine, StepOp, StepState,
+    WORKGROUP,
 };
-use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::mesh::{Curves, MeshBuffers};
 use crate::gpu::run::dispatches::{Dispatches, params};
 use crate::gpu::run::listing::{Dispatch, Groups, Op, SUMS, TOTALS, coarse_op, uniforms};
 use crate::gpu::scope::scoped;
@@ -37,14 +38,21 @@ pub(super) struct Prepared {
     pub(super) bind_groups: Vec<wgpu::BindGroup>,
     /// Distance between successive uniforms, in bytes.
     pub(super) stride: u32,
-    /// Three lists of dispatches: the Hessian and the levels; an iteration; the trials of one submission and the movement.
+    /// Lists of dispatches: the gradient at sliding vertices; the Hessian and the levels; an iteration; the trials of one
+    /// submission and the movement.
+    pub(super) gradient: Vec<Dispatch>,
     pub(super) set_up: Vec<Dispatch>,
     pub(super) iteration: Vec<Dispatch>,
     pub(super) trials: Vec<Dispatch>,
     pub(super) state: wgpu::Buffer,
-    /// The vectors at the free vertices, and the offset of the coefficients.
-    #[cfg(test)]
-    pub(super) fine: (wgpu::Buffer, usize),
+    /// The vectors at the vertices.
+    pub(super) fine: wgpu::Buffer,
+    /// The unknowns of the sliding vertices.
+    pub(super) lines: wgpu::Buffer,
+    /// The operation on the vertices.
+    pub(super) step: StepOp,
+    /// `None` if no vertex slides.
+    pub(super) slides: Option<Slides>,
 }
 
 /// The bind groups of the dispatches, one of each layout.
@@ -56,6 +64,8 @@ enum Bound {
     Trials,
     Fine,
     Coarse,
+    SlideHessian,
+    SlideSolution,
 }
 
 /// The list of the dispatches of Newton steps.
@@ -66,6 +76,7 @@ pub(super) struct List<'g> {
     listed: u32,
     /// The operation on the free vertices, with the number of invocations left out.
     step: StepOp,
+    gradient: Vec<Dispatch>,
     set_up: Vec<Dispatch>,
     iteration: Vec<Dispatch>,
     trials: Vec<Dispatch>,
@@ -81,15 +92,24 @@ impl<'g> List<'g> {
     ) -> Result<Self, GpuError> {
         // Before the levels, which take longer to make than all other lists.
         check(gpu, problem.ring().len() as u64 * ROW)?;
-        let nest = Nest::new(problem).await;
-        let free = problem.free_count() as u32;
-        let alignment = gpu.device.limits().min_storage_buffer_offset_alignment;
-        let step = step_op(&nest, free, free.next_multiple_of((alignment / PAIR as u32).max(1)));
-        let form = mesh.parts.form();
-        let (set_up, iteration, trials) = (Vec::new(), Vec::new(), Vec::new());
-        let mut list = Self { gpu, form, nest, listed: 0, step, set_up, iteration, trials };
+        let curves = mesh.curves.as_ref().map(Curves::set);
+        let nest = Nest::new(problem, curves).await;
+        let alignment = gpu.device.limits().min_storage_buffer_offset_alignment / PAIR as u32;
+        let step = step_op(&nest, problem, alignment.max(1));
+        let mut list = Self {
+            gpu,
+            form: mesh.parts.form(),
+            nest,
+            listed: 0,
+            step,
+            gradient: Vec::new(),
+            set_up: Vec::new(),
+            iteration: Vec::new(),
+            trials: Vec::new(),
+        };
         let lists = size_of_val(&list.nest.structure[..]) as u64;
-        check(gpu, list.fine_bytes().max(u64::from(list.nest.rows) * ROW).max(lists))?;
+        let rows = u64::from(list.nest.rows).max(list.entries()) * ROW;
+        check(gpu, list.fine_bytes().max(rows).max(lists))?;
         list.list_set_up(SmoothMetric(dispatches.plan.scheme.base())).await?;
         list.list_iteration().await?;
         list.list_trials(problem, dispatches).await?;
@@ -97,8 +117,14 @@ impl<'g> List<'g> {
     }
 
     fn fine_bytes(&self) -> u64 {
-        let StepOp { vector, partials, .. } = self.step;
-        u64::from(VECTORS * vector + partials + StepRequest::MOST_ITERATIONS) * PAIR
+        let StepOp { tangents, vertices, movers, .. } = self.step;
+        u64::from(tangents + movers - vertices) * PAIR
+    }
+
+    /// Returns the number of blocks of the Hessian.
+    fn entries(&self) -> u64 {
+        let triangles = self.nest.slides.as_ref().map_or(0, |slides| slides.triangles);
+        u64::from(self.step.slide_entries + 2 * triangles)
     }
 
     async fn dispatch(
@@ -125,6 +151,26 @@ impl<'g> List<'g> {
     async fn strided(&mut self, kernel: Kernel) -> Result<Dispatch, GpuError> {
         let groups = Groups::Just(self.step.partials / WORKGROUP);
         self.dispatch(kernel, Bound::Solution, groups, Op::Step(self.step)).await
+    }
+
+    /// Returns the dispatch of a kernel on the sliding vertices in `groups`, or none if no vertex slides.
+    async fn of_slides(
+        &mut self,
+        kernel: Kernel,
+        bound: Bound,
+        groups: Groups,
+        is_positive: u32,
+    ) -> Result<Option<Dispatch>, GpuError> {
+        let Some(slides) = &self.nest.slides else { return Ok(None) };
+        let rows = slides.vertices.len() as u32;
+        let op = Op::Step(StepOp { rows, is_positive, ..self.step });
+        self.dispatch(kernel, bound, groups, op).await.map(Some)
+    }
+
+    /// Returns the dispatch of a kernel whose invocations stride over the unknowns of sliding vertices.
+    async fn strided_slides(&mut self, kernel: Kernel) -> Result<Option<Dispatch>, GpuError> {
+        let groups = Groups::Just(self.step.partials / WORKGROUP);
+        self.of_slides(kernel, Bound::SlideSolution, groups, 0).await
     }
 
     /// Returns the dispatch of a kernel in one workgroup.
@@ -156,12 +202,21 @@ impl<'g> List<'g> {
             let kernel = Kernel::FindHessian(metric);
             let hessian = self.dispatch(kernel, Bound::Hessian, Groups::ForRows, op).await?;
             self.set_up.push(hessian);
+            let kernel = Kernel::FindSlideHessian(metric);
+            let slides =
+                self.of_slides(kernel, Bound::SlideHessian, Groups::ForRows, is_positive).await?;
+            self.set_up.extend(slides.clone());
             if is_positive == 1 {
                 let first = self.step(Kernel::SumOverMembers, aggregates).await?;
                 self.set_up.push(first);
                 self.list_levels().await?;
+            } else {
+                self.gradient.extend(slides);
             }
         }
+        let (kernel, bound) = (Kernel::ProjectResidual, Bound::SlideSolution);
+        let projected = self.of_slides(kernel, bound, Groups::ForRows, 0).await?;
+        self.set_up.extend(projected);
         let advance = self.step(Kernel::Advance, aggregates).await?;
         self.set_up.push(advance);
         Ok(())
@@ -211,9 +266,11 @@ impl<'g> List<'g> {
             }
         }
         list.push(self.strided(Kernel::Precondition).await?);
+        list.extend(self.strided_slides(Kernel::PreconditionSlides).await?);
         list.push(self.single(Kernel::BeginIteration).await?);
-        list.push(self.step(Kernel::Turn, self.step.vertices).await?);
+        list.push(self.step(Kernel::Turn, self.step.movers).await?);
         list.push(self.strided(Kernel::Multiply).await?);
+        list.extend(self.strided_slides(Kernel::MultiplySlides).await?);
         list.push(self.single(Kernel::JudgeIteration).await?);
         list.push(self.step(Kernel::Advance, self.nest.op(0).rows).await?);
         self.iteration = list;
@@ -233,7 +290,7 @@ impl<'g> List<'g> {
         let fine = FineOp {
             rows: triangles as u32,
             first: 0,
-            free: self.step.vertices,
+            free: self.step.movers,
             ring_base: 0,
             present_roots: NONE,
             unbroken: NONE,
@@ -258,7 +315,9 @@ impl<'g> List<'g> {
         let op = Op::Fine(movement);
         let movement = self.dispatch(kernel, Bound::Fine, Groups::ForRows, op).await?;
         self.trials.push(begin);
-        for _ in 0..STEP_TRIALS {
+        // The host places sliding vertices before each trial.
+        let trials = if self.nest.slides.is_some() { 1 } else { STEP_TRIALS };
+        for _ in 0..trials {
             self.trials.extend([&objective, &sum, &judge].map(Dispatch::clone));
         }
         self.trials.push(movement);
@@ -273,8 +332,8 @@ impl<'g> List<'g> {
         mesh: &MeshBuffers,
         dispatches: &Dispatches,
     ) -> Result<Prepared, GpuError> {
-        let fine_bytes = self.fine_bytes();
-        let Self { form, nest, listed, step, set_up, iteration, trials, .. } = self;
+        let (fine_bytes, entries) = (self.fine_bytes(), self.entries());
+        let Self { form, nest, listed, step, gradient, set_up, iteration, trials, .. } = self;
         let all = set_up.iter().chain(&iteration).chain(&trials);
         let (stride, ops) = uniforms(gpu, all, listed);
         let structure =
@@ -285,17 +344,20 @@ impl<'g> List<'g> {
             let params =
                 Params { levels_in_plane: 1, ..params(problem, &dispatches.plan, partials) };
             let storage = |label, size: u64| zeroed(gpu, label, size, Usage::STORAGE);
-            let read_in_tests = if cfg!(test) { Usage::COPY_SRC } else { Usage::empty() };
+            let lines = nest.slides.as_ref().map_or(0, |slides| slides.vertices.len());
+            let bytes = (lines.max(1) * size_of::<StepLine>()) as u64;
+            let written = Usage::STORAGE | Usage::COPY_DST;
             let copied = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
             let buffers = Buffers {
                 params: filled(gpu, "step params", &[params], Usage::UNIFORM),
                 ops: filled(gpu, "step operations", &ops, Usage::UNIFORM),
                 structure,
-                entries: storage("Hessian", problem.ring().len() as u64 * ROW),
-                fine: zeroed(gpu, "step vectors", fine_bytes, Usage::STORAGE | read_in_tests),
+                entries: storage("Hessian", entries * ROW),
+                fine: zeroed(gpu, "step vectors", fine_bytes, copied),
                 rows: storage("step rows", u64::from(nest.rows) * ROW),
                 vectors: storage("step sums", u64::from(SUMS + 4 * partials) * PAIR),
                 state: zeroed(gpu, "step state", size_of::<StepState>() as u64, copied),
+                lines: zeroed(gpu, "unknowns of sliding vertices", bytes, written),
                 nothing: storage("no values", PAIR),
             };
             (buffers.bind_groups(gpu, form, mesh, &step), buffers)
@@ -303,12 +365,15 @@ impl<'g> List<'g> {
         Ok(Prepared {
             bind_groups,
             stride,
+            gradient,
             set_up,
             iteration,
             trials,
             state: buffers.state,
-            #[cfg(test)]
-            fine: (buffers.fine, (VECTORS * step.vector + step.partials) as usize),
+            fine: buffers.fine,
+            lines: buffers.lines,
+            step,
+            slides: nest.slides,
         })
     }
 }
@@ -324,6 +389,7 @@ struct Buffers {
     /// The totals of a trial, the state of the search, and the partial sums.
     vectors: wgpu::Buffer,
     state: wgpu::Buffer,
+    lines: wgpu::Buffer,
     /// Stands for values that no kernel reads.
     nothing: wgpu::Buffer,
 }
@@ -337,64 +403,96 @@ impl Buffers {
         mesh: &MeshBuffers,
         step: &StepOp,
     ) -> Vec<wgpu::BindGroup> {
-        let Self { params, ops, structure, entries, fine, rows, vectors, state, nothing } = self;
-        let hessian = HessianBindings {
-            params: params.as_entire_binding(),
-            op: uniform::<StepOp>(ops),
+        let trials = TrialsBindings {
+            params: self.params.as_entire_binding(),
+            vectors: self.vectors.as_entire_binding(),
+            state: self.state.as_entire_binding(),
+        };
+        let coarse = CoarseBindings {
+            params: self.params.as_entire_binding(),
+            op: uniform::<CoarseOp>(&self.ops),
+            structure: self.structure.as_entire_binding(),
+            values: self.nothing.as_entire_binding(),
+            vectors: self.vectors.as_entire_binding(),
+        };
+        vec![
+            bind(gpu, form, self.hessian(mesh)),
+            bind(gpu, form, self.solution(mesh)),
+            bind(gpu, form, self.lattice()),
+            bind(gpu, form, trials),
+            bind(gpu, form, self.along_solution(mesh, step)),
+            bind(gpu, form, coarse),
+            bind(gpu, form, self.slide_hessian(mesh)),
+            bind(gpu, form, self.slide_solution()),
+        ]
+    }
+
+    fn hessian<'b>(&'b self, mesh: &'b MeshBuffers) -> HessianBindings<'b> {
+        HessianBindings {
+            params: self.params.as_entire_binding(),
+            op: uniform::<StepOp>(&self.ops),
             positions: mesh.bind_positions(),
             ring_start: mesh.ring_start.as_entire_binding(),
             ring: mesh.bind_ring(0),
-            structure: structure.as_entire_binding(),
-            entries: entries.as_entire_binding(),
-            fine: fine.as_entire_binding(),
-            rows: rows.as_entire_binding(),
-        };
-        let solution = SolutionBindings {
-            params: params.as_entire_binding(),
-            op: uniform::<StepOp>(ops),
+            structure: self.structure.as_entire_binding(),
+            entries: self.entries.as_entire_binding(),
+            fine: self.fine.as_entire_binding(),
+            rows: self.rows.as_entire_binding(),
+        }
+    }
+
+    fn solution<'b>(&'b self, mesh: &'b MeshBuffers) -> SolutionBindings<'b> {
+        SolutionBindings {
+            params: self.params.as_entire_binding(),
+            op: uniform::<StepOp>(&self.ops),
             ring_start: mesh.ring_start.as_entire_binding(),
             ring: mesh.bind_ring(0),
-            structure: structure.as_entire_binding(),
-            entries: entries.as_entire_binding(),
-            fine: fine.as_entire_binding(),
-            rows: rows.as_entire_binding(),
-            state: state.as_entire_binding(),
-        };
-        let lattice = LatticeBindings {
-            params: params.as_entire_binding(),
-            op: uniform::<LatticeOp>(ops),
-            structure: structure.as_entire_binding(),
-            rows: rows.as_entire_binding(),
-            state: state.as_entire_binding(),
-        };
-        let trials = TrialsBindings {
-            params: params.as_entire_binding(),
-            vectors: vectors.as_entire_binding(),
-            state: state.as_entire_binding(),
-        };
-        vec![
-            gpu.pipelines.bind(&gpu.device, form, hessian),
-            gpu.pipelines.bind(&gpu.device, form, solution),
-            gpu.pipelines.bind(&gpu.device, form, lattice),
-            gpu.pipelines.bind(&gpu.device, form, trials),
-            gpu.pipelines.bind(&gpu.device, form, self.along_solution(mesh, step)),
-            gpu.pipelines.bind(
-                &gpu.device,
-                form,
-                CoarseBindings {
-                    params: params.as_entire_binding(),
-                    op: uniform::<CoarseOp>(ops),
-                    structure: structure.as_entire_binding(),
-                    values: nothing.as_entire_binding(),
-                    vectors: vectors.as_entire_binding(),
-                },
-            ),
-        ]
+            structure: self.structure.as_entire_binding(),
+            entries: self.entries.as_entire_binding(),
+            fine: self.fine.as_entire_binding(),
+            rows: self.rows.as_entire_binding(),
+            state: self.state.as_entire_binding(),
+        }
+    }
+
+    fn lattice(&self) -> LatticeBindings<'_> {
+        LatticeBindings {
+            params: self.params.as_entire_binding(),
+            op: uniform::<LatticeOp>(&self.ops),
+            structure: self.structure.as_entire_binding(),
+            rows: self.rows.as_entire_binding(),
+            state: self.state.as_entire_binding(),
+        }
+    }
+
+    fn slide_hessian<'b>(&'b self, mesh: &'b MeshBuffers) -> SlideHessianBindings<'b> {
+        SlideHessianBindings {
+            params: self.params.as_entire_binding(),
+            op: uniform::<StepOp>(&self.ops),
+            positions: mesh.bind_positions(),
+            structure: self.structure.as_entire_binding(),
+            entries: self.entries.as_entire_binding(),
+            fine: self.fine.as_entire_binding(),
+            lines: self.lines.as_entire_binding(),
+        }
+    }
+
+    fn slide_solution(&self) -> SlideSolutionBindings<'_> {
+        SlideSolutionBindings {
+            params: self.params.as_entire_binding(),
+            op: uniform::<StepOp>(&self.ops),
+            structure: self.structure.as_entire_binding(),
+            entries: self.entries.as_entire_binding(),
+            fine: self.fine.as_entire_binding(),
+            rows: self.rows.as_entire_binding(),
+            lines: self.lines.as_entire_binding(),
+            state: self.state.as_entire_binding(),
+        }
     }
 
     /// Returns the bindings of the kernels that also serve corrections. Here the solution stands for the correction.
     fn along_solution<'b>(&'b self, mesh: &'b MeshBuffers, step: &StepOp) -> FineBindings<'b> {
-        let (vector, length) = (u64::from(step.vector) * PAIR, u64::from(step.vertices) * PAIR);
+        let (vector, length) = (u64::from(step.vector) * PAIR, u64::from(step.movers) * PAIR);
         FineBindings {
             params: self.params.as_entire_binding(),
             op: uniform::<FineOp>(&self.ops),
@@ -409,6 +507,11 @@ impl Buffers {
     }
 }
 
+/// Binds resources for a mesh of the given form.
+fn bind<'b>(gpu: &Gpu, form: MeshForm, bindings: impl Bindings<'b>) -> wgpu::BindGroup {
+    gpu.pipelines.bind(&gpu.device, form, bindings)
+}
+
 /// Returns [`GpuError::Limit`] if a buffer of this number of bytes is larger than a binding.
 fn check(gpu: &Gpu, needed: u64) -> Result<(), GpuError> {
     let limits = gpu.device.limits();
@@ -417,16 +520,21 @@ fn check(gpu: &Gpu, needed: u64) -> Result<(), GpuError> {
     check_limit("max_storage_buffer_binding_size", most, &what, needed)
 }
 
-/// Returns the operation on the free vertices and the first level of aggregates.
-fn step_op(nest: &Nest, vertices: u32, vector: u32) -> StepOp {
+/// Returns the operation on the vertices and the first level of aggregates. Vectors begin at multiples of `alignment`.
+fn step_op(nest: &Nest, problem: &Problem, alignment: u32) -> StepOp {
     let [aggregate_of, member_starts, members] = nest.of_vertices;
     let first = nest.op(0);
+    let (free, all) = (problem.free_count() as u32, problem.positions().len() as u32);
+    let movers = if nest.slides.is_some() { all } else { free };
+    let vector = movers.next_multiple_of(alignment);
+    let partials = objective_invocations(free as usize);
+    let of_slides = |of: fn(&Slides) -> u32| nest.slides.as_ref().map_or(0, of);
     StepOp {
-        rows: vertices,
-        vertices,
+        rows: free,
+        vertices: free,
         ring_base: 0,
         vector,
-        partials: objective_invocations(vertices as usize),
+        partials,
         is_positive: 0,
         aggregate_of,
         member_starts,
@@ -439,7 +547,11 @@ fn step_op(nest: &Nest, vertices: u32, vector: u32) -> StepOp {
         right: first.right,
         step: first.step,
         solution: first.solution,
-        padding: 0,
-        more_padding: [0; 2],
+        movers,
+        corner_starts: of_slides(|slides| slides.corner_starts),
+        corners: of_slides(|slides| slides.corners),
+        slide_entries: problem.ring().len() as u32,
+        tangents: VECTORS * vector + partials + StepRequest::MOST_ITERATIONS,
+        padding: [0; 2],
     }
 }

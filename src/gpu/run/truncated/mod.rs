@@ -5,6 +5,7 @@
 
 mod list;
 mod nest;
+mod sliding;
 #[cfg(test)]
 mod tests;
 
@@ -22,12 +23,13 @@ use crate::layout::Problem;
 use crate::run::SweepParams;
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
 use list::{List, Prepared};
+pub(crate) use sliding::OnDevice;
 
 /// Number of iterations in the first submission of a run, and the limits of this number in later submissions.
 const FIRST_ITERATIONS: u32 = 8;
 const ITERATIONS: [u32; 2] = [4, 32];
-/// Number of iterations in a submission beyond the number that the last step took. With four, a run on 20,000 vertices took a fifth
-/// more dispatches and no fewer submissions. An iteration after the end of the step takes a twentieth of the time.
+/// Number of iterations in a submission beyond the number that the last step took. With four, a run on 20,000 vertices took a fifth more
+/// dispatches and no fewer submissions. An iteration after the end of the step takes a twentieth of the time.
 const MORE: u32 = 2;
 
 /// A mesh on a device prepared for Newton steps.
@@ -63,8 +65,7 @@ impl Truncated {
         count: f64,
         waiting: Waiting,
     ) -> Result<NewtonStep, GpuError> {
-        let [least, most] = ITERATIONS;
-        let begin = begin(request, count);
+        let begin = begin(request, count, false);
         let Prepared { set_up, iteration, trials, state: buffer, .. } = &self.prepared;
         scoped(&gpu.device, || {
             gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&begin));
@@ -86,8 +87,7 @@ impl Truncated {
             let states = copied.values(waiting).await?;
             state =
                 *states.first().ok_or_else(|| GpuError::Lost("the readback is empty".into()))?;
-            let more = if state.is_solved == 0 { 0 } else { MORE };
-            self.expected = (state.iterations + more).clamp(least, most);
+            self.expected = expected_after(&state);
         }
         Ok(taken(&state, count))
     }
@@ -107,14 +107,22 @@ impl Truncated {
         count: usize,
     ) -> Result<(StepState, Vec<[f32; 2]>), GpuError> {
         let state = readback::read(gpu, &self.prepared.state, 1, Waiting::Block).await?[0];
-        let (fine, at) = &self.prepared.fine;
+        let Prepared { fine, step, .. } = &self.prepared;
+        let at = (step.tangents - StepRequest::MOST_ITERATIONS) as usize;
         let vectors = readback::read(gpu, fine, at + count, Waiting::Block).await?;
-        Ok((state, vectors[*at..].to_vec()))
+        Ok((state, vectors[at..].to_vec()))
     }
 }
 
-/// Returns the state at the begin of a step.
-fn begin(request: &StepRequest, count: f64) -> StepState {
+/// Returns the number of iterations that the submission after a state holds.
+fn expected_after(state: &StepState) -> u32 {
+    let [least, most] = ITERATIONS;
+    let more = if state.is_solved == 0 { 0 } else { MORE };
+    (state.iterations + more).clamp(least, most)
+}
+
+/// Returns the state at the begin of a step. `slides` tells whether vertices slide.
+fn begin(request: &StepRequest, count: f64, slides: bool) -> StepState {
     let node = ErrorBound::BELOW * request.least_ritz;
     let rough = ErrorBound::BELOW * StepRequest::ROUGH_RITZ;
     StepState {
@@ -139,7 +147,7 @@ fn begin(request: &StepRequest, count: f64) -> StepState {
         rough_gamma: rough.recip() as f32,
         forcing: request.forcing as f32,
         least_gain: (request.least_gain * request.objective * count) as f32,
-        padding: 0.0,
+        slides: slides.into(),
         here: [0.0; 2],
         there: [0.0; 2],
     }
@@ -161,6 +169,7 @@ fn taken(state: &StepState, count: f64) -> NewtonStep {
         is_curved_down: state.is_curved_down != 0,
         is_broken: state.is_broken != 0,
         is_exact: true,
+        slides: state.slides != 0,
         held: 0,
         iterations: state.iterations,
     }

@@ -3,10 +3,11 @@
 use crate::gpu::kernels::uniforms::LatticeOp;
 use crate::layout::Problem;
 use crate::parallel::pace::pause;
-use crate::run::multilevel::Aggregates;
+use crate::run::multilevel::{Aggregates, NONE};
 use crate::run::truncated::aggregation::{MOST_DEGREES, Members, Pattern};
+use crate::slide::{Movers, OnCurves};
 
-/// The aggregates of the free vertices, and those of all coarser levels.
+/// The aggregates of the vertices that move, and those of all coarser levels.
 #[derive(Default)]
 pub(super) struct Nest {
     /// The operation on each level, with zeros in place of the next coarser level.
@@ -15,27 +16,48 @@ pub(super) struct Nest {
     pub(super) structure: Vec<u32>,
     /// Number of four-component rows of all levels. A block of a matrix has four rows.
     pub(super) rows: u32,
-    /// Offsets in `structure` of the aggregates of the free vertices: aggregate, starts and members.
+    /// Offsets in `structure` of the aggregates of the vertices: aggregate, starts and members.
     pub(super) of_vertices: [u32; 3],
+    /// `None` if no vertex slides.
+    pub(super) slides: Option<Slides>,
+}
+
+/// The sliding vertices of a mesh, and the triangles around them.
+#[derive(Clone)]
+pub(super) struct Slides {
+    /// The sliding vertices in the order of [`OnCurves::tangents`].
+    pub(super) vertices: Vec<u32>,
+    /// Offset in the structure of the first triangle of each vertex that is not free.
+    pub(super) corner_starts: u32,
+    /// Offset in the structure of the other two vertices of each triangle.
+    pub(super) corners: u32,
+    /// Number of triangles around sliding vertices, counted once for each of these vertices.
+    pub(super) triangles: u32,
 }
 
 impl Nest {
-    /// Makes the levels from the connectivity of a mesh. The coarsest level has few aggregates, usually one.
-    pub(super) async fn new(problem: &Problem) -> Self {
-        let free = problem.free_count();
-        let degree = |v: usize| problem.ring_range(v as u32).len();
-        let neighbors = |v: usize| {
-            let is_near = move |&&other: &&u32| {
-                (other as usize) < free && degree(v) * degree(other as usize) <= MOST_DEGREES
+    /// Makes the levels from the connectivity of a mesh, with the vertices that slide. The coarsest level has few aggregates,
+    /// usually one.
+    pub(super) async fn new(problem: &Problem, curves: Option<&OnCurves>) -> Self {
+        let movers = Movers::new(problem, curves);
+        let degree = |mover: usize| movers.neighbors(mover).len();
+        let near = |mover: usize| movers.neighbors(mover).iter().map(|&v| movers.of(v));
+        let neighbors = |mover: usize| {
+            let is_near = move |&other: &u32| {
+                other != NONE && degree(mover) * degree(other as usize) <= MOST_DEGREES
             };
-            problem.ring_of(v as u32).iter().filter(is_near).copied()
+            near(mover).filter(is_near)
         };
-        let first = Members::new(Aggregates::new(free, neighbors).await).await;
+        let mut first = Members::new(Aggregates::new(movers.count(), neighbors).await).await;
         pause().await;
-        let mut pattern = first.pattern(|v| problem.ring_of(v).iter().copied());
+        let mut pattern = first.pattern(|mover| near(mover as usize));
         let mut nest = Self::default();
+        if let Some(curves) = curves {
+            first = of_all_vertices(problem, &movers, &first);
+            nest.slides = Some(nest.place_slides(problem, curves));
+        }
         nest.of_vertices = nest.place_members(&first);
-        drop(first);
+        drop((first, movers));
         loop {
             pause().await;
             match pattern.joined(1).await {
@@ -95,6 +117,25 @@ impl Nest {
         at
     }
 
+    fn place_slides(&mut self, problem: &Problem, curves: &OnCurves) -> Slides {
+        let free = problem.free_count();
+        let mut fans: Vec<&[[u32; 3]]> = vec![&[]; problem.positions().len() - free];
+        let mut vertices = Vec::new();
+        for fan in curves.fans() {
+            vertices.push(fan.own());
+            fans[fan.own() as usize - free] = fan.triangles();
+        }
+        let mut starts = vec![0];
+        let mut corners = Vec::new();
+        for fan in fans {
+            corners.extend(fan.iter().flat_map(|&[_, a, b]| [a, b]));
+            starts.push(corners.len() as u32 / 2);
+        }
+        let triangles = starts[starts.len() - 1];
+        let (corner_starts, corners) = (self.place(&starts), self.place(&corners));
+        Slides { vertices, corner_starts, corners, triangles }
+    }
+
     fn place_members(&mut self, members: &Members) -> [u32; 3] {
         [&members.group, &members.start, &members.members].map(|list| self.place(list))
     }
@@ -115,6 +156,16 @@ impl Nest {
         }
         op
     }
+}
+
+/// Returns aggregates with vertices of the problem in place of movers, and with [`NONE`] as the aggregate of fixed vertices.
+fn of_all_vertices(problem: &Problem, movers: &Movers<'_>, aggregates: &Members) -> Members {
+    let mut group = vec![NONE; problem.positions().len()];
+    for (mover, &aggregate) in (0..).zip(&aggregates.group) {
+        group[movers.vertex(mover) as usize] = aggregate;
+    }
+    let members = aggregates.members.iter().map(|&mover| movers.vertex(mover)).collect();
+    Members { group, start: aggregates.start.clone(), members }
 }
 
 /// Takes room from a total. Returns the offset of the room.
@@ -139,7 +190,7 @@ mod tests {
         let triangles =
             cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]).collect();
         let problem = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap().1;
-        let nest = now(Nest::new(&problem));
+        let nest = now(Nest::new(&problem, None));
         assert!(nest.depth() >= 4);
         assert_eq!(nest.op(nest.depth() - 1).rows, 1);
         let ops: Vec<_> = (0..nest.depth()).map(|level| nest.op(level)).collect();
