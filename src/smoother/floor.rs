@@ -148,6 +148,19 @@ impl Floor<'_> {
         })
     }
 
+    /// Returns the worst shapes that the rounds aim at: those before the run. A measure that was improved stays as good as it
+    /// has become.
+    fn aim(&self, options: &Options) -> WorstShapes {
+        let [before, swept] = self.worst;
+        match options.improve_worst {
+            Some(WorstBy::Imr) => WorstShapes { imr: before.imr.min(swept.imr), ..before },
+            Some(WorstBy::MinAngle) => {
+                WorstShapes { cotangent: before.cotangent.min(swept.cotangent), ..before }
+            }
+            _ => before,
+        }
+    }
+
     /// Does the rounds of [`raise`](Self::raise).
     #[allow(clippy::too_many_arguments)]
     async fn descend(
@@ -161,15 +174,7 @@ impl Floor<'_> {
         mut goes_on: impl FnMut() -> bool,
     ) {
         let topology = &self.smoother.topology;
-        let [before, swept] = self.worst;
-        // A measure that was improved stays as good as it has become.
-        let aim = match options.improve_worst {
-            Some(WorstBy::Imr) => WorstShapes { imr: before.imr.min(swept.imr), ..before },
-            Some(WorstBy::MinAngle) => {
-                WorstShapes { cotangent: before.cotangent.min(swept.cotangent), ..before }
-            }
-            _ => before,
-        };
+        let aim = self.aim(options);
         let penalties = Penalties::new(aim);
         let number = problem.numbers(points.len());
         let mut positions = paced::copied(positions).await;

@@ -23,6 +23,17 @@ struct Start {
     curves: Option<OnCurves>,
 }
 
+/// Returns the options of a search run by a metric.
+fn to_convergence(options: &Options, metric: Metric) -> Options {
+    Options {
+        scheme: Scheme::from(metric),
+        stopping: Stopping::Tolerance(1e-8),
+        max_sweeps: 5000,
+        guard: options.guard,
+        ..Options::default()
+    }
+}
+
 impl Smoother<'_> {
     /// Returns the desired objective of a goal over the triangles by which the run is judged. If the goal has no desired
     /// objective, runs to convergence determine it. `None` if the observer ended a search run.
@@ -43,13 +54,7 @@ impl Smoother<'_> {
             return Ok(Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 }));
         }
         let base = options.scheme.base();
-        let full = |metric: Metric| Options {
-            scheme: Scheme::from(metric),
-            stopping: Stopping::Tolerance(1e-8),
-            max_sweeps: 5000,
-            guard: options.guard,
-            ..Options::default()
-        };
+        let full = |metric| to_convergence(options, metric);
         let start = problem.positions();
         let curves = self.on_curves(options);
         let from_start = Start { positions: start.to_vec(), curves };

@@ -5,19 +5,19 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::kernels::uniforms::{CoarseOp, FineOp, NO_GUARD, TransferOp, WORKGROUP};
+use crate::gpu::kernels::uniforms::{CoarseOp, FineOp, NO_GUARD};
 use crate::gpu::mesh::MeshBuffers;
-use crate::gpu::mesh::RingPart;
 use crate::gpu::run::dispatches::Dispatches;
+use crate::gpu::run::level_list::LevelList;
 use crate::gpu::run::listing::{
-    Bound, Dispatch, Groups, Listing, Op, SUMS, TOTALS, Uploaded, coarse_op, encode, uniforms,
+    Bound, Dispatch, Groups, Listing, Op, TOTALS, Uploaded, coarse_op, encode, uniforms,
 };
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::{Metric, Smoothing};
 use crate::parallel::pace::pause;
 use crate::run::EXCLUSION_PASSES;
-use crate::run::multilevel::{Hierarchy, NONE};
+use crate::run::multilevel::Hierarchy;
 
 /// A hierarchy bound to a mesh on the device. The methods encode corrections and submit nothing.
 pub(crate) struct Levels {
@@ -73,110 +73,24 @@ impl Levels {
             gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form())?;
             pause().await;
         }
-        let mut listing = Listing::new(gpu, mesh.parts.form());
-        let partials = objective_invocations(problem.judged_triangles().len());
-        let partial_sums = listing.vector(4 * partials as usize);
-
-        let (values, [roots, diagonal]) =
-            listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
-        let (of_page, [aggregate_of]) = listing.structure.place([hierarchy.aggregate_of()])?;
-        let (members_page, [member_starts, members]) =
-            listing.structure.place([hierarchy.member_starts(), hierarchy.members()])?;
-        let aggregates = hierarchy.member_starts().len() as u32 - 1;
-        let right = listing.vector(aggregates as usize);
         let free = problem.free_count() as u32;
-        let present_roots = match fitting {
-            Fitting::ByHost => NONE,
-            Fitting::EachTime => listing.vector(problem.free_count()),
-        };
-        let fine = FineOp {
-            rows: free,
-            first: 0,
-            free,
-            ring_base: 0,
-            present_roots,
-            unbroken: SUMS,
-            partial_sums,
-            length: 0.0,
-            shape_guard: guard,
-            sharpness: 0,
-            inverse_penalty_guard: 0.0,
-            padding: 0,
-        };
-        let transfer = TransferOp {
-            rows: free,
-            first: 0,
-            free,
-            ring_base: 0,
-            aggregate_of,
-            member_starts,
-            members,
-            roots,
-            diagonal,
-            present_roots,
-            right,
-            solution: NONE,
-        };
-        // List an operation on the free vertices, with one dispatch for each part of the one-rings.
-        let rings = || mesh.parts.rings.iter().enumerate();
-        let fine_by_rings = |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel| {
-            for (part, RingPart { vertices, entries }) in rings() {
-                let (rows, first) = (vertices.end - vertices.start, vertices.start);
-                let op = Op::Fine(FineOp { rows, first, ring_base: entries.start, ..fine });
-                let bound = Bound::Fine { part };
-                list.push(listing.step(kernel.clone(), bound, Groups::ForRows, op)?);
-            }
-            Ok::<(), GpuError>(())
-        };
-        let transfer_by_rings =
-            |listing: &mut Listing<'_>, list: &mut Vec<_>, kernel: Kernel, op: TransferOp| {
-                for (part, RingPart { vertices, entries }) in rings() {
-                    let (rows, first) = (vertices.end - vertices.start, vertices.start);
-                    let op = TransferOp { rows, first, ring_base: entries.start, ..op };
-                    let bound = Bound::Transfer { part, structure: of_page, values };
-                    let op = Op::Transfer(op);
-                    list.push(listing.step(kernel.clone(), bound, Groups::ForRows, op)?);
-                }
-                Ok::<(), GpuError>(())
-            };
-
-        let mut find_gradient = Vec::new();
-        fine_by_rings(&mut listing, &mut find_gradient, Kernel::Gradient(metric))?;
-        let mut correction = Vec::new();
-        transfer_by_rings(&mut listing, &mut correction, Kernel::SmoothGradient, transfer)?;
-        let op = Op::Transfer(TransferOp { rows: aggregates, ..transfer });
-        let bound = Bound::Transfer { part: 0, structure: members_page, values };
-        correction.push(listing.step(Kernel::Restrict, bound, Groups::ForRows, op)?);
-        let solution = listing.solve(hierarchy.levels(), right, &mut correction)?;
-        let op = TransferOp { solution, ..transfer };
-        transfer_by_rings(&mut listing, &mut correction, Kernel::Prolong, op)?;
-
-        let mut left_out = Vec::new();
-        let (whole, everywhere) = (Bound::Fine { part: 0 }, Op::Fine(fine));
-        if has_guard {
-            // Between V-cycles, `vectors` from SUMS on holds nothing that is still needed.
-            listing.vectors = listing.vectors.max(SUMS + free);
-            fine_by_rings(&mut listing, &mut left_out, Kernel::FindBroken)?;
-            let kernel = Kernel::ExcludeBroken;
-            left_out.push(listing.step(kernel, whole, Groups::ForRows, everywhere)?);
-        }
-
-        let mut objective = Vec::new();
-        for (part, triangles) in mesh.parts.triangles.iter().enumerate() {
-            let (rows, first) = (triangles.end - triangles.start, triangles.start);
-            let groups = Groups::Just(partials / WORKGROUP);
-            objective.push(listing.step(
-                Kernel::ObjectiveAlongCorrection(metric),
-                Bound::Fine { part },
-                groups,
-                Op::Fine(FineOp { rows, first, ..fine }),
-            )?);
-        }
-        let op = Op::Coarse(CoarseOp { partial_sums, totals: TOTALS, ..coarse_op(partials) });
+        let partials = objective_invocations(problem.judged_triangles().len());
+        let listing = Listing::new(gpu, mesh.parts.form());
+        let is_fitted_each_time = matches!(fitting, Fitting::EachTime);
+        let mut list =
+            LevelList::new(listing, mesh, hierarchy, is_fitted_each_time, free, partials)?;
+        list.fine.shape_guard = guard;
+        let find_gradient = list.gradient(metric)?;
+        let correction = list.correction()?;
+        let left_out = if has_guard { list.left_out()? } else { Vec::new() };
+        let objective = list.objective(metric, partials)?;
+        let LevelList { mut listing, fine, .. } = list;
+        let (partial_sums, totals) = (fine.partial_sums, TOTALS);
+        let op = Op::Coarse(CoarseOp { partial_sums, totals, ..coarse_op(partials) });
         let bound = Bound::Coarse { structure: 0, values: 0 };
         let sum = listing.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
-        let kernel = Kernel::MoveAlongCorrection;
-        let movement = listing.step(kernel, whole, Groups::ForRows, everywhere)?;
+        let (kernel, whole) = (Kernel::MoveAlongCorrection, Bound::Fine { part: 0 });
+        let movement = listing.step(kernel, whole, Groups::ForRows, Op::Fine(fine))?;
 
         let limits = gpu.device.limits();
         let what = || "the vectors of the coarse levels".to_owned();

@@ -2,6 +2,7 @@
 
 mod dispatches;
 mod engine;
+mod level_list;
 mod levels;
 mod listing;
 mod pages;

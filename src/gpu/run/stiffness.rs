@@ -35,27 +35,7 @@ pub(crate) async fn roots(
     pause().await;
     let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
     let stride = (size_of::<FineOp>() as u32).next_multiple_of(alignment);
-    let mut bytes = vec![0_u8; stride as usize * mesh.parts.rings.len()];
-    for (RingPart { vertices, entries }, to) in
-        mesh.parts.rings.iter().zip(bytes.chunks_exact_mut(stride as usize))
-    {
-        let op = FineOp {
-            rows: vertices.end - vertices.start,
-            first: vertices.start,
-            free,
-            ring_base: entries.start,
-            present_roots: NONE,
-            unbroken: 0,
-            partial_sums: 0,
-            length: 0.0,
-            shape_guard: NO_GUARD as f32,
-            sharpness: 0,
-            inverse_penalty_guard: 0.0,
-            padding: 0,
-        };
-        let op = op.smoothed(smoothing);
-        to[..size_of::<FineOp>()].copy_from_slice(bytemuck::bytes_of(&op));
-    }
+    let bytes = operations(&mesh.parts.rings, stride, free, smoothing);
     let (ops, found, unused) = scoped(&gpu.device, || {
         let ops = filled(gpu, "stiffness steps", &bytes, Usage::UNIFORM);
         let size = u64::from(free) * size_of::<[f32; 2]>() as u64;
@@ -91,4 +71,30 @@ pub(crate) async fn roots(
         readback::submit_and_copy(gpu, encode, &found, free as usize)?;
     let roots = roots.values(waiting).await?;
     Ok(paced::collect(roots.len(), |v| roots[v][0]).await)
+}
+
+/// Returns the operations of all parts of the one-rings as bytes, `stride` bytes apart.
+fn operations(rings: &[RingPart], stride: u32, free: u32, smoothing: Smoothing) -> Vec<u8> {
+    let mut bytes = vec![0_u8; stride as usize * rings.len()];
+    for (RingPart { vertices, entries }, to) in
+        rings.iter().zip(bytes.chunks_exact_mut(stride as usize))
+    {
+        let op = FineOp {
+            rows: vertices.end - vertices.start,
+            first: vertices.start,
+            free,
+            ring_base: entries.start,
+            present_roots: NONE,
+            unbroken: 0,
+            partial_sums: 0,
+            length: 0.0,
+            shape_guard: NO_GUARD as f32,
+            sharpness: 0,
+            inverse_penalty_guard: 0.0,
+            padding: 0,
+        };
+        let op = op.smoothed(smoothing);
+        to[..size_of::<FineOp>()].copy_from_slice(bytemuck::bytes_of(&op));
+    }
+    bytes
 }
