@@ -2,6 +2,7 @@
 //! device, and on the CPU after a failure of the device, or once corrections that the device refused are tried again. A
 //! run with targets on a strongly stretched mesh is done on the CPU alone.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 use glam::DVec2;
@@ -42,11 +43,11 @@ pub(crate) struct Spec<'s> {
 }
 
 /// A state to which a run can return, between two sweeps.
-struct Point {
+struct Point<'s> {
     /// Tracked objectives before the first sweep and after each sweep.
     log: Vec<Objectives>,
-    /// Normalized positions of all vertices after the last sweep.
-    positions: Vec<DVec2>,
+    /// Normalized positions of all vertices after the last sweep. Those of a run's start belong to the caller.
+    positions: Cow<'s, [DVec2]>,
     /// The sliding vertices at these positions.
     curves: Option<OnCurves>,
 }
@@ -62,7 +63,7 @@ pub(crate) struct Live<'s> {
     /// Present session. `None` before the first sweep, and once the device has failed.
     session: Option<Session<AnyEngine<'s>>>,
     /// State at the start of the run, or at the end of the latest stage that moved vertices.
-    last: Point,
+    last: Point<'s>,
     /// The sliding vertices at the best positions so far.
     curves: Option<OnCurves>,
     /// Tracked objectives of the given mesh, if the run begins at means of neighbors instead.
@@ -96,7 +97,7 @@ impl<'s> Live<'s> {
     pub(crate) async fn new(
         spec: Spec<'s>,
         mut plan: Plan,
-        from: &[DVec2],
+        from: &'s [DVec2],
         resumed: Option<&Checkpoint>,
         checkpointer: &mut Checkpointer<'_>,
     ) -> Result<Self, SmoothError> {
@@ -107,12 +108,12 @@ impl<'s> Live<'s> {
             true => relieved(spec.problem, &problem, &plan, from).await?,
             false => None,
         };
-        let (from, given) = match &relief {
-            Some(Relief { positions, given }) => (&positions[..], Some(*given)),
-            None => (from, None),
+        let (from, given) = match relief {
+            Some(Relief { positions, given }) => (Cow::Owned(positions), Some(given)),
+            None => (Cow::Borrowed(from), None),
         };
-        if relief.is_some() {
-            problem = with_local_maps(&spec, from).await;
+        if given.is_some() {
+            problem = with_local_maps(&spec, &from).await;
         }
         let is_for_cpu_alone = problem.is_for_cpu_alone();
         let (device, opened) = match resumed {
@@ -121,13 +122,15 @@ impl<'s> Live<'s> {
                 (spec.device.filter(|_| is_on_device), about.opened.clone())
             }
             None if is_for_cpu_alone => (None, None),
-            None => opened(&spec, &plan, from).await?,
+            None => opened(&spec, &plan, &from).await?,
         };
         checkpointer.last = resumed.map(|resumed| resumed.saved.clone());
         let opening_sweeps = opened.as_ref().map_or(0, DoublePrelude::sweeps);
         plan.stop.max_sweeps = plan.stop.max_sweeps.saturating_sub(opening_sweeps);
-        let start = opened.as_ref().map_or(from, |opened| &opened.positions);
-        let positions = paced::copied(start).await;
+        let positions = match &opened {
+            Some(opened) => Cow::Owned(paced::copied(&opened.positions).await),
+            None => from,
+        };
         let on_cpu_from = match resumed {
             Some(Checkpoint { about, .. }) => about.on_cpu_from,
             None => (spec.device.is_some() && device.is_none()).then_some(0),
@@ -140,7 +143,7 @@ impl<'s> Live<'s> {
         let last = match period {
             Some((Checkpoint { saved, .. }, period)) => {
                 let log = saved.log[..=period.began as usize].to_vec();
-                Point { log, positions: period.before.clone(), curves: None }
+                Point { log, positions: period.before.clone().into(), curves: None }
             }
             None => Point { log: Vec::new(), positions, curves: spec.curves.cloned() },
         };
@@ -301,14 +304,15 @@ impl<'s> Live<'s> {
             if let (Some(curves), Some(best)) = (&mut curves, best) {
                 curves.set_params(&best);
             }
-            self.last = Point { log, positions: engine.best.unwrap_or(engine.positions), curves };
+            let positions = engine.best.unwrap_or(engine.positions).into();
+            self.last = Point { log, positions, curves };
         }
         if self.last.log.is_empty() {
             self.last.log = vec![objectives(&self.problem, &self.plan, &self.last.positions).await];
         }
         self.session = None;
         self.curves.clone_from(&self.last.curves);
-        self.last.positions.clone()
+        self.last.positions.to_vec()
     }
 
     /// Records the changes of the stages after sweep `from`: the positions of vertices and the targets. Sends the changes to the engine.
@@ -325,7 +329,7 @@ impl<'s> Live<'s> {
         checkpointer.last = None;
         self.last = Point {
             log: session.history().log().to_vec(),
-            positions: positions.to_vec(),
+            positions: positions.to_vec().into(),
             curves: self.curves.clone(),
         };
         let mut changed = || -> Result<(), GpuError> {

@@ -52,7 +52,8 @@ impl Truncated {
         }
     }
 
-    /// Takes a Newton step from `positions`. Sliding vertices move along `curves`. `moved` is scratch memory.
+    /// Takes a Newton step from `positions`. Sliding vertices move along `curves`. `moved` is scratch memory, freed while the
+    /// step is computed.
     pub(super) async fn step(
         &mut self,
         sweep: &SweepParams,
@@ -62,6 +63,7 @@ impl Truncated {
         moved: &mut Vec<DVec2>,
         request: &StepRequest,
     ) -> NewtonStep {
+        *moved = Vec::new();
         let metric: Metric = sweep.metric;
         let count = problem.judged_triangles().len() as f64;
         let swept = mean_excess(metric, problem, positions).await;
@@ -122,7 +124,6 @@ impl Truncated {
         moved: &mut Vec<DVec2>,
     ) -> (StepSearch, Option<Params>) {
         let free = problem.free_count();
-        moved.clear();
         moved.extend_from_slice(if curves.is_some() { positions } else { &positions[..free] });
         let (mut params, mut accepted) = (None, None);
         while let Some(length) = search.next() {
