@@ -2,16 +2,16 @@
 //!
 //! Vertices are numbered aggregate by aggregate, and a block has the vertices of successive aggregates. A triangle belongs
 //! to the block of its first corner that moves. Its other corners may belong to other blocks, so each block has a local list of
-//! vertices. The list has own vertices first, then vertices of other blocks, then fixed vertices. Sums over triangles are formed in the local lists, and the
-//! own vertices of a block then receive the sums of other blocks in a fixed order. So the sums have equal bits on any
-//! number of threads.
+//! vertices. The list has own vertices first, then vertices of other blocks, then fixed vertices. One task forms the sums over
+//! the triangles of a block, in a local list, and copies those at vertices of other blocks to a shared list. The other blocks
+//! then add them to their own sums in a fixed order. So the sums have equal bits on any number of threads.
 
 use std::ops::Range;
 
 use crate::layout::Problem;
 use crate::parallel::paced;
 use crate::run::multilevel::{Aggregates, NONE};
-use crate::run::truncated::aggregation::MOST_DEGREES;
+use crate::run::truncated::aggregation::{MOST_DEGREES, Members, Pattern};
 use crate::slide::Movers;
 
 /// Number of vertices from which on a block ends. The vectors of a block then fit the first cache of a processor.
@@ -56,22 +56,24 @@ pub(super) struct Block {
     pub(super) slides: Vec<u32>,
     /// The corners of each triangle, counter-clockwise, as indices of the local list.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The vertices of this block in the local lists of other blocks.
+    /// The sums of other blocks at own vertices, in the order of the own vertices.
     pub(super) received: Vec<Received>,
-    /// Range of the local list in the local lists of all blocks.
-    pub(super) locals: Range<usize>,
+    /// Range of the shared list: a place for each vertex of another block in the local list.
+    pub(super) shared: Range<usize>,
 }
 
-/// A vertex of a block in the local list of another block.
+/// A sum that another block has formed at an own vertex of a block.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Received {
-    /// Index in the local lists of all blocks.
-    pub(super) from: u32,
     /// Index among the own vertices of the block.
-    pub(super) to: u32,
+    to: u32,
+    /// Index in the shared list.
+    from: u32,
 }
 
 impl Blocks {
-    pub(super) async fn new(problem: &Problem, movers: &Movers<'_>) -> Self {
+    /// Divides a mesh. Returns its blocks, and the pattern of the first level's matrix.
+    pub(super) async fn new(problem: &Problem, movers: &Movers<'_>) -> (Self, Pattern) {
         let count = movers.count();
         let degree = |mover: usize| movers.neighbors(mover).len();
         let neighbors = |mover: usize| {
@@ -80,9 +82,10 @@ impl Blocks {
             };
             movers.neighbors(mover).iter().map(|&v| movers.of(v)).filter(is_near)
         };
-        let mut aggregates = Aggregates::new(count, neighbors).await;
-        aggregates.add_lone();
-        let (group_start, mut order) = aggregates.members().await;
+        let members = Members::new(Aggregates::new(count, neighbors).await).await;
+        let all = |mover: u32| movers.neighbors(mover as usize).iter().map(|&v| movers.of(v));
+        let pattern = members.pattern(all);
+        let Members { start: group_start, members: mut order, .. } = members;
         let mut rank = vec![NONE; count];
         for (new, &mover) in (0..).zip(&order) {
             rank[mover as usize] = new;
@@ -100,18 +103,13 @@ impl Blocks {
             Block::new(own, groups, &order, &ranks, list)
         });
         let mut blocks = made.await;
-        receive(&mut blocks, &block_of);
-        Self { order, group_start, slides_at, blocks }
+        share(&mut blocks, &block_of);
+        (Self { order, group_start, slides_at, blocks }, pattern)
     }
 
-    /// Returns the length of the local lists of all blocks together.
-    pub(super) fn locals(&self) -> usize {
-        self.blocks.last().map_or(0, |block| block.locals.end)
-    }
-
-    /// Returns the number of aggregates.
-    pub(super) fn groups(&self) -> usize {
-        self.group_start.len() - 1
+    /// Returns a shared list of zeros: a sum for each vertex of another block in the local list of a block.
+    pub(super) fn shared<X: Copy + Default, const N: usize>(&self) -> Vec<[X; N]> {
+        vec![[X::default(); N]; self.blocks.last().map_or(0, |block| block.shared.end)]
     }
 
     /// Splits a list over the vertices at the ends of the blocks.
@@ -119,12 +117,12 @@ impl Blocks {
         split(list, self.blocks.iter().map(|block| block.own.len()))
     }
 
-    /// Splits a list over the local lists at the ends of the blocks.
-    pub(super) fn split_locals<'a, X>(
+    /// Splits a shared list at the ends of the blocks.
+    pub(super) fn split_shared<'a, X>(
         &'a self,
         list: &'a mut [X],
     ) -> impl Iterator<Item = &'a mut [X]> {
-        split(list, self.blocks.iter().map(|block| block.locals.len()))
+        split(list, self.blocks.iter().map(|block| block.others.len()))
     }
 
     /// Splits a list over the aggregates at the ends of the blocks.
@@ -168,11 +166,16 @@ fn triangles_of_blocks(
     block_of: &[u32],
     count: usize,
 ) -> Vec<Vec<[u32; 3]>> {
-    let mut lists = vec![Vec::new(); count];
-    for triangle in problem.triangles() {
+    let block = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|v| ranks.of(v));
-        if let Some(&block) = block_of.get(a.min(b).min(c) as usize) {
-            lists[block as usize].push(*triangle);
+        block_of.get(a.min(b).min(c) as usize).map(|&block| block as usize)
+    };
+    let mut counts = vec![0; count];
+    problem.triangles().iter().filter_map(block).for_each(|block| counts[block] += 1);
+    let mut lists: Vec<_> = counts.into_iter().map(Vec::with_capacity).collect();
+    for triangle in problem.triangles() {
+        if let Some(block) = block(triangle) {
+            lists[block].push(*triangle);
         }
     }
     lists
@@ -213,8 +216,8 @@ impl Block {
         if sliding > 0 && vertices.iter().any(|v| slide(v) != NONE) {
             slides.extend(vertices.iter().map(slide));
         }
-        let (received, locals) = (Vec::new(), 0..0);
-        Self { own, groups, vertices, others, slides, triangles, received, locals }
+        let (received, shared) = (Vec::new(), 0..0);
+        Self { own, groups, vertices, others, slides, triangles, received, shared }
     }
 
     /// Returns the index among the sliding vertices of a vertex of the local list, [`NONE`] if the vertex does not slide.
@@ -234,36 +237,41 @@ impl Block {
         self.own.len()..self.own.len() + self.others.len()
     }
 
-    /// Adds the sums that other blocks have formed for the vertices of this block to `own`.
-    #[inline(always)]
-    pub(super) fn receive<X: Copy + std::ops::AddAssign, const N: usize>(
-        &self,
-        own: &mut [[X; N]],
-        sums: &[[X; N]],
-    ) {
-        for Received { from, to } in &self.received {
-            let sum = &sums[*from as usize];
-            for (own, sum) in own[*to as usize].iter_mut().zip(sum) {
-                *own += *sum;
-            }
+    /// Returns the own vertices at which other blocks have sums, and these sums.
+    pub(super) fn received(&self) -> impl Iterator<Item = (usize, &[Received])> {
+        self.received.chunk_by(|a, b| a.to == b.to).map(|sums| (sums[0].to as usize, sums))
+    }
+}
+
+/// Adds the sums that other blocks have formed at an own vertex of a block to the own sum.
+#[inline(always)]
+pub(super) fn receive<X: Copy + std::ops::AddAssign, const N: usize>(
+    own: &mut [X; N],
+    received: &[Received],
+    shared: &[[X; N]],
+) {
+    for of_other in received {
+        for (own, sum) in own.iter_mut().zip(&shared[of_other.from as usize]) {
+            *own += *sum;
         }
     }
 }
 
-/// Lists the vertices that each block receives from the local lists of others, in the order of these lists.
-fn receive(blocks: &mut [Block], block_of: &[u32]) {
+/// Lists the sums that each block receives from others.
+fn share(blocks: &mut [Block], block_of: &[u32]) {
     let mut start = 0;
     for at in 0..blocks.len() {
-        let foreign = blocks[at].foreign();
         let others = std::mem::take(&mut blocks[at].others);
-        for (k, &vertex) in foreign.zip(&others) {
+        for (from, &vertex) in (start as u32..).zip(&others) {
             let owner = &mut blocks[block_of[vertex as usize] as usize];
-            let to = vertex - owner.own.start as u32;
-            owner.received.push(Received { from: (start + k) as u32, to });
+            owner.received.push(Received { to: vertex - owner.own.start as u32, from });
         }
-        let block = &mut blocks[at];
-        block.others = others;
-        block.locals = start..start + block.vertices.len();
-        start = block.locals.end;
+        blocks[at].shared = start..start + others.len();
+        start += others.len();
+        blocks[at].others = others;
+    }
+    for block in blocks {
+        block.received.sort_unstable();
+        block.received.shrink_to_fit();
     }
 }

@@ -1,36 +1,37 @@
-//! The blocks of the first level's matrix to which each triangle adds.
+//! The first level's matrix, to which each triangle adds.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::blocks::{Block, Blocks};
+use super::blocks::{Block, Blocks, split};
 use super::matrix::{Matrix, ROWS, Square, transposed};
 use super::scalar::Scalar;
 use crate::parallel::paced;
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::Pattern;
 
-/// The entries of the first level's matrix to which the triangles of each block add, and where they go.
+/// Where triangles add to the first level's matrix. They add to its upper blocks, those on and above the diagonal, and the others
+/// are copies.
 pub(super) struct Couplings {
-    /// The couplings of each block.
-    pub(super) blocks: Vec<BlockCouplings>,
-    /// Place in `sources` of the first local entry of each block of the matrix.
-    start: Vec<u32>,
-    /// Indices of local entries of all blocks, block of the matrix by block.
-    sources: Vec<u32>,
+    /// Aggregate of each vertex, in the order of [`Blocks::order`].
+    group_of: Vec<u32>,
+    /// Index of the first upper block of each row, and at the end the number of upper blocks.
+    first: Vec<u32>,
 }
 
-/// The entries of the matrix to which the triangles of one block add.
-pub(super) struct BlockCouplings {
-    /// The aggregate of each vertex of the local list, [`NONE`] for fixed vertices.
-    pub(super) groups: Vec<u32>,
-    /// The local entries of the triangles, in their order: for n aggregates in ascending order the n diagonal entries, and
-    /// then those of the pairs. Triangles inside one aggregate have none.
-    pub(super) places: Vec<u32>,
-    /// Row and column of each local entry; the row is at most the column.
-    keys: Vec<[u32; 2]>,
-    /// Range of the local entries of the block among those of all blocks.
-    pub(super) entries: Range<usize>,
+/// The sums over the triangles of a block of vertices in upper blocks of the matrix.
+pub(super) struct Entries<'a, T> {
+    couplings: &'a Couplings,
+    pattern: &'a Pattern,
+    /// The upper blocks in the rows of the block's own aggregates.
+    own: &'a mut [Square<T>],
+    /// Index of the first of them.
+    start: usize,
+    beyond: Beyond<T>,
 }
+
+/// The sums over the triangles of a block of vertices in rows of other blocks, by the index of the upper block.
+pub(super) type Beyond<T> = BTreeMap<u32, Square<T>>;
 
 /// The aggregates at the corners of a triangle.
 pub(super) struct CornerGroups {
@@ -65,146 +66,124 @@ impl CornerGroups {
         Self { groups, count, is_inside: a == c && !has_sliding_corner }
     }
 
-    /// Returns the number of entries to which the triangle adds.
-    #[inline(always)]
-    pub(super) fn entries(&self) -> usize {
-        if self.is_inside { 0 } else { self.count * (self.count + 1) / 2 }
-    }
-
-    /// Returns the pairs of aggregates of the entries, as indices of [`Self::groups`].
+    /// Returns the pairs of aggregates whose blocks of the matrix the triangle changes, as indices of [`Self::groups`]. Triangles
+    /// inside one aggregate have none.
     pub(super) fn pairs(&self) -> &'static [[usize; 2]] {
         const ONE: &[[usize; 2]] = &[[0, 0]];
         const TWO: &[[usize; 2]] = &[[0, 0], [1, 1], [0, 1]];
         const THREE: &[[usize; 2]] = &[[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
-        match self.entries() {
+        match if self.is_inside { 0 } else { self.count } {
             0 => &[],
             1 => ONE,
-            3 => TWO,
+            2 => TWO,
             _ => THREE,
         }
     }
 }
 
 impl Couplings {
-    /// Returns the couplings of a mesh, and the pattern of the first level's matrix.
-    pub(super) async fn new(blocks: &Blocks) -> (Self, Pattern) {
+    pub(super) fn new(blocks: &Blocks, pattern: &Pattern) -> Self {
         let mut group_of = vec![0; blocks.order.len()];
         for (group, ends) in (0..).zip(blocks.group_start.windows(2)) {
             group_of[ends[0] as usize..ends[1] as usize].fill(group);
         }
-        let of = |_, block: &Block| BlockCouplings::new(block, &group_of);
-        let mut made = paced::map_parts(&blocks.blocks, of).await;
-        let mut first = 0;
-        for block in &mut made {
-            block.entries = first..first + block.keys.len();
-            first = block.entries.end;
+        let mut first = vec![0];
+        for (row, diagonal) in pattern.diagonal.iter().enumerate() {
+            first.push(first[row] + pattern.start[row + 1] - diagonal);
         }
-        let keys: Vec<[u32; 2]> =
-            made.iter_mut().flat_map(|block| std::mem::take(&mut block.keys)).collect();
-        let rows = sorted_by_row(&keys, blocks.groups());
-        let mut couplings = Self { blocks: made, start: vec![0], sources: Vec::new() };
-        let columns = rows.into_iter().zip(0..).map(|(mut row, group)| {
-            row.sort_unstable();
-            let mut columns: Vec<u32> = Vec::with_capacity(row.len());
-            for [column, source] in row {
-                if columns.last() != Some(&column) {
-                    if !columns.is_empty() {
-                        couplings.start.push(couplings.sources.len() as u32);
-                    }
-                    columns.push(column);
-                }
-                if source != NONE {
-                    couplings.sources.push(source);
-                }
-            }
-            couplings.start.push(couplings.sources.len() as u32);
-            debug_assert!(columns.contains(&group));
-            columns
-        });
-        let pattern = Pattern::of_rows(columns);
-        (couplings, pattern)
+        Self { group_of, first }
     }
 
-    /// Returns the number of local entries of all blocks.
-    pub(super) fn entries(&self) -> usize {
-        self.blocks.last().map_or(0, |block| block.entries.end)
+    /// Returns the aggregate of each vertex of a block's local list, [`NONE`] for fixed vertices.
+    pub(super) fn groups(&self, block: &Block) -> Vec<u32> {
+        let mut groups = self.group_of[block.own.clone()].to_vec();
+        groups.extend(block.others.iter().map(|&v| self.group_of[v as usize]));
+        groups.resize(block.vertices.len(), NONE);
+        groups
     }
 
-    /// Sets the blocks of the matrix to the sums of the local entries.
-    pub(super) async fn add_up<T: Scalar>(&self, local: &[Square<T>], matrix: &mut Matrix<T>) {
+    /// Returns the range of the upper blocks in the rows of a block's aggregates.
+    pub(super) fn own(&self, block: &Block) -> Range<usize> {
+        self.first[block.groups.start] as usize..self.first[block.groups.end] as usize
+    }
+
+    /// Returns the upper blocks, all zero.
+    pub(super) fn upper<T: Scalar>(&self) -> Vec<Square<T>> {
+        vec![Square::default(); self.first.last().map_or(0, |&count| count as usize)]
+    }
+
+    /// Returns the index of the upper block of a row and a column not before it.
+    #[inline(always)]
+    fn index(&self, pattern: &Pattern, row: u32, column: u32) -> u32 {
+        let at = row as usize;
+        if row == column {
+            return self.first[at];
+        }
+        let columns = &pattern.columns[pattern.diagonal[at] as usize..pattern.row(at).end];
+        self.first[at] + columns.partition_point(|&other| other < column) as u32
+    }
+
+    /// Returns the sums of a block before its first triangle. `own` has the upper blocks in the rows of its aggregates.
+    pub(super) fn entries<'a, T: Scalar>(
+        &'a self,
+        pattern: &'a Pattern,
+        block: &Block,
+        own: &'a mut [Square<T>],
+    ) -> Entries<'a, T> {
+        let start = self.own(block).start;
+        Entries { couplings: self, pattern, own, start, beyond: Beyond::new() }
+    }
+
+    /// Adds the sums of all blocks in rows of other blocks to the upper blocks of the matrix, in the order of the blocks.
+    pub(super) fn add_beyond<T: Scalar>(sums: Vec<Beyond<T>>, upper: &mut [Square<T>]) {
+        let mut all: Beyond<T> = Beyond::new();
+        for (index, entry) in sums.into_iter().flatten() {
+            let sum = all.entry(index).or_default();
+            sum.iter_mut().zip(entry).for_each(|(sum, entry)| *sum += entry);
+        }
+        for (index, sum) in all {
+            let own = upper[index as usize].iter_mut();
+            own.zip(sum).for_each(|(own, sum)| *own += sum);
+        }
+    }
+
+    /// Sets the blocks of the matrix, given its upper blocks.
+    pub(super) async fn complete<T: Scalar>(&self, upper: &[Square<T>], matrix: &mut Matrix<T>) {
         let Matrix { pattern, blocks, .. } = matrix;
+        blocks.resize(pattern.columns.len(), Square::default());
         let rows = pattern.rows();
         let lengths = (0..rows).step_by(ROWS).map(|row| {
             let end = pattern.start[rows.min(row + ROWS)];
             (end - pattern.start[row]) as usize
         });
-        let parts: Vec<_> = super::blocks::split(blocks, lengths).collect();
-        paced::for_each_part(parts, |task, mut blocks| {
-            for row in task * ROWS..rows.min(task * ROWS + ROWS) {
-                let places = pattern.row(row);
-                let (of_row, rest) = std::mem::take(&mut blocks).split_at_mut(places.len());
-                blocks = rest;
-                for (block, at) in of_row.iter_mut().zip(places) {
-                    let sources = self.start[at] as usize..self.start[at + 1] as usize;
-                    *block = Square::default();
-                    for &source in &self.sources[sources] {
-                        for (sum, &entry) in block.iter_mut().zip(&local[source as usize]) {
-                            *sum += entry;
-                        }
-                    }
-                    if (pattern.columns[at] as usize) < row {
-                        *block = transposed(block);
-                    }
-                }
+        let parts: Vec<_> = split(blocks, lengths).collect();
+        paced::for_each_part(parts, |task, blocks| {
+            let rows = (task * ROWS..rows.min(task * ROWS + ROWS)).map(|row| row as u32);
+            let places = rows.flat_map(|row| {
+                pattern.columns(row as usize).iter().map(move |&column| [row, column])
+            });
+            for (block, [row, column]) in blocks.iter_mut().zip(places) {
+                let index = self.index(pattern, row.min(column), row.max(column)) as usize;
+                *block = if column < row { transposed(&upper[index]) } else { upper[index] };
             }
         })
         .await;
     }
 }
 
-/// Returns the columns and local entries of each row, in both triangles of the matrix, and the diagonal of each row with
-/// [`NONE`] for its local entry.
-fn sorted_by_row(keys: &[[u32; 2]], rows: usize) -> Vec<Vec<[u32; 2]>> {
-    let mut lists: Vec<Vec<[u32; 2]>> = (0..rows as u32).map(|row| vec![[row, NONE]]).collect();
-    for (source, &[row, column]) in (0..).zip(keys) {
-        lists[row as usize].push([column, source]);
-        if row != column {
-            lists[column as usize].push([row, source]);
+impl<T: Scalar> Entries<'_, T> {
+    /// Returns the sum in the upper block of a row and a column not before it.
+    #[inline(always)]
+    pub(super) fn at(&mut self, row: u32, column: u32) -> &mut Square<T> {
+        let index = self.couplings.index(self.pattern, row, column);
+        match self.own.get_mut((index as usize).wrapping_sub(self.start)) {
+            Some(own) => own,
+            None => self.beyond.entry(index).or_default(),
         }
     }
-    lists
-}
 
-impl BlockCouplings {
-    fn new(block: &Block, group_of: &[u32]) -> Self {
-        let mut groups = group_of[block.own.clone()].to_vec();
-        groups.extend(block.others.iter().map(|&v| group_of[v as usize]));
-        let mut beyond = groups[block.own.len()..].to_vec();
-        beyond.sort_unstable();
-        beyond.dedup();
-        groups.resize(block.vertices.len(), NONE);
-        // Index of an aggregate among those of the block, followed by those of other blocks.
-        let row_of = |group: u32| match (group as usize).wrapping_sub(block.groups.start) {
-            own if own < block.groups.len() => own,
-            _ => block.groups.len() + beyond.partition_point(|&other| other < group),
-        };
-        let (mut keys, mut places) = (Vec::new(), Vec::with_capacity(2 * block.triangles.len()));
-        // Columns of each row, ascending, with the places of their entries.
-        let mut rows: Vec<Vec<[u32; 2]>> = vec![Vec::new(); block.groups.len() + beyond.len()];
-        for t in &block.triangles {
-            let corners = t.map(|v| groups[v as usize]);
-            let of = CornerGroups::new(corners, block.has_sliding_corner(t));
-            for &[row, column] in of.pairs() {
-                let [row, column] = [of.groups[row], of.groups[column]];
-                let entries = &mut rows[row_of(row)];
-                let at = entries.partition_point(|[other, _]| *other < column);
-                if entries.get(at).is_none_or(|[other, _]| *other != column) {
-                    entries.insert(at, [column, keys.len() as u32]);
-                    keys.push([row, column]);
-                }
-                places.push(entries[at][1]);
-            }
-        }
-        Self { groups, places, keys, entries: 0..0 }
+    /// Returns the sums in rows of other blocks.
+    pub(super) fn into_beyond(self) -> Beyond<T> {
+        self.beyond
     }
 }

@@ -4,8 +4,8 @@
 use fearless_simd::{Level, prelude::*};
 use glam::DVec2;
 
-use super::blocks::{Block, Blocks};
-use super::couplings::{BlockCouplings, CornerGroups, Couplings};
+use super::blocks::{Block, Blocks, receive, split};
+use super::couplings::{CornerGroups, Couplings, Entries};
 use super::levels::Extent;
 use super::matrix::{ROWS, Square};
 use super::scalar::{Scalar, narrowed};
@@ -15,7 +15,7 @@ use crate::metric::{Corner, Curvature, Curved, H, Metric, OfImr, TargetMap};
 use crate::parallel::paced;
 use crate::patch::lanes::{LANES, Lanes, Points, with_instructions};
 use crate::run::multilevel::NONE;
-use crate::run::truncated::aggregation::UNKNOWNS;
+use crate::run::truncated::aggregation::{Pattern, UNKNOWNS};
 
 /// The Hessian of a triangle: see [`Curvature`]. Lengths are in units of |C|, so that the numbers keep their digits for
 /// triangles of any stretching.
@@ -64,6 +64,8 @@ pub(super) struct Source<'a, T> {
     pub(super) positions: &'a [DVec2],
     pub(super) blocks: &'a Blocks,
     pub(super) couplings: &'a Couplings,
+    /// Pattern of the first level's matrix.
+    pub(super) pattern: &'a Pattern,
     pub(super) extents: &'a [Extent],
     pub(super) lines: &'a [Line<T>],
 }
@@ -80,58 +82,83 @@ pub(super) struct Numbers<T> {
     pub(super) residual: Vec<[T; 2]>,
     /// Inverses of the diagonal blocks, as xx, xy, yy.
     pub(super) inverses: Vec<[T; 3]>,
-    /// Local entries of the first level's matrix.
-    pub(super) entries: Vec<Square<T>>,
 }
 
 /// Gradient and diagonal block of a vertex: x, y, xx, xy, yy.
 type AtVertex = [f64; 5];
 
-/// The lists that the triangles of one block fill.
+/// What the triangles of one block fill.
 struct Part<'p, T> {
     terms: &'p mut Vec<Terms<T>>,
     maps: &'p mut Vec<Map<T>>,
-    entries: &'p mut [Square<T>],
-    sums: &'p mut [AtVertex],
+    entries: Entries<'p, T>,
+    /// Aggregates and sums of the vertices of the local list.
+    groups: Vec<u32>,
+    sums: Vec<AtVertex>,
 }
 
 impl<T: Scalar> Source<'_, T> {
-    /// Fills `numbers` with the terms of the metric at the positions.
-    pub(super) async fn compute(&self, metric: Metric, numbers: &mut Numbers<T>) {
+    /// Fills `numbers` with the terms of the metric at the positions. Returns the upper blocks of the first level's matrix.
+    pub(super) async fn compute(&self, metric: Metric, numbers: &mut Numbers<T>) -> Vec<Square<T>> {
         let Self { blocks, couplings, .. } = self;
         self.place(&mut numbers.places).await;
-        let mut sums = vec![AtVertex::default(); blocks.locals()];
-        let Numbers { terms, maps, entries, residual, inverses, .. } = numbers;
-        let lengths = couplings.blocks.iter().map(|of| of.entries.len());
-        let entries = super::blocks::split(entries, lengths);
-        let lists = terms.iter_mut().zip(maps).zip(entries).zip(blocks.split_locals(&mut sums));
-        let parts: Vec<_> = lists
-            .map(|(((terms, maps), entries), sums)| Part { terms, maps, entries, sums })
-            .collect();
-        paced::for_each_part(parts, |at, part| {
+        let mut upper = couplings.upper();
+        let mut shared: Vec<AtVertex> = blocks.shared();
+        let Numbers { terms, maps, residual, inverses, .. } = numbers;
+        let lengths = blocks.blocks.iter().map(|block| couplings.own(block).len());
+        let lists = terms.iter_mut().zip(maps).zip(split(&mut upper, lengths));
+        let own = blocks.split(residual).zip(blocks.split(inverses));
+        let parts: Vec<_> = lists.zip(own).zip(blocks.split_shared(&mut shared)).collect();
+        let made = paced::map_parts(parts, |at, (((lists, upper), own), shared)| {
+            let ((terms, maps), (residual, inverses)) = (lists, own);
+            let block = &blocks.blocks[at];
+            let mut part = Part {
+                terms,
+                maps,
+                entries: couplings.entries(self.pattern, block, upper),
+                groups: couplings.groups(block),
+                sums: vec![AtVertex::default(); block.vertices.len()],
+            };
             with_instructions!(Level::new(), simd => match metric.curved() {
-                Some(_) if metric == Metric::Imr => self.block(simd, OfImr, at, part),
-                Some(curved) => self.block(simd, curved, at, part),
+                Some(_) if metric == Metric::Imr => self.block(simd, OfImr, block, &mut part),
+                Some(curved) => self.block(simd, curved, block, &mut part),
                 None => {}
             });
-        })
-        .await;
-        let parts: Vec<_> = blocks.split(residual).zip(blocks.split(inverses)).collect();
-        paced::for_each_part(parts, |at, (residual, inverses)| {
+            let Part { sums, entries, .. } = part;
+            shared.copy_from_slice(&sums[block.foreign()]);
+            let own = residual.iter_mut().zip(inverses).zip(&sums);
+            for (v, ((residual, inverse), sum)) in own.enumerate() {
+                (*residual, *inverse) = self.solved(block, v, sum);
+            }
+            // Sums of other blocks are missing at these vertices.
+            let rim: Vec<AtVertex> = block.received().map(|(v, _)| sums[v]).collect();
+            (rim, entries.into_beyond())
+        });
+        let (rims, beyond): (Vec<_>, Vec<_>) = made.await.into_iter().unzip();
+        Couplings::add_beyond(beyond, &mut upper);
+        let own = blocks.split(residual).zip(blocks.split(inverses));
+        let parts: Vec<_> = own.zip(rims).collect();
+        paced::for_each_part(parts, |at, ((residual, inverses), rim)| {
             let block = &blocks.blocks[at];
-            let mut own = sums[block.locals.clone()][..block.own.len()].to_vec();
-            block.receive(&mut own, &sums);
-            for (v, (residual, inverse)) in (0..).zip(residual.iter_mut().zip(inverses)) {
-                let [x, y, xx, xy, yy] = own[v as usize];
-                *residual = narrowed([-x, -y]);
-                *inverse = match block.slide(v) {
-                    NONE => inverse_of([xx, xy, yy]),
-                    // The rows at sliding vertices are along their lines.
-                    slide => inverse_along(xx + yy, &self.lines[slide as usize]),
-                };
+            for ((v, received), mut sum) in block.received().zip(rim) {
+                receive(&mut sum, received, &shared);
+                (residual[v], inverses[v]) = self.solved(block, v, &sum);
             }
         })
         .await;
+        upper
+    }
+
+    /// Returns the negative gradient and the inverse of the diagonal block at an own vertex of a block, given its sums.
+    #[inline(always)]
+    fn solved(&self, block: &Block, v: usize, sum: &AtVertex) -> ([T; 2], [T; 3]) {
+        let [x, y, xx, xy, yy] = *sum;
+        let inverse = match block.slide(v as u32) {
+            NONE => inverse_of([xx, xy, yy]),
+            // The rows at sliding vertices are along their lines.
+            slide => inverse_along(xx + yy, &self.lines[slide as usize]),
+        };
+        (narrowed([-x, -y]), inverse)
     }
 
     /// Computes the places of the vertices in their aggregates.
@@ -152,14 +179,10 @@ impl<T: Scalar> Source<'_, T> {
     }
 
     #[inline(always)]
-    fn block<S: Simd>(&self, simd: S, curved: impl Curved, at: usize, part: Part<'_, T>) {
-        let Self { problem, blocks, couplings, extents, .. } = self;
-        let (block, couplings) = (&blocks.blocks[at], &couplings.blocks[at]);
-        let Part { terms, maps, entries, sums } = part;
-        entries.fill(Square::default());
-        terms.clear();
-        maps.clear();
-        let (mut next, mut first) = (0, 0);
+    fn block<S: Simd>(&self, simd: S, curved: impl Curved, block: &Block, part: &mut Part<'_, T>) {
+        part.terms.clear();
+        part.maps.clear();
+        let mut first = 0;
         while first < block.triangles.len() {
             let four = curved.curvature(&self.corners(simd, block, first));
             let count = LANES.min(block.triangles.len() - first);
@@ -168,9 +191,9 @@ impl<T: Scalar> Source<'_, T> {
                 let t = &block.triangles[first + lane];
                 let vertices = vertices_of(block, t);
                 let mut curvature = of_lane(&four, lane);
-                let map = problem.target_map(&vertices).map(|map| Map::of(&map));
-                terms.push(terms_of(&curvature));
-                maps.extend(map.as_ref().map(Map::narrowed));
+                let map = self.problem.target_map(&vertices).map(|map| Map::of(&map));
+                part.terms.push(terms_of(&curvature));
+                part.maps.extend(map.as_ref().map(Map::narrowed));
                 let Curvature { conformal: c, anticonformal: d, own, rows, .. } = &mut curvature;
                 let mut force = [[own[0] * c[0], own[0] * c[1]], [own[1] * d[0], own[1] * d[1]]];
                 if let Some(map) = map {
@@ -184,7 +207,7 @@ impl<T: Scalar> Source<'_, T> {
                 }
                 let mut k = 0;
                 while k < 3 {
-                    let sum = &mut sums[t[k] as usize];
+                    let sum = &mut part.sums[t[k] as usize];
                     let ([a, b], [c, d], [e, f]) = (rows[0][k], rows[1][k], rows[2][k]);
                     sum[0] += force[k][0];
                     sum[1] += force[k][1];
@@ -193,7 +216,7 @@ impl<T: Scalar> Source<'_, T> {
                     sum[4] += b * b + d * d + f * f;
                     k += 1;
                 }
-                next += self.couple(block, couplings, next, &rows, t, &vertices, entries, extents);
+                self.couple(block, &rows, t, &vertices, part);
                 lane += 1;
             }
             first += LANES;
@@ -232,26 +255,22 @@ impl<T: Scalar> Source<'_, T> {
         }
     }
 
-    /// Adds a triangle to the entries of its aggregates. Returns the number of entries.
+    /// Adds a triangle to the entries of its aggregates.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     fn couple(
         &self,
         block: &Block,
-        couplings: &BlockCouplings,
-        next: usize,
         rows: &[[[f64; 2]; 3]; 3],
         t: &[u32; 3],
         vertices: &[u32; 3],
-        entries: &mut [Square<T>],
-        extents: &[Extent],
-    ) -> usize {
-        let of = |v: u32| couplings.groups[v as usize];
+        part: &mut Part<'_, T>,
+    ) {
+        let of = |v: u32| part.groups[v as usize];
         let groups = [of(t[0]), of(t[1]), of(t[2])];
         let of = CornerGroups::new(groups, block.has_sliding_corner(t));
         let pairs = of.pairs();
         if pairs.is_empty() {
-            return 0;
+            return;
         }
         // Each row by the four unknowns of each aggregate.
         let mut by = [[[T::default(); UNKNOWNS]; 3]; 3];
@@ -262,7 +281,7 @@ impl<T: Scalar> Source<'_, T> {
                 k += 1;
                 continue;
             }
-            let [u, v] = extents[group as usize].place(self.positions[vertices[k] as usize]);
+            let [u, v] = self.extents[group as usize].place(self.positions[vertices[k] as usize]);
             let is_last = of.count == 3 && group == of.groups[2];
             let slot = usize::from(group != of.groups[0]) + usize::from(is_last);
             let mut row = 0;
@@ -278,8 +297,9 @@ impl<T: Scalar> Source<'_, T> {
         }
         let mut at = 0;
         while at < pairs.len() {
-            let entry = &mut entries[couplings.places[next + at] as usize];
-            let (a, b) = (&by[pairs[at][0]], &by[pairs[at][1]]);
+            let [low, high] = pairs[at];
+            let entry = part.entries.at(of.groups[low], of.groups[high]);
+            let (a, b) = (&by[low], &by[high]);
             let mut column = 0;
             while column < UNKNOWNS {
                 let [p, q, r] = [b[0][column], b[1][column], b[2][column]];
@@ -292,7 +312,6 @@ impl<T: Scalar> Source<'_, T> {
             }
             at += 1;
         }
-        pairs.len()
     }
 }
 

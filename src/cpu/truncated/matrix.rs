@@ -18,15 +18,15 @@ pub(super) const ROWS: usize = 256;
 /// A symmetric positive semidefinite matrix, with the inverses of its diagonal blocks.
 pub(super) struct Matrix<T> {
     pub(super) pattern: Pattern,
+    /// The blocks in the order of the pattern. The first level has them only from a linearization to the end of its solution.
     pub(super) blocks: Vec<Square<T>>,
     pub(super) inverses: Vec<Square<T>>,
 }
 
 impl<T: Scalar> Matrix<T> {
     pub(super) fn new(pattern: Pattern) -> Self {
-        let blocks = vec![Default::default(); pattern.columns.len()];
         let inverses = vec![Default::default(); pattern.rows()];
-        Self { pattern, blocks, inverses }
+        Self { pattern, blocks: Vec::new(), inverses }
     }
 
     /// Inverts the diagonal blocks.

@@ -2,71 +2,57 @@
 
 use fearless_simd::Level;
 
-use super::blocks::{Block, Blocks};
+use super::blocks::{Block, Blocks, receive};
 use super::derivatives::{Map, Numbers, Terms};
 use super::scalar::Scalar;
 use crate::metric::H;
 use crate::parallel::paced;
 use crate::patch::lanes::with_instructions;
 
-/// Vectors in the local lists of all blocks.
-pub(super) struct Locals<T> {
-    /// The factor: the vector at own vertices and at those of other blocks, zero at fixed ones.
-    factor: Vec<[T; 2]>,
-    product: Vec<[T; 2]>,
-}
-
-impl<T: Scalar> Locals<T> {
-    pub(super) fn new(blocks: &Blocks) -> Self {
-        let zero = vec![[T::default(); 2]; blocks.locals()];
-        Self { factor: zero.clone(), product: zero }
-    }
-
-    /// Sets `product` to the Hessian times `vector`. Returns the inner product of both.
-    pub(super) async fn multiply(
-        &mut self,
-        blocks: &Blocks,
-        numbers: &Numbers<T>,
-        vector: &[[T; 2]],
-        product: &mut [[T; 2]],
-    ) -> f64 {
-        let lists = blocks.split_locals(&mut self.factor);
-        let parts: Vec<_> = lists.zip(blocks.split_locals(&mut self.product)).collect();
-        paced::for_each_part(parts, |at, (factor, product)| {
-            let block = &blocks.blocks[at];
-            let (own, rest) = factor.split_at_mut(block.own.len());
-            own.copy_from_slice(&vector[block.own.clone()]);
-            for (factor, &other) in rest.iter_mut().zip(&block.others) {
-                *factor = vector[other as usize];
-            }
-            with_instructions!(Level::new(), simd => {
-                let _ = simd;
-                multiply(block, &numbers.terms[at], &numbers.maps[at], factor, product);
-            });
-        })
-        .await;
-        let sums = &self.product;
-        let parts: Vec<_> = blocks.split(product).collect();
-        let inner = paced::map_parts(parts, |at, product| {
-            let block = &blocks.blocks[at];
-            product.copy_from_slice(&sums[block.locals.clone()][..block.own.len()]);
-            block.receive(product, sums);
-            inner(&vector[block.own.clone()], product)
+/// Sets `product` to the Hessian times `vector`. Returns the inner product of both.
+pub(super) async fn multiply<T: Scalar>(
+    blocks: &Blocks,
+    numbers: &Numbers<T>,
+    vector: &[[T; 2]],
+    product: &mut [[T; 2]],
+) -> f64 {
+    let mut shared = blocks.shared();
+    let parts: Vec<_> = blocks.split(product).zip(blocks.split_shared(&mut shared)).collect();
+    paced::for_each_part(parts, |at, (product, shared)| {
+        let block = &blocks.blocks[at];
+        // The vector in the local list, zero at fixed vertices.
+        let mut factor = vector[block.own.clone()].to_vec();
+        factor.extend(block.others.iter().map(|&other| vector[other as usize]));
+        factor.resize(block.vertices.len(), [T::default(); 2]);
+        let mut sums = vec![[T::default(); 2]; factor.len()];
+        with_instructions!(Level::new(), simd => {
+            let _ = simd;
+            add_triangles(block, &numbers.terms[at], &numbers.maps[at], &factor, &mut sums);
         });
-        inner.await.into_iter().sum()
-    }
+        product.copy_from_slice(&sums[..product.len()]);
+        shared.copy_from_slice(&sums[block.foreign()]);
+    })
+    .await;
+    let parts: Vec<_> = blocks.split(product).collect();
+    let inner = paced::map_parts(parts, |at, product| {
+        let block = &blocks.blocks[at];
+        for (v, received) in block.received() {
+            receive(&mut product[v], received, &shared);
+        }
+        inner(&vector[block.own.clone()], product)
+    });
+    inner.await.into_iter().sum()
 }
 
-/// Sets `product` to the sum over the triangles of a block of their Hessians times `factor`.
+/// Adds the Hessians of the triangles of a block times `factor` to `sums`.
 #[inline(always)]
-fn multiply<T: Scalar>(
+fn add_triangles<T: Scalar>(
     block: &Block,
     terms: &[Terms<T>],
     maps: &[Map<T>],
     factor: &[[T; 2]],
-    product: &mut [[T; 2]],
+    sums: &mut [[T; 2]],
 ) {
-    product.fill([T::default(); 2]);
     let triangles = &block.triangles[..terms.len()];
     let is_mapped = !maps.is_empty();
     let mut at = 0;
@@ -75,10 +61,10 @@ fn multiply<T: Scalar>(
         let [i, j, k] = [i as usize, j as usize, k as usize];
         let map = if is_mapped { Some(&maps[at]) } else { None };
         let [p, q, r] = of_triangle(&terms[at], map, [factor[i], factor[j], factor[k]]);
-        let ([a, b], [c, d], [e, f]) = (product[i], product[j], product[k]);
-        product[i] = [a + p[0], b + p[1]];
-        product[j] = [c + q[0], d + q[1]];
-        product[k] = [e + r[0], f + r[1]];
+        let ([a, b], [c, d], [e, f]) = (sums[i], sums[j], sums[k]);
+        sums[i] = [a + p[0], b + p[1]];
+        sums[j] = [c + q[0], d + q[1]];
+        sums[k] = [e + r[0], f + r[1]];
         at += 1;
     }
 }

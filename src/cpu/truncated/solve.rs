@@ -7,8 +7,8 @@ use super::blocks::Blocks;
 use super::couplings::Couplings;
 use super::derivatives::{Numbers, Source, extents, room};
 use super::levels::Levels;
-use super::matrix::{Quad, Square};
-use super::product::{Locals, inner};
+use super::matrix::Quad;
+use super::product::{inner, multiply};
 use super::scalar::Scalar;
 use super::slides::Slides;
 use crate::layout::Problem;
@@ -25,13 +25,12 @@ pub(crate) struct Solver<T> {
     couplings: Couplings,
     levels: Levels<T>,
     numbers: Numbers<T>,
-    locals: Locals<T>,
     slides: Slides<T>,
-    /// The solution, the direction p, the product H p, and the preconditioned residual.
+    /// The last solution. Empty while a step is linearized.
     solution: Vec<[T; 2]>,
+    /// The direction p, and in turn the preconditioned residual and the product H p. Both are empty outside of a solution.
     direction: Vec<[T; 2]>,
     product: Vec<[T; 2]>,
-    preconditioned: Vec<[T; 2]>,
 }
 
 /// The end of conjugate gradients. Gains are sums over triangles.
@@ -48,8 +47,8 @@ pub(super) struct Solved {
 impl<T: Scalar> Solver<T> {
     /// Prepares a mesh from its connectivity, with the vertices that slide.
     pub(super) async fn new(problem: &Problem, curves: Option<&OnCurves>) -> Self {
-        let blocks = Blocks::new(problem, &Movers::new(problem, curves)).await;
-        let (couplings, pattern) = Couplings::new(&blocks).await;
+        let (blocks, pattern) = Blocks::new(problem, &Movers::new(problem, curves)).await;
+        let couplings = Couplings::new(&blocks, &pattern);
         let sizes = blocks.group_start.windows(2);
         let levels = Levels::new(pattern, sizes.map(|ends| (ends[1] - ends[0]).into()).collect());
         let levels = levels.await;
@@ -59,21 +58,18 @@ impl<T: Scalar> Solver<T> {
             terms,
             maps,
             places: zero.clone(),
-            residual: zero.clone(),
             inverses: vec![[T::default(); 3]; zero.len()],
-            entries: vec![Square::default(); couplings.entries()],
+            residual: zero,
         };
         Self {
-            locals: Locals::new(&blocks),
             slides: Slides::new(blocks.slides_at.clone()),
             blocks,
             couplings,
             levels,
             numbers,
-            solution: zero.clone(),
-            direction: zero.clone(),
-            product: zero.clone(),
-            preconditioned: zero,
+            solution: Vec::new(),
+            direction: Vec::new(),
+            product: Vec::new(),
         }
     }
 
@@ -88,17 +84,20 @@ impl<T: Scalar> Solver<T> {
         let Self { blocks, couplings, levels, numbers, slides, .. } = self;
         slides.set(tangents);
         let Some(first) = levels.lattices.first_mut() else { return };
+        self.solution = Vec::new();
         extents(blocks, positions, &mut first.extents).await;
         let source = Source {
             problem,
             positions,
             blocks,
             couplings,
+            pattern: &first.matrix.pattern,
             extents: &first.extents,
             lines: &slides.lines,
         };
-        source.compute(metric, numbers).await;
-        couplings.add_up(&numbers.entries, &mut first.matrix).await;
+        let upper = source.compute(metric, numbers).await;
+        couplings.complete(&upper, &mut first.matrix).await;
+        drop(upper);
         slides.project(&mut numbers.residual);
         for (at, line) in slides.each() {
             let group = blocks.group_start.partition_point(|&start| start as usize <= at) - 1;
@@ -127,7 +126,9 @@ impl<T: Scalar> Solver<T> {
             is_curved_down: false,
             iterations: 0,
         };
-        self.solution.fill([T::default(); 2]);
+        for vector in [&mut self.solution, &mut self.direction, &mut self.product] {
+            *vector = vec![[T::default(); 2]; self.blocks.order.len()];
+        }
         let (mut alpha, mut before) = (0.0, f64::INFINITY);
         while solved.iterations < StepRequest::MOST_ITERATIONS {
             let rho = self.precondition(alpha).await;
@@ -138,8 +139,8 @@ impl<T: Scalar> Solver<T> {
             }
             let beta = if solved.iterations == 0 { 0.0 } else { rho / before };
             self.turn(beta).await;
-            let Self { blocks, numbers, locals, slides, direction, product, .. } = &mut *self;
-            let curvature = locals.multiply(blocks, numbers, direction, product).await
+            let Self { blocks, numbers, slides, direction, product, .. } = &mut *self;
+            let curvature = multiply(blocks, numbers, direction, product).await
                 + slides.bend(direction, product);
             // Comparisons with NaN are false.
             let is_positive = rho > 0.0 && curvature > 0.0 && (rho / curvature).is_finite();
@@ -169,6 +170,11 @@ impl<T: Scalar> Solver<T> {
             }
         }
         self.advance(alpha).await;
+        // The sums of the next linearization take the room of these.
+        (self.direction, self.product) = (Vec::new(), Vec::new());
+        if let Some(first) = self.levels.lattices.first_mut() {
+            first.matrix.blocks = Vec::new();
+        }
         if solved.iterations > 0 {
             // The solution minimizes the model over the directions so far, so its gain is half of the descent.
             solved.descent = 2.0 * solved.model_gain;
@@ -183,7 +189,7 @@ impl<T: Scalar> Solver<T> {
         self.advance(alpha).await;
         self.restrict().await;
         self.levels.solve().await;
-        let Self { blocks, levels, numbers, preconditioned, .. } = self;
+        let Self { blocks, levels, numbers, product: preconditioned, .. } = self;
         let Numbers { inverses, places, residual, .. } = &*numbers;
         let Some(first) = levels.lattices.first() else { return 0.0 };
         let by = T::of(STIFFNESS);
@@ -212,7 +218,7 @@ impl<T: Scalar> Solver<T> {
         });
         let inner = sums.await.into_iter().sum();
         // The residual is along the lines of the sliding vertices, so its inner product does not depend on the rest.
-        self.slides.project(&mut self.preconditioned);
+        self.slides.project(&mut self.product);
         inner
     }
 
@@ -267,7 +273,7 @@ impl<T: Scalar> Solver<T> {
 
     /// Sets the direction to the preconditioned residual plus `beta` times the direction.
     async fn turn(&mut self, beta: f64) {
-        let Self { blocks, direction, preconditioned, .. } = self;
+        let Self { blocks, direction, product: preconditioned, .. } = self;
         let by = T::of(beta);
         let parts: Vec<_> = blocks.split(direction).collect();
         paced::for_each_part(parts, |at, direction| {
@@ -322,15 +328,16 @@ impl Solver<f64> {
 
     /// Returns the Hessian times a vector.
     pub(super) async fn product_with(&mut self, vector: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let Self { blocks, numbers, locals, product, .. } = self;
-        locals.multiply(blocks, numbers, vector, product).await;
-        product.clone()
+        let mut product = vec![[0.0; 2]; vector.len()];
+        multiply(&self.blocks, &self.numbers, vector, &mut product).await;
+        product
     }
 
     /// Returns the preconditioner times a vector.
     pub(super) async fn preconditioned_of(&mut self, vector: &[[f64; 2]]) -> Vec<[f64; 2]> {
         self.numbers.residual.copy_from_slice(vector);
+        self.product.resize(vector.len(), [0.0; 2]);
         self.precondition(0.0).await;
-        self.preconditioned.clone()
+        self.product.clone()
     }
 }

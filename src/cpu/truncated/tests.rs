@@ -84,7 +84,7 @@ fn the_preconditioner_is_symmetric_and_positive() {
 #[test]
 fn blocks_divide_vertices_and_triangles() {
     let problem = problem(&lattice(71, 1.0));
-    let blocks = now(Blocks::new(&problem, &Movers::new(&problem, None)));
+    let blocks = now(Blocks::new(&problem, &Movers::new(&problem, None))).0;
     assert!(blocks.blocks.len() > 1);
     let mut vertices = blocks.order.clone();
     vertices.sort_unstable();

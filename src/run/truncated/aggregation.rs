@@ -43,6 +43,7 @@ impl Pattern {
             pattern.columns.extend(columns);
             pattern.start.push(pattern.columns.len() as u32);
         }
+        pattern.columns.shrink_to_fit();
         pattern
     }
 
@@ -115,9 +116,13 @@ impl Members {
     pub(crate) fn pattern<N: Iterator<Item = u32>>(&self, neighbors: impl Fn(u32) -> N) -> Pattern {
         Pattern::of_rows((0..self.count()).map(|aggregate| {
             let near = self.of(aggregate).iter().flat_map(|&member| neighbors(member));
-            let mut columns: Vec<u32> =
-                near.filter_map(|member| self.group.get(member as usize).copied()).collect();
-            columns.push(aggregate as u32);
+            let mut columns = vec![aggregate as u32];
+            for column in near.filter_map(|member| self.group.get(member as usize).copied()) {
+                // Most neighbors are in the aggregate itself, or in that of the neighbor before.
+                if column != columns[0] && columns.last() != Some(&column) {
+                    columns.push(column);
+                }
+            }
             columns.sort_unstable();
             columns.dedup();
             columns
