@@ -91,6 +91,21 @@ pub(crate) struct RunEnd {
     pub(crate) fault: Option<DeviceFault>,
 }
 
+/// Returns the state at the start of a run from `positions`, or at the start of the period that a checkpoint continues.
+fn first_point<'s>(
+    spec: &Spec<'s>,
+    resumed: Option<&Checkpoint>,
+    positions: Cow<'s, [DVec2]>,
+) -> Point<'s> {
+    match resumed.and_then(|resumed| Some((&resumed.saved, resumed.period.as_ref()?))) {
+        Some((saved, period)) => {
+            let log = saved.log[..=period.began as usize].to_vec();
+            Point { log, positions: period.before.clone().into(), curves: None }
+        }
+        None => Point { log: Vec::new(), positions, curves: spec.curves.cloned() },
+    }
+}
+
 impl<'s> Live<'s> {
     /// Prepares a run by `plan` from the positions `from`, or from means of neighbors if sweeps cannot open extremely flat
     /// triangles at `from`. With `resumed`, the run continues from a checkpoint of a run from these positions.
@@ -139,14 +154,7 @@ impl<'s> Live<'s> {
             about.opened.clone_from(&opened);
             about.on_cpu_from = on_cpu_from;
         }
-        let period = resumed.and_then(|resumed| Some((resumed, resumed.period.as_ref()?)));
-        let last = match period {
-            Some((Checkpoint { saved, .. }, period)) => {
-                let log = saved.log[..=period.began as usize].to_vec();
-                Point { log, positions: period.before.clone().into(), curves: None }
-            }
-            None => Point { log: Vec::new(), positions, curves: spec.curves.cloned() },
-        };
+        let last = first_point(&spec, resumed, positions);
         Ok(Self {
             problem,
             plan,

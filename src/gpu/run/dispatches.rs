@@ -10,6 +10,7 @@ use crate::gpu::device::buffers::{filled, rows, uniform, zeroed};
 use crate::gpu::device::size::{POSITION, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
+use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::layouts::RunBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
@@ -121,6 +122,56 @@ impl Uniforms {
     }
 }
 
+/// The buffers of a run that kernels bind beside those of the mesh.
+struct BoundRun<'b> {
+    params: &'b wgpu::Buffer,
+    parts: &'b wgpu::Buffer,
+    partial_sums: &'b wgpu::Buffer,
+    control: &'b wgpu::Buffer,
+    best: &'b wgpu::Buffer,
+    /// The parts of the free vertices, if the best positions are kept.
+    free: Option<&'b [Range<u32>]>,
+}
+
+impl BoundRun<'_> {
+    /// Binds a part of the mesh. To be called in an error scope.
+    fn bind(&self, gpu: &Gpu, mesh: &MeshBuffers, part: usize) -> wgpu::BindGroup {
+        let best_positions = match self.free {
+            Some(free) => rows(self.best, of_part(free, part), POSITION),
+            None => self.best.as_entire_binding(),
+        };
+        let bindings = RunBindings {
+            params: self.params.as_entire_binding(),
+            part: uniform::<Part>(self.parts),
+            positions: mesh.bind_positions(),
+            ring_start: mesh.ring_start.as_entire_binding(),
+            ring: mesh.bind_ring(part),
+            triangles: mesh.bind_triangles(part),
+            partial_sums: self.partial_sums.as_entire_binding(),
+            control: self.control.as_entire_binding(),
+            best_positions,
+        };
+        gpu.pipelines.bind(&gpu.device, mesh.parts.form(), bindings)
+    }
+}
+
+/// Compiles the kernels of all sweeps by `steps`, with a pause after each.
+async fn sweep_pipelines(
+    gpu: &Gpu,
+    form: MeshForm,
+    steps: &[SweepParams],
+) -> Result<Vec<(Metric, Derivatives, Pipeline)>, GpuError> {
+    let mut sweeps: Vec<(Metric, Derivatives, Pipeline)> = Vec::new();
+    for &SweepParams { metric, derivatives, .. } in steps {
+        if sweeps.iter().all(|known| (known.0, known.1) != (metric, derivatives)) {
+            let kernel = Kernel::Sweep(metric, derivatives);
+            sweeps.push((metric, derivatives, gpu.pipelines.get(&gpu.device, &kernel, form)?));
+            pause().await;
+        }
+    }
+    Ok(sweeps)
+}
+
 impl Dispatches {
     /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, each evaluation
     /// copies the positions of a new lowest objective.
@@ -134,14 +185,7 @@ impl Dispatches {
     ) -> Result<Self, GpuError> {
         let form = mesh.parts.form();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
-        let mut sweeps: Vec<(Metric, Derivatives, Pipeline)> = Vec::new();
-        for &SweepParams { metric, derivatives, .. } in &steps {
-            if sweeps.iter().all(|known| (known.0, known.1) != (metric, derivatives)) {
-                let sweep = pipeline(Kernel::Sweep(metric, derivatives))?;
-                sweeps.push((metric, derivatives, sweep));
-                pause().await;
-            }
-        }
+        let sweeps = sweep_pipelines(gpu, form, &steps).await?;
         let objective = pipeline(Kernel::Objective(plan.tracked()))?;
         pause().await;
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
@@ -169,25 +213,16 @@ impl Dispatches {
             );
             let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
             let best = zeroed(gpu, "best positions", kept * POSITION, usage);
-            let bind_groups = (0..mesh.parts.count()).map(|part| {
-                let kept = match keep_best {
-                    Some(_) => rows(&best, of_part(&uniforms.free, part), POSITION),
-                    None => best.as_entire_binding(),
-                };
-                let bindings = RunBindings {
-                    params: params.as_entire_binding(),
-                    part: uniform::<Part>(&parts),
-                    positions: mesh.bind_positions(),
-                    ring_start: mesh.ring_start.as_entire_binding(),
-                    ring: mesh.bind_ring(part),
-                    triangles: mesh.bind_triangles(part),
-                    partial_sums: partial_sums.as_entire_binding(),
-                    control: control.as_entire_binding(),
-                    best_positions: kept,
-                };
-                gpu.pipelines.bind(&gpu.device, form, bindings)
-            });
-            let bind_groups = bind_groups.collect();
+            let bound = BoundRun {
+                params: &params,
+                parts: &parts,
+                partial_sums: &partial_sums,
+                control: &control,
+                best: &best,
+                free: keep_best.as_ref().map(|_| &uniforms.free[..]),
+            };
+            let bind_groups =
+                (0..mesh.parts.count()).map(|part| bound.bind(gpu, mesh, part)).collect();
             (control, best, params, bind_groups)
         })?;
         let slides = match &mesh.curves {

@@ -2,7 +2,7 @@
 
 use wgpu::BufferUsages as Usage;
 
-use super::nest::{Nest, Slides};
+use super::nest::{Nest, SlideLists};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{bytes, filled, filled_with_pauses, uniform, zeroed};
@@ -30,7 +30,7 @@ use crate::run::truncated::StepRequest;
 /// Number of vectors in `fine`, as in shaders/truncated/vectors.wgsl: five vectors, and inverse blocks of two rows.
 const VECTORS: u32 = 7;
 /// Bytes of a pair, and of a four-component row.
-const PAIR: u64 = size_of::<[f32; 2]>() as u64;
+pub(super) const PAIR: u64 = size_of::<[f32; 2]>() as u64;
 const ROW: u64 = size_of::<[f32; 4]>() as u64;
 
 /// The dispatches of Newton steps, with their buffers.
@@ -52,7 +52,7 @@ pub(super) struct Prepared {
     /// The operation on the vertices.
     pub(super) step: StepOp,
     /// `None` if no vertex slides.
-    pub(super) slides: Option<Slides>,
+    pub(super) slides: Option<SlideLists>,
 }
 
 /// The bind groups of the dispatches, one of each layout.
@@ -528,7 +528,7 @@ fn step_op(nest: &Nest, problem: &Problem, alignment: u32) -> StepOp {
     let movers = if nest.slides.is_some() { all } else { free };
     let vector = movers.next_multiple_of(alignment);
     let partials = objective_invocations(free as usize);
-    let of_slides = |of: fn(&Slides) -> u32| nest.slides.as_ref().map_or(0, of);
+    let of_slides = |of: fn(&SlideLists) -> u32| nest.slides.as_ref().map_or(0, of);
     StepOp {
         rows: free,
         vertices: free,

@@ -19,12 +19,12 @@ pub(super) struct Nest {
     /// Offsets in `structure` of the aggregates of the vertices: aggregate, starts and members.
     pub(super) of_vertices: [u32; 3],
     /// `None` if no vertex slides.
-    pub(super) slides: Option<Slides>,
+    pub(super) slides: Option<SlideLists>,
 }
 
 /// The sliding vertices of a mesh, and the triangles around them.
 #[derive(Clone)]
-pub(super) struct Slides {
+pub(super) struct SlideLists {
     /// The sliding vertices in the order of [`OnCurves::tangents`].
     pub(super) vertices: Vec<u32>,
     /// Offset in the structure of the first triangle of each vertex that is not free.
@@ -117,7 +117,7 @@ impl Nest {
         at
     }
 
-    fn place_slides(&mut self, problem: &Problem, curves: &OnCurves) -> Slides {
+    fn place_slides(&mut self, problem: &Problem, curves: &OnCurves) -> SlideLists {
         let free = problem.free_count();
         let mut fans: Vec<&[[u32; 3]]> = vec![&[]; problem.positions().len() - free];
         let mut vertices = Vec::new();
@@ -133,7 +133,7 @@ impl Nest {
         }
         let triangles = starts[starts.len() - 1];
         let (corner_starts, corners) = (self.place(&starts), self.place(&corners));
-        Slides { vertices, corner_starts, corners, triangles }
+        SlideLists { vertices, corner_starts, corners, triangles }
     }
 
     fn place_members(&mut self, members: &Members) -> [u32; 3] {

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::list::Prepared;
+use super::list::{PAIR, Prepared};
 use super::{Truncated, begin, expected_after, taken};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
@@ -18,9 +18,6 @@ use crate::run::SweepParams;
 use crate::run::multilevel::NONE;
 use crate::run::truncated::{NewtonStep, StepRequest};
 use crate::slide::{OnCurves, Params, Tangents};
-
-/// Bytes of a pair of floats.
-const PAIR: u64 = size_of::<[f32; 2]>() as u64;
 
 /// A mesh on a device, with the positions of its fixed vertices.
 pub(crate) struct OnDevice<'d> {
