@@ -80,6 +80,9 @@ impl Truncated {
         };
         let is_exact = tangents.restrict(request.is_exact);
         on!(self, solver => solver.linearize(metric, problem, positions, &tangents).await);
+        let movers = problem.free_count() + tangents.vertices.len();
+        let all_move = movers == problem.positions().len();
+        let request = &request.for_mesh(all_move);
         let least_gain = request.least_gain * scale * count;
         let solved = on!(self, solver => solver.solve(request, least_gain).await);
         let Solved { model_gain, descent, bound, least_ritz, is_curved_down, iterations } = solved;
