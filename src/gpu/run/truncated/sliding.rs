@@ -47,8 +47,6 @@ impl Truncated {
         let mut sliding = self.sweep(on, sweep).await?;
         let is_exact = sliding.tangents.restrict(request.is_exact);
         let count = on.problem.judged_triangles().len() as f64;
-        let movers = on.problem.free_count() + sliding.tangents.vertices.len();
-        let request = &request.for_mesh(movers == on.problem.positions().len());
         let (mut state, solution) =
             self.solve(on, &sliding.tangents, &begin(request, count, true)).await?;
         let mut to = None;
