@@ -36,6 +36,15 @@ fn pulled_back(d: Derivatives, map: vec3<f32>) -> Derivatives {
     return Derivatives(d.value, mapped(map, d.gradient), vec3(left, right.y));
 }
 
+// Returns the target map of a triangle of a patch with two further vertices: the mean of three maps, scaled near one. Without
+// targets, the map is the identity.
+fn map_of_patch(p: Patch, first: u32, second: u32) -> vec3<f32> {
+    if !HAS_TARGETS {
+        return vec3(1.0, 0.0, 1.0);
+    }
+    return (p.own + map_at(first) + map_at(second)) * (p.map_unit / 3.0);
+}
+
 // Returns the patch of a vertex with the triangles `start..end` around it, in the given unit.
 fn patch_around(vertex: u32, start: u32, end: u32, unit: f32) -> Patch {
     var p: Patch;

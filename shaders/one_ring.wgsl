@@ -11,15 +11,10 @@ fn patch_of(vertex: u32) -> Patch {
     return patch_around(vertex, start, end, unit);
 }
 
-// Returns the target map of the triangle between neighbor i and the previous neighbor: the mean of three maps, scaled
-// near one. Without targets, the map is the identity.
+// Returns the target map of the triangle between neighbor i and the previous neighbor.
 fn map_around(p: Patch, i: u32) -> vec3<f32> {
-    if !HAS_TARGETS {
-        return vec3(1.0, 0.0, 1.0);
-    }
     let before = select(i - 1u, p.end - 1u, i == p.start);
-    let sum = p.own + map_at(ring[before]) + map_at(ring[i]);
-    return sum * (p.map_unit / 3.0);
+    return map_of_patch(p, ring[before], ring[i]);
 }
 
 // Returns the least distance from the vertex to the line through an edge of the ring.

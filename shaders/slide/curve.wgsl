@@ -8,7 +8,7 @@ struct OnCurve {
     at: vec4<f32>,
     first: vec2<f32>,
     second: vec2<f32>,
-    // Index of the knot at which the piece with the parameter begins, from 0 at the start of the curve, and the way from this knot.
+    // Index of the last knot before the parameter, from 0 at the start of the curve, and the distance from this knot.
     piece: u32,
     way: f32,
 }

@@ -32,15 +32,6 @@ struct AlongCurve {
     limit: f32,
 }
 
-// Returns the target map of a triangle, the mean of three maps, scaled near one. Without targets, the map is the identity.
-fn map_around(p: Patch, i: u32) -> vec3<f32> {
-    if !HAS_TARGETS {
-        return vec3(1.0, 0.0, 1.0);
-    }
-    let sum = p.own + map_at(corners[i].x) + map_at(corners[i].y);
-    return sum * (p.map_unit / 3.0);
-}
-
 // Returns a triangle of a patch in the plane, with the vertex moved by d.
 fn corner_around(p: Patch, i: u32, d: vec2<f32>) -> Corner {
     let a = edge(p.at, position(corners[i].x)) * p.unit - d;
@@ -56,7 +47,7 @@ fn along_curve() -> AlongCurve {
         var gradient = vec2(0.0);
         var hessian = vec3(0.0);
         for (var i = p.start; i < p.end; i++) {
-            let map = map_around(p, i);
+            let map = map_of_patch(p, corners[i].x, corners[i].y);
             let t = transformed(corner_around(p, i, vec2(0.0)), map);
             if part.shape_guard < NO_GUARD {
                 found.limit = max(found.limit, inverse_mean_ratio(t));
@@ -147,7 +138,7 @@ fn objective_at(to: vec2<f32>, limit: f32) -> vec2<f32> {
         let d = edge(p.at, there[side].at) * p.unit;
         for (var i = p.start; i < p.end; i++) {
             let moved = corner_around(p, i, d);
-            let t = transformed(moved, map_around(p, i));
+            let t = transformed(moved, map_of_patch(p, corners[i].x, corners[i].y));
             if !is_positive(doubled_area(t)) {
                 return vec2(0.0);
             }

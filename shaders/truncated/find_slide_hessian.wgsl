@@ -3,14 +3,6 @@
 // Hessian, the inverse of its second derivative along the tangent, and the tangents of the levels; otherwise the whole Hessian
 // and the residual, the negative gradient.
 
-// Returns the target map of a triangle, the mean of three maps, scaled near one. Without targets, the map is the identity.
-fn map_around(p: Patch, first: u32, second: u32) -> vec3<f32> {
-    if !HAS_TARGETS {
-        return vec3(1.0, 0.0, 1.0);
-    }
-    return (p.own + map_at(first) + map_at(second)) * (p.map_unit / 3.0);
-}
-
 @compute @workgroup_size(WORKGROUP)
 fn find_slide_hessian(
     @builtin(global_invocation_id) id: vec3<u32>,
@@ -30,7 +22,7 @@ fn find_slide_hessian(
     for (var i = p.start; i < p.end; i++) {
         let first = corner_at(2u * i);
         let second = corner_at(2u * i + 1u);
-        let map = map_around(p, first, second);
+        let map = map_of_patch(p, first, second);
         let a = edge(p.at, position(first)) * p.unit;
         let b = edge(p.at, position(second)) * p.unit;
         let made = blocks_of(transformed(Corner(a, b, p.ideal), map));

@@ -2,6 +2,7 @@
 
 use crate::layout::Problem;
 use crate::run::multilevel::NONE;
+use crate::run::truncated::aggregation::{Members, Pattern};
 use crate::slide::on_curves::OnCurves;
 
 /// The vertices that move. Free vertices have the numbers of the problem, and sliding ones follow.
@@ -84,5 +85,14 @@ impl<'a> Movers<'a> {
             None => self.problem.ring_of(mover as u32),
             Some(at) => &self.neighbors[self.start[at] as usize..self.start[at + 1] as usize],
         }
+    }
+
+    /// Joins the vertices that move to aggregates of neighbors. Returns the aggregates, and the pattern of their matrix.
+    pub(crate) async fn joined(&self) -> (Members, Pattern) {
+        let degree = |mover: usize| self.neighbors(mover).len();
+        let near = |mover: usize| self.neighbors(mover).iter().map(|&v| self.of(v));
+        let members = Members::new(self.count(), degree, near).await;
+        let pattern = members.pattern(|mover| near(mover as usize));
+        (members, pattern)
     }
 }

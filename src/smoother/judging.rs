@@ -240,7 +240,7 @@ impl Smoother<'_> {
         Ok(Some((written, raised)))
     }
 
-    /// Returns the number of vertices at other points than in the mesh.
+    /// Returns the number of vertices whose points differ from the mesh.
     fn moved(&self, points: &[[f64; 2]]) -> usize {
         points.iter().zip(&self.mesh.points).filter(|(to, from)| to != from).count()
     }

@@ -482,7 +482,7 @@ fn both_engines_slide_vertices_by_sweeps_alone() {
     }
 }
 
-/// Returns the number of dispatches on a device since it was opened.
+/// Returns the number of dispatches that a device has executed.
 fn dispatches(backend: &Backend) -> u64 {
     match backend {
         Backend::Cpu => 0,

@@ -10,8 +10,8 @@ use std::ops::Range;
 
 use crate::layout::Problem;
 use crate::parallel::paced;
-use crate::run::multilevel::{Aggregates, NONE};
-use crate::run::truncated::aggregation::{MOST_DEGREES, Members, Pattern};
+use crate::run::multilevel::NONE;
+use crate::run::truncated::aggregation::{Members, Pattern};
 use crate::slide::Movers;
 
 /// Number of vertices from which on a block ends. The vectors of a block then fit the first cache of a processor.
@@ -56,9 +56,9 @@ pub(super) struct Block {
     pub(super) slides: Vec<u32>,
     /// The corners of each triangle, counter-clockwise, as indices of the local list.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The sums of other blocks at own vertices, in the order of the own vertices.
+    /// The sums that other blocks form at own vertices, sorted by own vertex.
     pub(super) received: Vec<Received>,
-    /// Range of the shared list: a place for each vertex of another block in the local list.
+    /// Range of the shared list, with an entry for each vertex of another block in the local list.
     pub(super) shared: Range<usize>,
 }
 
@@ -75,16 +75,7 @@ impl Blocks {
     /// Divides a mesh. Returns its blocks, and the pattern of the first level's matrix.
     pub(super) async fn new(problem: &Problem, movers: &Movers<'_>) -> (Self, Pattern) {
         let count = movers.count();
-        let degree = |mover: usize| movers.neighbors(mover).len();
-        let neighbors = |mover: usize| {
-            let is_near = move |&other: &u32| {
-                other != NONE && degree(mover) * degree(other as usize) <= MOST_DEGREES
-            };
-            movers.neighbors(mover).iter().map(|&v| movers.of(v)).filter(is_near)
-        };
-        let members = Members::new(Aggregates::new(count, neighbors).await).await;
-        let all = |mover: u32| movers.neighbors(mover as usize).iter().map(|&v| movers.of(v));
-        let pattern = members.pattern(all);
+        let (members, pattern) = movers.joined().await;
         let Members { start: group_start, members: mut order, .. } = members;
         let mut rank = vec![NONE; count];
         for (new, &mover) in (0..).zip(&order) {

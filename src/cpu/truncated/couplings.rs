@@ -10,8 +10,8 @@ use crate::parallel::paced;
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::Pattern;
 
-/// Where triangles add to the first level's matrix. They add to its upper blocks, those on and above the diagonal, and the others
-/// are copies.
+/// The places at which triangles add to the first level's matrix. Triangles add to the upper blocks, on and above the diagonal.
+/// The blocks below the diagonal are copies.
 pub(super) struct Couplings {
     /// Aggregate of each vertex, in the order of [`Blocks::order`].
     group_of: Vec<u32>,

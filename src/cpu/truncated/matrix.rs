@@ -18,7 +18,7 @@ pub(super) const ROWS: usize = 256;
 /// A symmetric positive semidefinite matrix, with the inverses of its diagonal blocks.
 pub(super) struct Matrix<T> {
     pub(super) pattern: Pattern,
-    /// The blocks in the order of the pattern. The first level has them only from a linearization to the end of its solution.
+    /// The blocks in the order of the pattern. The blocks of the first level exist only during a step.
     pub(super) blocks: Vec<Square<T>>,
     pub(super) inverses: Vec<Square<T>>,
 }

@@ -90,6 +90,12 @@ pub(crate) struct Copied<'g, T> {
 }
 
 impl<T: Pod + Send> Copied<'_, T> {
+    /// Waits for the values and returns the first, as [`values`](Self::values) does.
+    pub(crate) async fn first(self, waiting: Waiting) -> Result<T, GpuError> {
+        let empty = || GpuError::Lost("the readback is empty".into());
+        self.values(waiting).await?.into_iter().next().ok_or_else(empty)
+    }
+
     /// Waits for the values and returns them. Returns [`GpuError::WouldBlock`] for [`Waiting::Block`] in a browser, and
     /// [`GpuError::Lost`] if the device is lost.
     pub(crate) async fn values(self, waiting: Waiting) -> Result<Vec<T>, GpuError> {

@@ -135,8 +135,7 @@ impl<'a> GpuEngine<'a> {
         encode: impl FnOnce(&mut Passes<'_>) + Send,
     ) -> Result<Control, GpuError> {
         let copied = self.submit_and_copy(encode, &self.dispatches.control, 1)?;
-        let control: Vec<Control> = copied.values(self.waiting).await?;
-        control.first().copied().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
+        copied.first(self.waiting).await
     }
 
     /// Submits what `encode` encodes and an evaluation, and returns the evaluated objectives.

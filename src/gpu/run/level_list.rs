@@ -134,7 +134,7 @@ impl<'g> LevelList<'g> {
         parts.map(step).collect()
     }
 
-    /// Lists a transfer between the free vertices and the first level, with one dispatch for each part of the one-rings.
+    /// Lists a transfer between the free vertices and the first level. Each part of the one-rings has a dispatch.
     fn transfer_by_rings(
         &mut self,
         kernel: &Kernel,

@@ -39,7 +39,7 @@ pub(super) enum Op {
     Coarse(CoarseOp),
     Step(StepOp),
     Lattice(LatticeOp),
-    /// The kernel's layout has no uniform of its own for each dispatch.
+    /// A dispatch of a kernel whose layout has no operation.
     None,
 }
 

@@ -30,21 +30,24 @@ impl Corrections {
         let tolerance = history.rule().tolerance;
         let (left, is_whole) = self.tail.record(&step, f.max(MIN_SCALE), tolerance, engine.noise());
         let above = [history.last(), f].map(|f| f - self.least_objective());
-        self.stage = match self.tail.is_stuck(&step, is_whole, above) {
-            true => {
-                // Corrections leave sliding vertices where they are. A guard that binds shortens all later steps too.
-                let is_guarded = self.step(1.0).shape_guard.is_finite();
-                self.can_step = step.slides && !is_guarded && self.attempts < MOST_BEGINNINGS;
-                Stage::Before { until: history.f().len() + SWEEPS_AFTER }
-            }
-            false => Stage::Stepping { left },
-        };
+        match self.tail.is_stuck(&step, is_whole, above) {
+            true => self.leave_steps(step.slides, history.f().len()),
+            false => self.stage = Stage::Stepping { left },
+        }
         if self.plan.track_all || !self.plan.is_monotone() {
             return Ok(Some(engine.objectives().await?));
         }
         let mut objectives = Objectives::empty();
         objectives.set(self.metric(), f);
         Ok(Some(objectives))
+    }
+
+    /// Goes back to sweeps alone after `done` evaluations. Steps begin again if vertices slide, as corrections leave sliding
+    /// vertices where they are. A guard that binds shortens all later steps too, so corrections follow.
+    fn leave_steps(&mut self, slides: bool, done: usize) {
+        let is_guarded = self.step(1.0).shape_guard.is_finite();
+        self.can_step = slides && !is_guarded && self.attempts < MOST_BEGINNINGS;
+        self.stage = Stage::Before { until: done + SWEEPS_AFTER };
     }
 
     /// Applies the stop rule of a run that takes Newton steps: the run has converged once the gain that remains is within
@@ -65,5 +68,32 @@ impl Corrections {
         };
         let stop = if of_f == Some(Stop::Reached) { of_f } else { end.or(of_f) };
         history.end(stop, remaining);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metric::Metric;
+    use crate::options::Options;
+    use crate::run::Plan;
+    use crate::run::truncated::fixtures::{lattice, problem};
+
+    /// A former defect: a coast on which two steps stayed short took 1,000 sweeps with corrections, which move no sliding vertex.
+    #[test]
+    fn steps_begin_again_where_vertices_slide_and_no_guard_holds_triangles() {
+        let problem = problem(&lattice(5, 1.0));
+        let goes_on = |metric: Metric, slides: bool, attempts: u32| {
+            let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });
+            let mut corrections = Corrections::new(&problem, &plan, false);
+            assert!(corrections.can_step);
+            (corrections.stage, corrections.attempts) = (Stage::Stepping { left: None }, attempts);
+            corrections.leave_steps(slides, 7);
+            assert!(matches!(corrections.stage, Stage::Before { until: 12 }));
+            corrections.can_step
+        };
+        assert!(goes_on(Metric::Imr, true, 1) && goes_on(Metric::Imr, true, MOST_BEGINNINGS - 1));
+        assert!(!goes_on(Metric::Imr, true, MOST_BEGINNINGS));
+        assert!(!goes_on(Metric::Imr, false, 1) && !goes_on(Metric::Rms, true, 1));
     }
 }

@@ -1,10 +1,10 @@
 //! The connectivity of the coarser levels of Newton steps: aggregates of vertices, and aggregates of aggregates.
 
-use crate::run::multilevel::Aggregates;
+use crate::run::multilevel::{Aggregates, NONE};
 
 /// Largest product of the numbers of neighbors of two members that may share an aggregate as neighbors. A hub with all
 /// its neighbors would be an aggregate of unlike vertices.
-pub(crate) const MOST_DEGREES: usize = 144;
+const MOST_DEGREES: usize = 144;
 /// Factor on the correction of a coarser level. Plain aggregates are too stiff, as their members move alike. In a prototype,
 /// factors from 1.5 to 2.2 changed the time of a run by 4 % at most.
 pub(crate) const STIFFNESS: f64 = 1.8;
@@ -69,14 +69,11 @@ impl Pattern {
         if rows <= least {
             return None;
         }
-        let degree = |row: usize| self.columns(row).len() - 1;
         let neighbors = |row: usize| {
-            let is_near = move |&&other: &&u32| {
-                other as usize != row && degree(row) * degree(other as usize) <= MOST_DEGREES
-            };
-            self.columns(row).iter().filter(is_near).copied()
+            self.columns(row).iter().copied().filter(move |&other| other as usize != row)
         };
-        let members = Members::new(Aggregates::new(rows, neighbors).await).await;
+        let degree = |row: usize| self.columns(row).len() - 1;
+        let members = Members::new(rows, degree, neighbors).await;
         if members.count() as f64 > (1.0 - LEAST_SHRINKAGE) * rows as f64 {
             return None;
         }
@@ -95,8 +92,19 @@ pub(crate) struct Members {
 }
 
 impl Members {
-    /// Lists the members of aggregates. Members without an aggregate become aggregates.
-    pub(crate) async fn new(mut aggregates: Aggregates) -> Self {
+    /// Joins `count` members to aggregates of neighbors. `neighbors` lists the neighbors of a member, with [`NONE`] for those that
+    /// are no members, and `degree` returns the number of neighbors. Members without an aggregate become aggregates.
+    pub(crate) async fn new<N: Iterator<Item = u32>>(
+        count: usize,
+        degree: impl Fn(usize) -> usize + Copy + Sync,
+        neighbors: impl Fn(usize) -> N + Sync,
+    ) -> Self {
+        let near = |member: usize| {
+            neighbors(member).filter(move |&other| {
+                other != NONE && degree(member) * degree(other as usize) <= MOST_DEGREES
+            })
+        };
+        let mut aggregates = Aggregates::new(count, near).await;
         aggregates.add_lone();
         let (start, members) = aggregates.members().await;
         Self { group: aggregates.of, start, members }

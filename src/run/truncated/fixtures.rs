@@ -46,7 +46,7 @@ pub(crate) fn problem(mesh: &Mesh) -> Problem {
     prepare(mesh).unwrap().1
 }
 
-/// Targets that turn and stretch from place to place.
+/// Makes a problem whose targets change direction and stretching from vertex to vertex.
 pub(crate) fn with_targets(mesh: &Mesh) -> Problem {
     let mut problem = problem(mesh);
     let tensor = |p: &[f64; 2]| {

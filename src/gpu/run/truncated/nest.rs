@@ -3,8 +3,8 @@
 use crate::gpu::kernels::uniforms::LatticeOp;
 use crate::layout::Problem;
 use crate::parallel::pace::pause;
-use crate::run::multilevel::{Aggregates, NONE};
-use crate::run::truncated::aggregation::{MOST_DEGREES, Members, Pattern};
+use crate::run::multilevel::NONE;
+use crate::run::truncated::aggregation::{Members, Pattern};
 use crate::slide::{Movers, OnCurves};
 
 /// The aggregates of the vertices that move, and those of all coarser levels.
@@ -23,11 +23,10 @@ pub(super) struct Nest {
 }
 
 /// The sliding vertices of a mesh, and the triangles around them.
-#[derive(Clone)]
 pub(super) struct SlideLists {
     /// The sliding vertices in the order of [`OnCurves::tangents`].
     pub(super) vertices: Vec<u32>,
-    /// Offset in the structure of the first triangle of each vertex that is not free.
+    /// Offset in the structure of the index of each vertex's first triangle. Free vertices have none.
     pub(super) corner_starts: u32,
     /// Offset in the structure of the other two vertices of each triangle.
     pub(super) corners: u32,
@@ -40,17 +39,7 @@ impl Nest {
     /// usually one.
     pub(super) async fn new(problem: &Problem, curves: Option<&OnCurves>) -> Self {
         let movers = Movers::new(problem, curves);
-        let degree = |mover: usize| movers.neighbors(mover).len();
-        let near = |mover: usize| movers.neighbors(mover).iter().map(|&v| movers.of(v));
-        let neighbors = |mover: usize| {
-            let is_near = move |&other: &u32| {
-                other != NONE && degree(mover) * degree(other as usize) <= MOST_DEGREES
-            };
-            near(mover).filter(is_near)
-        };
-        let mut first = Members::new(Aggregates::new(movers.count(), neighbors).await).await;
-        pause().await;
-        let mut pattern = first.pattern(|mover| near(mover as usize));
+        let (mut first, mut pattern) = movers.joined().await;
         let mut nest = Self::default();
         if let Some(curves) = curves {
             first = of_all_vertices(problem, &movers, &first);

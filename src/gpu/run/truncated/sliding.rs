@@ -3,7 +3,8 @@
 
 use glam::DVec2;
 
-use super::list::{PAIR, Prepared};
+use super::buffers::PAIR;
+use super::list::Prepared;
 use super::{Truncated, begin, expected_after, taken};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
@@ -36,8 +37,8 @@ struct Sliding {
 }
 
 impl Truncated {
-    /// Sweeps by `sweep`, and takes a Newton step from there. The host waits three times: for the gradient at the sliding vertices,
-    /// for the solution there, and for a trial; once more for each further trial.
+    /// Sweeps by `sweep`, and takes a Newton step from there. The host waits for the gradient at the sliding vertices, for the
+    /// solution at these vertices, and for each trial of a length.
     pub(crate) async fn sweep_and_slide(
         &mut self,
         on: &mut OnDevice<'_>,
@@ -56,7 +57,7 @@ impl Truncated {
                 self.encode(&mut encoder.passes("gpu-smooth run"), &self.prepared.trials);
             };
             let copied = readback::submit_and_copy(on.gpu, encode, &self.prepared.state, 1)?;
-            state = first(copied.values(on.waiting).await?)?;
+            state = copied.first(on.waiting).await?;
             to = Some(placed);
         }
         if let (true, Some(to)) = (state.length > 0.0, to) {
@@ -126,7 +127,7 @@ impl Truncated {
             let copied = readback::submit_and_copy_ranges::<u32>(on.gpu, encode, &sources)?;
             let words = copied.values(on.waiting).await?;
             let (state, solution) = words.split_at(size_of::<StepState>() / size_of::<u32>());
-            let state: StepState = first(bytemuck::cast_slice(state).to_vec())?;
+            let state: StepState = bytemuck::pod_read_unaligned(bytemuck::cast_slice(state));
             self.expected = expected_after(&state);
             if state.is_solved != 0 {
                 return Ok((state, bytemuck::cast_slice(solution).to_vec()));
@@ -177,11 +178,6 @@ impl Truncated {
         let StepOp { vertices, movers, .. } = self.prepared.step;
         u64::from(vector + vertices) * PAIR..u64::from(vector + movers) * PAIR
     }
-}
-
-/// Returns the first value that was read back.
-fn first<T>(values: Vec<T>) -> Result<T, GpuError> {
-    values.into_iter().next().ok_or_else(|| GpuError::Lost("the readback is empty".into()))
 }
 
 /// Returns the sliding vertices as unknowns, given the vertices in the order of the tangents.
