@@ -55,7 +55,8 @@ pub struct Outcome {
     /// as other triangles never change. Equal to the mean over all triangles if targets belong to places.
     pub movable_f: [f64; 2],
     /// Estimated gain of further sweeps, as a share of f over the triangles that can move (of 1e-6 if f is smaller). The estimate extrapolates the decay
-    /// of f in the last sweeps, but never beyond the ideal of f. After a Newton step of all vertices, the number is instead a
+    /// of f in the last sweeps, but never beyond the ideal of f. At the end of sweeps alone by a smooth metric, without bounds and stages, the number is
+    /// the gain of a Newton step of all vertices that the run does not take. After a Newton step of all vertices, the number is instead a
     /// bound of the gain of the quadratic model, plus the discrepancy of model and f in that step. After a run by EDGE with corrections, the estimate
     /// includes the distance between the minima of f and of EDGE's p-norm.
     ///

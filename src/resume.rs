@@ -159,7 +159,7 @@ mod tests {
             let mut spoiled = first.checkpoint.clone().unwrap();
             let engine = &mut spoiled.saved.engine;
             engine.positions[0].x = 1e200;
-            for (name, bytes) in &mut engine.own {
+            for (name, bytes) in &mut engine.own.0 {
                 if name == "positions" {
                     bytes[..4].copy_from_slice(&3e38_f32.to_le_bytes());
                 }

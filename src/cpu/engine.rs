@@ -345,6 +345,22 @@ impl Engine for CpuEngine {
         Ok(Some(truncated.step(step, problem, positions, curves.as_mut(), moved, request).await))
     }
 
+    async fn remaining(
+        &mut self,
+        step: &SweepParams,
+        request: &StepRequest,
+    ) -> Result<Option<f64>, GpuError> {
+        let Self { problem, positions, curves, moved, .. } = self;
+        *moved = Vec::new();
+        let mut truncated = Truncated::new(problem, curves.as_ref()).await;
+        Ok(truncated.remaining(step, problem, positions, curves.clone(), request).await)
+    }
+
+    fn go_on(&mut self, _tolerance: f64) -> Result<(), GpuError> {
+        // The history judges the sweeps of this engine.
+        Ok(())
+    }
+
     async fn excess_along(&mut self, length: f64) -> Result<Option<f64>, GpuError> {
         Ok(self.try_length(length).await)
     }

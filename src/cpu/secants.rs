@@ -83,11 +83,12 @@ impl Secants {
         let Self { steps, changes, low, products, is_open } = self;
         let pairs = [&steps[0], &steps[1], &changes[0], &changes[1], low];
         for (name, vectors) in VECTORS.iter().zip(pairs) {
-            state.add::<[f32; 2]>(name, &vectors.iter().map(Vec2::to_array).collect::<Vec<_>>());
+            let vectors: Vec<[f32; 2]> = vectors.iter().map(Vec2::to_array).collect();
+            state.own.add_list(name, &vectors);
         }
         let Products { along, curvature, across } = products;
-        state.add(PRODUCTS, &[along[0], along[1], curvature[0], curvature[1], *across]);
-        state.add(IS_OPEN, &[u8::from(*is_open)]);
+        state.own.add_list(PRODUCTS, &[along[0], along[1], curvature[0], curvature[1], *across]);
+        state.own.add_flag(IS_OPEN, *is_open);
     }
 
     /// Returns the pairs of a saved state, `None` unless the state has pairs for `free` free vertices.
@@ -95,14 +96,15 @@ impl Secants {
         let vectors = |i: usize| {
             let name = VECTORS[i];
             // A pair that did not exist yet was saved as an empty vector.
-            let found = state.own::<[f32; 2]>(name, free).or_else(|| state.own(name, 0))?;
+            let found =
+                state.own.list_of::<[f32; 2]>(name, free).or_else(|| state.own.list_of(name, 0))?;
             Some(found.into_iter().map(Vec2::from_array).collect::<Vec<_>>())
         };
-        let products = state.own::<f64>(PRODUCTS, 5)?;
+        let products = state.own.list_of::<f64>(PRODUCTS, 5)?;
         let [a, b, c, d, across] = <[f64; 5]>::try_from(products).ok()?;
         let low = vectors(4)?;
         let [step, change] = [vectors(0)?, vectors(2)?];
-        let is_open = state.own::<u8>(IS_OPEN, 1)?.contains(&1);
+        let is_open = state.own.flag(IS_OPEN)?;
         let is_whole = [&low, &step, &change].iter().all(|v| v.len() == free) || !is_open;
         is_whole.then_some(Self {
             steps: [step, vectors(1)?],

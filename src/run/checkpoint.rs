@@ -38,7 +38,7 @@ impl Checkpoint {
     /// First bytes of a checkpoint file in every version of the format.
     pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
     /// Version of the format that the library reads and writes. The version follows [`Self::MAGIC`], on the same line.
-    const VERSION: &str = "6";
+    const VERSION: &str = "7";
     /// Start of the second line. The rest of the line names the program and version that wrote the checkpoint.
     const WRITER: &str = "written by ";
     /// Name and version of this library.
@@ -88,19 +88,14 @@ impl Checkpoint {
             out.log(&saved.log);
             out.optional(saved.remaining);
         });
-        if let Some(words) = &saved.corrections {
-            out.record("corrections", |out| out.list(words, |out, word| out.number(*word)));
-        }
+        out.record("control", |out| out.named(&saved.control));
         let EngineState { engine, positions, best, roots, own } = &saved.engine;
         out.record("engine", |out| {
             out.text(engine);
             out.points(positions);
             out.list(best.as_slice(), |out, best| out.points(best));
             out.list(roots, |out, roots| out.list(roots, |out, r| out.0.extend(r.to_le_bytes())));
-            out.list(own, |out, (name, bytes)| {
-                out.text(name);
-                out.bytes(bytes);
-            });
+            out.named(own);
         });
         if let Some(PeriodState { began, before, f_before, stages }) = period {
             out.record("period", |out| {
@@ -158,7 +153,7 @@ impl Checkpoint {
         let saved = Saved {
             log,
             remaining,
-            corrections: records.read_if_any("corrections", |from| from.list(8, Reader::number))?,
+            control: records.read("control", Reader::named)?,
             engine: records.read("engine", |from| {
                 Some(EngineState {
                     engine: from.text()?,
@@ -167,7 +162,7 @@ impl Checkpoint {
                     roots: from.list(8, |from| {
                         from.list(4, |from| Some(f32::from_le_bytes(from.take()?)))
                     })?,
-                    own: from.list(16, |from| Some((from.text()?, from.bytes()?.to_vec())))?,
+                    own: from.named()?,
                 })
             })?,
         };
@@ -212,6 +207,7 @@ mod tests {
 
     use super::*;
     use crate::metric::Metric;
+    use crate::run::named::Named;
     use crate::run::objectives::Objectives;
 
     fn example() -> Checkpoint {
@@ -222,9 +218,11 @@ mod tests {
             positions: points.clone(),
             best: Some(points.clone()),
             roots: vec![vec![1.0, 2.0], vec![3.0, 4.0]],
-            own: Vec::new(),
+            own: Named::default(),
         };
-        engine.add("words", &[1_u32, 2, 3]);
+        engine.own.add_list("words", &[1_u32, 2, 3]);
+        let mut control = Named::default();
+        control.add_flag("settled", true);
         let opened = DoublePrelude {
             log: log.clone(),
             least: 1.25,
@@ -243,7 +241,7 @@ mod tests {
                 opened: Some(opened),
                 on_cpu_from: Some(1),
             },
-            saved: Saved { log, remaining: Some(1e-3), corrections: Some(vec![1, 2]), engine },
+            saved: Saved { log, remaining: Some(1e-3), control, engine },
         }
     }
 
@@ -253,8 +251,6 @@ mod tests {
         let again = Checkpoint::from_bytes(&checkpoint.to_bytes()).unwrap();
         assert_eq!(again, checkpoint);
         assert_eq!((again.sweeps(), again.adapter()), (4, None));
-        assert_eq!(again.saved.engine.own::<u32>("words", 3), Some(vec![1, 2, 3]));
-        assert_eq!(again.saved.engine.own::<u32>("words", 2), None);
     }
 
     #[test]
@@ -286,7 +282,7 @@ mod tests {
         assert_eq!(error(b"any notes"), "the file is not a checkpoint of gpu-smooth");
         let other = format!("{own} does not read checkpoints that");
         for (head, writer) in [
-            ("7\nwritten by gpu-smooth 9.1\n", "gpu-smooth 9.1"),
+            ("8\nwritten by gpu-smooth 9.1\n", "gpu-smooth 9.1"),
             ("2\n", "an earlier version of gpu-smooth"),
         ] {
             let bytes = [Checkpoint::MAGIC, head.as_bytes(), &bytes[60..]].concat();

@@ -8,6 +8,7 @@ use crate::error::GpuError;
 use crate::run::checkpoint::{Checkpoint, RunFingerprint};
 use crate::run::engine::Engine;
 use crate::run::history::History;
+use crate::run::named::Named;
 use crate::run::saved::{PeriodState, Saved};
 
 /// Decides when a run takes checkpoints, and whether the run falls back to the CPU if its device fails. Every method
@@ -92,7 +93,7 @@ impl<'k> Checkpointer<'k> {
         &mut self,
         engine: &mut impl Engine,
         history: &History,
-        corrections: impl FnOnce() -> Option<Vec<u64>>,
+        control: impl FnOnce() -> Named,
         period: PeriodSource<'_>,
         is_ending: bool,
     ) -> Result<(), GpuError> {
@@ -108,7 +109,7 @@ impl<'k> Checkpointer<'k> {
             Err(error) => return Err(error),
         };
         let (log, remaining) = (history.log().to_vec(), history.remaining());
-        let saved = Saved { log, remaining, corrections: corrections(), engine };
+        let saved = Saved { log, remaining, control: control(), engine };
         if let (true, Some(about)) = (whole, &self.about) {
             let period = period.map(|period| period());
             let (about, saved) = (about.clone(), saved.clone());

@@ -16,7 +16,7 @@ use crate::run::plan::Plan;
 use crate::run::saved::Saved;
 use crate::run::stop::Stop;
 use crate::run::sweep_params::SweepParams;
-use crate::run::sweeps;
+use crate::run::sweeping::Sweeping;
 
 /// A callback that receives the progress of a run and can end the run: any `FnMut(&Progress) -> ControlFlow<()>` that
 /// is `Send`. Browsers have no threads, so `Send` is not required there.
@@ -58,9 +58,9 @@ pub enum Phase {
 }
 
 /// Whether corrections from coarser levels follow the sweeps of a run.
-enum Strategy {
+pub(crate) enum Strategy {
     /// Sweeps without corrections.
-    Sweeps,
+    Sweeps(Sweeping),
     /// Sweeps with corrections from coarser levels.
     Corrected(Box<Corrections>),
 }
@@ -98,30 +98,22 @@ pub(crate) struct Session<E> {
 }
 
 impl<E: Engine> Session<E> {
-    /// Begins a run by `plan` on an engine at its start, or after the sweeps in `log`. Without `corrections`, the run
-    /// makes sweeps alone.
-    pub(crate) fn new(
-        engine: E,
-        plan: &Plan,
-        corrections: Option<Corrections>,
-        log: &[Objectives],
-    ) -> Self {
-        let strategy = corrections
-            .map_or(Strategy::Sweeps, |corrections| Strategy::Corrected(Box::new(corrections)));
+    /// Begins a run by `plan` on an engine at its start, or after the sweeps in `log`.
+    pub(crate) fn new(engine: E, plan: &Plan, strategy: Strategy, log: &[Objectives]) -> Self {
         let history = History::resumed(plan, log, None);
         Self { engine, plan: plan.clone(), strategy, history, batch: 1 }
     }
 
     /// Returns to a saved state. [`DriveError::Foreign`] if the state does not fit the run.
     pub(crate) async fn restore(&mut self, saved: Saved) -> Result<(), DriveError> {
-        let Saved { log, remaining, corrections, engine: state } = saved;
+        let Saved { log, remaining, control, engine: state } = saved;
         self.history = History::resumed(&self.plan, &log, remaining);
-        let fits = match (&mut self.strategy, corrections) {
-            (Strategy::Sweeps, None) => true,
-            (Strategy::Corrected(strategy), Some(words)) => {
-                strategy.restore(&words, log.len(), !state.roots.is_empty())
+        let Self { strategy, engine, history, .. } = self;
+        let fits = match strategy {
+            Strategy::Sweeps(sweeping) => sweeping.restore(&control, engine, history)?,
+            Strategy::Corrected(corrections) => {
+                corrections.restore(&control, log.len(), !state.roots.is_empty())
             }
-            _ => false,
         };
         let is_finite = !log.is_empty() && self.history.first_not_finite(0).is_none();
         if let Strategy::Corrected(corrections) = &mut self.strategy {
@@ -173,11 +165,11 @@ impl<E: Engine> Session<E> {
             let f = self.history.last();
             let is_ending = observe(&Progress { phase, sweep, f }).is_break();
             let Self { engine, strategy, history, .. } = self;
-            let corrections = || match strategy {
-                Strategy::Sweeps => None,
-                Strategy::Corrected(corrections) => Some(corrections.save()),
+            let control = || match strategy {
+                Strategy::Sweeps(sweeping) => sweeping.save(),
+                Strategy::Corrected(corrections) => corrections.save(),
             };
-            checkpointer.after_sweeps(engine, history, corrections, period, is_ending).await?;
+            checkpointer.after_sweeps(engine, history, control, period, is_ending).await?;
             if is_ending {
                 return Ok(Some(Stop::Canceled));
             }
@@ -188,7 +180,7 @@ impl<E: Engine> Session<E> {
     async fn sweep(&mut self, sweeps: u32) -> Result<(), GpuError> {
         let Self { engine, plan, strategy, history, .. } = self;
         match strategy {
-            Strategy::Sweeps => sweeps::advance(engine, plan, history, sweeps).await,
+            Strategy::Sweeps(sweeping) => sweeping.advance(engine, plan, history, sweeps).await,
             Strategy::Corrected(corrections) => corrections.advance(engine, history, sweeps).await,
         }
     }
@@ -226,7 +218,7 @@ impl<E: Engine> Session<E> {
     /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem.
     pub(crate) fn set_targets(&mut self, problem: &Problem) -> Result<(), GpuError> {
         let problem = match &mut self.strategy {
-            Strategy::Sweeps => problem,
+            Strategy::Sweeps(_) => problem,
             Strategy::Corrected(corrections) => corrections.set_targets(problem),
         };
         self.engine.set_maps(problem)
@@ -236,7 +228,7 @@ impl<E: Engine> Session<E> {
     pub(crate) fn counts(&self) -> Counts {
         let sweeps = self.history.sweeps();
         match &self.strategy {
-            Strategy::Sweeps => Counts { alternated: sweeps, ..Counts::NONE },
+            Strategy::Sweeps(_) => Counts { alternated: sweeps, ..Counts::NONE },
             Strategy::Corrected(corrections) => Counts {
                 alternated: corrections.alternated().unwrap_or(sweeps),
                 corrections: corrections.taken(),

@@ -93,6 +93,20 @@ pub(crate) trait Engine: Send {
         std::future::ready(Ok(None))
     }
 
+    /// Returns how far a Newton step of all vertices could lower the mean excess from the present positions: the gain of the
+    /// quadratic model, with the bound of its rest. Moves no vertex. `None` if the model has negative curvature, or if the
+    /// engine takes no such steps.
+    fn remaining(
+        &mut self,
+        _step: &SweepParams,
+        _request: &StepRequest,
+    ) -> impl Future<Output = Result<Option<f64>, GpuError>> + Send {
+        std::future::ready(Ok(None))
+    }
+
+    /// Goes on after the end of [`sweeps`](Self::sweeps) by the stop rule, with another tolerance.
+    fn go_on(&mut self, tolerance: f64) -> Result<(), GpuError>;
+
     /// Drops the secant pairs, so that the next accelerated correction starts without any.
     fn forget(&mut self);
 

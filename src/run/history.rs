@@ -94,6 +94,11 @@ impl History {
         self.remaining = remaining;
     }
 
+    /// Replaces the tolerance of the stop rule.
+    pub(crate) fn set_tolerance(&mut self, tolerance: f64) {
+        self.rule.tolerance = tolerance;
+    }
+
     /// Returns whether the history has no entry yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.f.is_empty()

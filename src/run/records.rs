@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::metric::Metric;
+use crate::run::named::Named;
 use crate::run::objectives::Objectives;
 
 /// Encodes little-endian numbers, lists after their length, and named records.
@@ -43,6 +44,13 @@ impl Writer {
 
     pub(crate) fn text(&mut self, text: &str) {
         self.bytes(text.as_bytes());
+    }
+
+    pub(crate) fn named(&mut self, named: &Named) {
+        self.list(&named.0, |out, (name, bytes)| {
+            out.text(name);
+            out.bytes(bytes);
+        });
     }
 
     pub(crate) fn points(&mut self, points: &[DVec2]) {
@@ -132,6 +140,10 @@ impl<'b> Reader<'b> {
 
     pub(crate) fn text(&mut self) -> Option<String> {
         String::from_utf8(self.bytes()?.to_vec()).ok()
+    }
+
+    pub(crate) fn named(&mut self) -> Option<Named> {
+        self.list(16, |from| Some((from.text()?, from.bytes()?.to_vec()))).map(Named)
     }
 
     pub(crate) fn points(&mut self) -> Option<Vec<DVec2>> {

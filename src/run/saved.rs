@@ -1,9 +1,9 @@
 //! The state of a run between two sweeps, from which the run can continue.
 
-use bytemuck::Pod;
 use glam::DVec2;
 
 use crate::layout::Problem;
+use crate::run::named::Named;
 use crate::run::objectives::Objectives;
 
 /// Name of the CPU engine in [`EngineState::engine`].
@@ -19,8 +19,8 @@ pub(crate) struct Saved {
     pub(crate) log: Vec<Objectives>,
     /// Estimated remaining gain as a share of f. `None` without an estimate.
     pub(crate) remaining: Option<f64>,
-    /// State of the corrections as words. `None` for a run of sweeps alone.
-    pub(crate) corrections: Option<Vec<u64>>,
+    /// State that determines which sweeps, corrections and steps follow, and when the run ends.
+    pub(crate) control: Named,
     pub(crate) engine: EngineState,
 }
 
@@ -56,36 +56,24 @@ pub(crate) struct EngineState {
     /// Roots from which the coarser levels were built, and then the roots to which the levels were fitted, in order.
     /// Empty without levels, or if the state is not whole.
     pub(crate) roots: Vec<Vec<f32>>,
-    /// Named data for engines of equal kind, such as secant pairs.
-    pub(crate) own: Vec<(String, Vec<u8>)>,
+    /// Data for engines of equal kind, such as secant pairs.
+    pub(crate) own: Named,
 }
 
 impl EngineState {
-    /// Adds named data for engines of the same kind.
-    pub(crate) fn add<T: Pod>(&mut self, name: &str, values: &[T]) {
-        self.own.push((name.to_owned(), bytemuck::cast_slice(values).to_vec()));
-    }
-
     /// Adds the local maps of a problem, if it has any.
     pub(crate) fn add_local_maps(&mut self, problem: &Problem) {
         if let (true, Some(maps)) = (problem.has_local_maps(), problem.maps()) {
-            self.add(LOCAL_MAPS, maps);
+            self.own.add_list(LOCAL_MAPS, maps);
         }
     }
 
     /// Sets the local maps of a problem to the saved maps. Returns false, and changes nothing, if the state has none for
     /// this problem.
     pub(crate) fn restore_local_maps(&self, problem: &mut Problem) -> bool {
-        let maps = self.own::<[f32; 3]>(LOCAL_MAPS, problem.positions().len());
+        let maps = self.own.list_of::<[f32; 3]>(LOCAL_MAPS, problem.positions().len());
         let maps = maps.filter(|maps| maps.as_flattened().iter().all(|x| x.is_finite()));
         let maps = maps.filter(|_| problem.has_local_maps());
         maps.map(|maps| problem.set_local_maps(maps)).is_some()
-    }
-
-    /// Returns the data called `name`. `None` for an unknown name, or for data of another length than `count` values.
-    pub(crate) fn own<T: Pod>(&self, name: &str, count: usize) -> Option<Vec<T>> {
-        let (_, bytes) = self.own.iter().find(|(known, _)| known == name)?;
-        let is_whole = bytes.len() == count.checked_mul(size_of::<T>())?;
-        is_whole.then(|| bytemuck::pod_collect_to_vec(bytes))
     }
 }

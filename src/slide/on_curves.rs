@@ -352,11 +352,11 @@ impl OnCurves {
     /// Adds the parameters and the counts of presses to a saved state, and the parameters of the best state if given.
     pub(crate) fn save(&self, best: Option<&Params>, state: &mut EngineState) {
         let [params, presses, of_best, short] = NAMES;
-        state.add(params, &self.params.concat());
-        state.add(presses, &self.presses.concat());
-        state.add(short, &[self.short]);
+        state.own.add_list(params, &self.params.concat());
+        state.own.add_list(presses, &self.presses.concat());
+        state.own.add(short, self.short);
         if let Some(best) = best {
-            state.add(of_best, &best.concat());
+            state.own.add_list(of_best, &best.concat());
         }
     }
 
@@ -366,10 +366,10 @@ impl OnCurves {
         let count = self.params.iter().map(Vec::len).sum();
         let [params, presses, of_best, short] = NAMES;
         let params = self.read(state, params, count)?;
-        let short: Vec<u8> = state.own(short, 1)?;
-        let presses: Vec<i8> = state.own(presses, count)?;
+        let short: u8 = state.own.one(short)?;
+        let presses: Vec<i8> = state.own.list_of(presses, count)?;
         let of_best = self.read(state, of_best, count);
-        (self.params, self.short) = (params, short[0].min(MOST_SHORT));
+        (self.params, self.short) = (params, short.min(MOST_SHORT));
         let mut presses =
             presses.into_iter().map(|presses| presses.clamp(-FREEZES_AFTER, FREEZES_AFTER));
         for of_curve in &mut self.presses {
@@ -380,7 +380,7 @@ impl OnCurves {
 
     /// Reads parameters of a saved state. `None` if they do not fit the curves.
     fn read(&self, state: &EngineState, name: &str, count: usize) -> Option<Params> {
-        let mut all = state.own::<f64>(name, count)?.into_iter();
+        let mut all = state.own.list_of::<f64>(name, count)?.into_iter();
         let of_curve = |of_curve: &Vec<f64>| all.by_ref().take(of_curve.len()).collect();
         let params: Params = self.params.iter().map(of_curve).collect();
         let is_finite = params.iter().flatten().all(|param| param.is_finite());

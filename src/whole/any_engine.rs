@@ -107,6 +107,18 @@ impl Engine for AnyEngine<'_> {
         on!(self, engine => engine.sweep_and_step(step, request).await)
     }
 
+    async fn remaining(
+        &mut self,
+        step: &SweepParams,
+        request: &StepRequest,
+    ) -> Result<Option<f64>, GpuError> {
+        on!(self, engine => engine.remaining(step, request).await)
+    }
+
+    fn go_on(&mut self, tolerance: f64) -> Result<(), GpuError> {
+        on!(self, engine => engine.go_on(tolerance))
+    }
+
     fn forget(&mut self) {
         on!(self, engine => engine.forget());
     }

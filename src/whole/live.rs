@@ -17,7 +17,8 @@ use crate::resume;
 use crate::run::opening::{self, DoublePrelude, Obstacle};
 use crate::run::{
     CPU, Checkpoint, Checkpointer, Corrections, Counts, DriveError, Engine, History, Leg,
-    Objectives, Observer, PeriodSource, Phase, Plan, Saved, Session, Stop, steps,
+    Objectives, Observer, PeriodSource, Phase, Plan, Saved, Session, Stop, Strategy, Sweeping,
+    steps,
 };
 use crate::slide::OnCurves;
 use crate::whole::any_engine::AnyEngine;
@@ -267,8 +268,15 @@ impl<'s> Live<'s> {
                 )
             }
         };
-        let corrections = corrected.then(|| Corrections::new(problem, plan, self.spec.is_staged));
-        let mut session = Session::new(engine, plan, corrections, log);
+        let is_staged = self.spec.is_staged;
+        let strategy = match corrected {
+            true => Strategy::Corrected(Box::new(Corrections::new(problem, plan, is_staged))),
+            false => {
+                let is_held = is_staged || problem.is_bounded() || problem.free_count() == 0;
+                Strategy::Sweeps(Sweeping::new(plan, self.spec.options.method, is_held))
+            }
+        };
+        let mut session = Session::new(engine, plan, strategy, log);
         if let Some(saved) = saved {
             session.restore(saved).await?;
         }

@@ -92,6 +92,17 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
     }
 }
 
+/// Sweeps alone on this mesh go on after a measurement has refused an end, with another tolerance of the decay.
+#[test]
+fn sweeps_alone_that_go_on_after_a_refused_end_come_to_the_same_bits() {
+    let mesh = support::perturb_random(&support::hub_evenly(200, 6), 0.5, 1);
+    let smoother = Smoother::new(&mesh).unwrap();
+    let options = Options { method: Method::RELAXED, ..Options::default() };
+    for backend in backends() {
+        assert_goes_on(&smoother, &options, backend, 4);
+    }
+}
+
 /// Around a vertex of fifty, the levels change from the coordinates of the maps to those of the plane.
 #[test]
 fn a_run_whose_levels_change_coordinates_goes_on_to_the_same_bits() {

@@ -21,7 +21,7 @@ use crate::cpu::along::Along;
 use crate::cpu::objective::{mean_excess, mean_excess_along};
 use crate::layout::Problem;
 use crate::metric::Metric;
-use crate::run::truncated::{NewtonStep, StepRequest, StepSearch};
+use crate::run::truncated::{NewtonStep, StepRequest, StepSearch, could_gain};
 use crate::run::{MIN_SCALE, SweepParams};
 use crate::slide::{OfPatch, OnCurves, Params, Tangents};
 use solve::{Solved, Solver};
@@ -67,24 +67,13 @@ impl Truncated {
         let metric: Metric = sweep.metric;
         let count = problem.judged_triangles().len() as f64;
         let swept = mean_excess(metric, problem, positions).await;
-        let scale = (swept + metric.ideal_squared()).max(MIN_SCALE);
         let mut tangents = match &mut curves {
-            Some(curves) => {
-                let here = &*positions;
-                curves.tangents(problem, |fan| {
-                    let patch = fan.patch(problem, here, 0.0);
-                    sweep.of(&patch).expansion(here[fan.own() as usize].to_array()).gradient.into()
-                })
-            }
+            Some(curves) => tangents(curves, sweep, problem, positions),
             None => Tangents::default(),
         };
         let is_exact = tangents.restrict(request.is_exact);
-        on!(self, solver => solver.linearize(metric, problem, positions, &tangents).await);
-        let movers = problem.free_count() + tangents.vertices.len();
-        let all_move = movers == problem.positions().len();
-        let request = &request.for_mesh(all_move);
-        let least_gain = request.least_gain * scale * count;
-        let solved = on!(self, solver => solver.solve(request, least_gain).await);
+        let scale = (swept + metric.ideal_squared()).max(MIN_SCALE) * count;
+        let solved = self.solve(metric, problem, positions, &tangents, request, scale).await;
         let Solved { model_gain, descent, bound, least_ritz, is_curved_down, iterations } = solved;
         let search = StepSearch::new(swept, descent / count);
         let on = curves.as_deref().map(|curves| (curves, &tangents));
@@ -113,6 +102,45 @@ impl Truncated {
             held: tangents.vertices.iter().filter(|vertex| vertex.is_held).count(),
             iterations,
         }
+    }
+
+    /// Returns how far a Newton step from `positions` could lower the mean excess. `None` if the model has negative curvature.
+    pub(super) async fn remaining(
+        &mut self,
+        sweep: &SweepParams,
+        problem: &Problem,
+        positions: &[DVec2],
+        mut curves: Option<OnCurves>,
+        request: &StepRequest,
+    ) -> Option<f64> {
+        let mut tangents = match &mut curves {
+            Some(curves) => tangents(curves, sweep, problem, positions),
+            None => Tangents::default(),
+        };
+        tangents.restrict(request.is_exact);
+        let count = problem.judged_triangles().len() as f64;
+        let (metric, scale) = (sweep.metric, request.objective * count);
+        let solved = self.solve(metric, problem, positions, &tangents, request, scale).await;
+        let Solved { model_gain, bound, is_curved_down, .. } = solved;
+        could_gain(model_gain / count, bound / count, is_curved_down)
+    }
+
+    /// Solves for a step from `positions`. `scale` is the objective, summed over the triangles.
+    async fn solve(
+        &mut self,
+        metric: Metric,
+        problem: &Problem,
+        positions: &[DVec2],
+        tangents: &Tangents,
+        request: &StepRequest,
+        scale: f64,
+    ) -> Solved {
+        on!(self, solver => solver.linearize(metric, problem, positions, tangents).await);
+        let movers = problem.free_count() + tangents.vertices.len();
+        let all_move = movers == problem.positions().len();
+        let request = &request.for_mesh(all_move);
+        let least_gain = request.least_gain * scale;
+        on!(self, solver => solver.solve(request, least_gain).await)
     }
 
     /// Tries lengths along the solution, and writes the positions at the last of them to `moved`. Returns the search, and the
@@ -147,4 +175,17 @@ impl Truncated {
         }
         (search, accepted)
     }
+}
+
+/// Returns the sliding vertices as unknowns of a step by the metric of `sweep` from `positions`.
+fn tangents(
+    curves: &mut OnCurves,
+    sweep: &SweepParams,
+    problem: &Problem,
+    positions: &[DVec2],
+) -> Tangents {
+    curves.tangents(problem, |fan| {
+        let patch = fan.patch(problem, positions, 0.0);
+        sweep.of(&patch).expansion(positions[fan.own() as usize].to_array()).gradient.into()
+    })
 }

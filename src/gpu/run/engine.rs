@@ -107,6 +107,23 @@ impl<'a> GpuEngine<'a> {
         self.truncated.as_ref()
     }
 
+    /// Prepares the mesh for Newton steps of all vertices. Returns false if the device takes no such steps.
+    async fn prepare_steps(&mut self) -> Result<bool, GpuError> {
+        let Self { gpu, problem, mesh, dispatches, truncated, .. } = self;
+        // In single precision, steps on strongly stretched triangles do not end a run. The Hessian is not bound in parts.
+        if problem.has_local_maps() || mesh.parts.count() > 1 {
+            return Ok(false);
+        }
+        if truncated.is_none() {
+            match Truncated::new(gpu, problem, mesh, dispatches).await {
+                Ok(prepared) => *truncated = Some(prepared),
+                Err(GpuError::Limit { .. } | GpuError::OutOfMemory { .. }) => return Ok(false),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(true)
+    }
+
     fn submit(&self, encode: impl FnOnce(&mut Passes<'_>)) -> Result<(), GpuError> {
         let label = "gpu-smooth run";
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some(label) };
@@ -404,28 +421,45 @@ impl Engine for GpuEngine<'_> {
         step: &SweepParams,
         request: &StepRequest,
     ) -> Result<Option<NewtonStep>, GpuError> {
-        let Self { gpu, problem, start, mesh, dispatches, truncated, waiting, .. } = self;
-        // In single precision, steps on strongly stretched triangles do not end a run. The Hessian is not bound in parts.
-        let is_left = problem.has_local_maps() || mesh.parts.count() > 1;
-        if is_left {
+        if !self.prepare_steps().await? {
             return Ok(None);
         }
-        if truncated.is_none() {
-            *truncated = match Truncated::new(gpu, problem, mesh, dispatches).await {
-                Ok(prepared) => Some(prepared),
-                Err(GpuError::Limit { .. } | GpuError::OutOfMemory { .. }) => return Ok(None),
-                Err(error) => return Err(error),
-            };
-        }
-        let Some(truncated) = truncated else { return Ok(None) };
+        let Self { gpu, problem, start, mesh, dispatches, truncated, waiting, .. } = self;
+        let (waiting, Some(truncated)) = (*waiting, truncated) else { return Ok(None) };
         if mesh.curves.is_some() {
-            let waiting = *waiting;
             let mut on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
             return truncated.sweep_and_slide(&mut on, step, request).await.map(Some);
         }
         let count = problem.judged_triangles().len() as f64;
-        let taken = truncated.sweep_and_step(gpu, dispatches, step, request, count, *waiting);
+        let taken = truncated.sweep_and_step(gpu, dispatches, step, request, count, waiting);
         Ok(Some(taken.await?))
+    }
+
+    async fn remaining(
+        &mut self,
+        _: &SweepParams,
+        request: &StepRequest,
+    ) -> Result<Option<f64>, GpuError> {
+        if !self.prepare_steps().await? {
+            return Ok(None);
+        }
+        let Self { gpu, problem, start, mesh, dispatches, truncated, waiting, .. } = self;
+        let (waiting, Some(mut truncated)) = (*waiting, truncated.take()) else { return Ok(None) };
+        if mesh.curves.is_some() {
+            let on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
+            return truncated.remaining_with_slides(&on, request).await;
+        }
+        let count = problem.judged_triangles().len() as f64;
+        truncated.remaining(gpu, request, count, waiting).await
+    }
+
+    fn go_on(&mut self, tolerance: f64) -> Result<(), GpuError> {
+        self.dispatches.plan.stop.tolerance = tolerance;
+        self.dispatches.write_params(self.gpu, &self.problem)?;
+        scoped(&self.gpu.device, || {
+            // `done` is the first word of the control block.
+            self.gpu.queue.write_buffer(&self.dispatches.control, 0, &[0; 4]);
+        })
     }
 
     fn forget(&mut self) {
@@ -475,7 +509,7 @@ impl Engine for GpuEngine<'_> {
         if !self.dispatches.plan.is_monotone() {
             let best = readback::read(gpu, &self.dispatches.best, free, waiting).await?;
             if whole {
-                state.add(BEST, &best);
+                state.own.add_list(BEST, &best);
             }
             let mut best = self.moved(best).await;
             best_curves = self.best_curves().await?;
@@ -485,10 +519,10 @@ impl Engine for GpuEngine<'_> {
             state.best = Some(best);
         }
         if whole {
-            state.add(POSITIONS, &positions);
+            state.own.add_list(POSITIONS, &positions);
             let control: Vec<Control> =
                 readback::read(gpu, &self.dispatches.control, 1, waiting).await?;
-            state.add(CONTROL, &control);
+            state.own.add_list(CONTROL, &control);
             state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
             state.add_local_maps(&self.problem);
             if let Some(secants) = &self.secants {
@@ -505,16 +539,9 @@ impl Engine for GpuEngine<'_> {
 
     async fn restore(&mut self, state: &EngineState) -> Result<bool, GpuError> {
         let (gpu, free) = (self.gpu, self.problem.free_count());
-        let saved = state.own::<[f32; 4]>(POSITIONS, self.saved_count());
+        let saved = state.own.list_of::<[f32; 4]>(POSITIONS, self.saved_count());
         let Some(positions) = saved else { return Ok(false) };
-        let Some([control]) = state
-            .own::<Control>(CONTROL, 1)
-            .as_deref()
-            .map(<[_; 1]>::try_from)
-            .and_then(Result::ok)
-        else {
-            return Ok(false);
-        };
+        let Some(control) = state.own.one::<Control>(CONTROL) else { return Ok(false) };
         if control.done != 0 || !positions.as_flattened().iter().all(|x| x.is_finite()) {
             return Ok(false);
         }
@@ -528,7 +555,7 @@ impl Engine for GpuEngine<'_> {
         self.evaluated = control.evaluated;
         let best = match self.dispatches.plan.is_monotone() {
             true => None,
-            false => match state.own::<[f32; 4]>(BEST, free) {
+            false => match state.own.list_of::<[f32; 4]>(BEST, free) {
                 None => return Ok(false),
                 best => best,
             },

@@ -128,25 +128,23 @@ impl Secants {
         state: &mut EngineState,
         waiting: Waiting,
     ) -> Result<(), GpuError> {
-        state.add(OP, &[self.op]);
+        state.own.add(OP, self.op);
         for ((name, count), buffer) in self.parts().into_iter().zip(&self.buffers) {
-            state.add::<[f32; 2]>(name, &readback::read(gpu, buffer, count, waiting).await?);
+            let values: Vec<[f32; 2]> = readback::read(gpu, buffer, count, waiting).await?;
+            state.own.add_list(name, &values);
         }
         Ok(())
     }
 
     /// Returns whether a saved state of the engine holds secant pairs.
     pub(crate) fn are_in(state: &EngineState) -> bool {
-        state.own.iter().any(|(name, _)| name == STEPS)
+        state.own.list::<[f32; 2]>(STEPS).is_some()
     }
 
     /// Restores the pairs from a saved state of the engine. Returns false if the state has no pairs for this number of
     /// free vertices.
     pub(crate) fn restore(&mut self, gpu: &Gpu, state: &EngineState) -> Result<bool, GpuError> {
-        let Some([op]) = state.own::<SecantOp>(OP, 1).and_then(|ops| <[_; 1]>::try_from(ops).ok())
-        else {
-            return Ok(false);
-        };
+        let Some(op) = state.own.one::<SecantOp>(OP) else { return Ok(false) };
         let slots = [(op.newer, op.older), (op.older, op.newer)];
         let is_known = op.free == self.op.free
             && op.partials == self.op.partials
@@ -156,7 +154,7 @@ impl Secants {
             return Ok(false);
         }
         for ((name, count), buffer) in self.parts().into_iter().zip(&self.buffers) {
-            let Some(values) = state.own::<[f32; 2]>(name, count) else { return Ok(false) };
+            let Some(values) = state.own.list_of::<[f32; 2]>(name, count) else { return Ok(false) };
             let write = || write_by_pieces(gpu, buffer, 0, bytemuck::cast_slice(&values));
             scoped(&gpu.device, write)?;
         }

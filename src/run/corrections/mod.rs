@@ -6,9 +6,9 @@ mod levels;
 pub(crate) mod plan_steps;
 mod record;
 mod reopening;
+mod saving;
 mod slow_decay;
 mod state;
 mod stepping;
-mod words;
 
 pub(crate) use state::Corrections;

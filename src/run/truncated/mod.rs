@@ -11,5 +11,5 @@ mod tail;
 
 pub(crate) use bound::ErrorBound;
 pub(crate) use search::StepSearch;
-pub(crate) use step::{NewtonStep, StepRequest};
+pub(crate) use step::{NewtonStep, StepRequest, could_gain};
 pub(crate) use tail::Tail;

@@ -4,7 +4,6 @@
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepRequest {
     /// f before the sweep, relative to which a device judges gains.
-    #[cfg_attr(not(feature = "gpu"), expect(dead_code))]
     pub(crate) objective: f64,
     /// Share of the model's gain within which conjugate gradients solve for the step.
     pub(crate) forcing: f64,
@@ -79,6 +78,12 @@ pub(crate) struct NewtonStep {
     pub(crate) held: usize,
     /// Number of iterations of conjugate gradients.
     pub(crate) iterations: u32,
+}
+
+/// Returns how far a step could lower the objective: the gain of its model, with the bound of the rest. `None` with negative
+/// curvature, and without a finite bound.
+pub(crate) fn could_gain(model_gain: f64, bound: f64, is_curved_down: bool) -> Option<f64> {
+    Some(model_gain + bound).filter(|gain| !is_curved_down && gain.is_finite())
 }
 
 #[cfg(test)]

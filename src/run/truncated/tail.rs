@@ -1,6 +1,7 @@
 //! The decisions about the Newton steps at the end of a run: the accuracy of each step, the gain that remains after the step, and
 //! the return to sweeps. No decision depends on the history of f.
 
+use crate::run::named::Named;
 use crate::run::stop::NOISE;
 use crate::run::truncated::{NewtonStep, StepRequest};
 
@@ -73,6 +74,12 @@ impl Tail {
         StepRequest { objective, forcing, least_gain, least_ritz, is_exact }
     }
 
+    /// Returns how an engine measures the gain of a step that is not taken. `objective` is f, and `tolerance` that of the run.
+    pub(crate) fn measuring(objective: f64, tolerance: f64) -> StepRequest {
+        let accurate = Self { forcing: FORCING[0], is_exact: true, ..Self::new() };
+        accurate.request(objective, tolerance)
+    }
+
     /// Records a step. `scale` is f, relative to which gains are judged, and `noise` the relative error of f on the engine.
     /// Returns an upper limit of the remaining gain, as a share of f, and whether the step was whole. The limit is `None` after a
     /// shortened step, and after a step whose bound is of another function: with negative curvature, or with curvatures of curves
@@ -141,23 +148,23 @@ impl Tail {
         [self.steps, self.iterations]
     }
 
-    /// Returns the state as words of a checkpoint.
-    pub(crate) fn words(&self) -> [u64; 7] {
+    /// Adds the state to that of a run.
+    pub(crate) fn save(&self, out: &mut Named) {
         let Self { least_ritz, forcing, idle, is_exact, agreed, steps, iterations } = *self;
-        let [idle, agreed, steps, iterations] = [idle, agreed, steps, iterations].map(u64::from);
-        [least_ritz.to_bits(), forcing.to_bits(), idle, is_exact.into(), agreed, steps, iterations]
+        out.add("least Ritz value", least_ritz);
+        out.add("forcing", forcing);
+        out.add_flag("exact", is_exact);
+        out.add_list("idle, agreed, steps and iterations", &[idle, agreed, steps, iterations]);
     }
 
-    /// Returns the state of the words that [`words`](Self::words) returned. `None` for invalid words.
-    pub(crate) fn of_words(
-        [least_ritz, forcing, idle, is_exact, agreed, steps, iterations]: [u64; 7],
-    ) -> Option<Self> {
-        let count = |word: u64| u32::try_from(word).ok();
-        let (least_ritz, forcing) = (f64::from_bits(least_ritz), f64::from_bits(forcing));
-        let is_valid = least_ritz > 0.0 && (FORCING[0]..=FORCING[1]).contains(&forcing);
-        let (idle, is_exact, agreed) = (count(idle)?, is_exact != 0, count(agreed)?);
-        let (steps, iterations) = (count(steps)?, count(iterations)?);
-        is_valid.then_some(Self { least_ritz, forcing, idle, is_exact, agreed, steps, iterations })
+    /// Returns the state that [`save`](Self::save) has added. `None` for an invalid state.
+    pub(crate) fn saved_in(from: &Named) -> Option<Self> {
+        let counts = from.list_of::<u32>("idle, agreed, steps and iterations", 4)?;
+        let &[idle, agreed, steps, iterations] = counts.as_array()?;
+        let least_ritz = from.one("least Ritz value").filter(|&least| least > 0.0)?;
+        let forcing = from.one("forcing").filter(|f| (FORCING[0]..=FORCING[1]).contains(f))?;
+        let is_exact = from.flag("exact")?;
+        Some(Self { least_ritz, forcing, idle, is_exact, agreed, steps, iterations })
     }
 }
 
@@ -263,13 +270,14 @@ mod tests {
     }
 
     #[test]
-    fn the_state_comes_back_from_its_words() {
+    fn the_state_comes_back_by_name() {
         let mut tail = Tail::new();
         tail.record(&STEP, 1.0, TOLERANCE, NOISE);
         tail.is_stuck(&STEP, false, [1.0, 1.0]);
-        assert_eq!(Tail::of_words(tail.words()), Some(tail));
-        let mut words = tail.words();
-        words[0] = f64::NAN.to_bits();
-        assert_eq!(Tail::of_words(words), None);
+        let mut saved = Named::default();
+        tail.save(&mut saved);
+        assert_eq!(Tail::saved_in(&saved), Some(tail));
+        saved.0[0].1.copy_from_slice(&f64::NAN.to_ne_bytes());
+        assert_eq!(Tail::saved_in(&saved), None);
     }
 }

@@ -22,7 +22,7 @@ use crate::gpu::run::listing::{Dispatch, encode};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::run::SweepParams;
-use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
+use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest, could_gain};
 use list::{List, Prepared};
 pub(crate) use sliding::OnDevice;
 
@@ -89,6 +89,36 @@ impl Truncated {
             self.expected = expected_after(&state);
         }
         Ok(taken(&state, count))
+    }
+
+    /// Measures how far a step from the present positions could lower the mean excess. Moves no vertex. `None` if the model has
+    /// negative curvature.
+    pub(crate) async fn remaining(
+        &mut self,
+        gpu: &Gpu,
+        request: &StepRequest,
+        count: f64,
+        waiting: Waiting,
+    ) -> Result<Option<f64>, GpuError> {
+        let Prepared { set_up, iteration, state: buffer, .. } = &self.prepared;
+        let begin = begin(request, count, false);
+        scoped(&gpu.device, || {
+            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&begin));
+        })?;
+        let mut set_up = Some(set_up);
+        loop {
+            let encode = |encoder: &mut wgpu::CommandEncoder| {
+                let mut passes = encoder.passes("gpu-smooth run");
+                set_up.take().into_iter().for_each(|set_up| self.encode(&mut passes, set_up));
+                (0..self.expected).for_each(|_| self.encode(&mut passes, iteration));
+            };
+            let copied = readback::submit_and_copy::<StepState>(gpu, encode, buffer, 1)?;
+            let state = copied.first(waiting).await?;
+            self.expected = expected_after(&state);
+            if state.is_solved != 0 {
+                return Ok(gain_of(&state, count));
+            }
+        }
     }
 
     fn encode(&self, passes: &mut Passes<'_>, list: &[Dispatch]) {
@@ -172,4 +202,10 @@ fn taken(state: &StepState, count: f64) -> NewtonStep {
         held: 0,
         iterations: state.iterations,
     }
+}
+
+/// Returns how far the step of a state could lower the mean excess; see [`could_gain`].
+fn gain_of(state: &StepState, count: f64) -> Option<f64> {
+    let NewtonStep { model_gain, bound, is_curved_down, .. } = taken(state, count);
+    could_gain(model_gain, bound, is_curved_down)
 }

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::buffers::PAIR;
 use super::list::Prepared;
-use super::{Truncated, begin, expected_after, taken};
+use super::{Truncated, begin, expected_after, gain_of, taken};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::readback::{self, Waiting};
@@ -45,7 +45,7 @@ impl Truncated {
         sweep: &SweepParams,
         request: &StepRequest,
     ) -> Result<NewtonStep, GpuError> {
-        let mut sliding = self.sweep(on, sweep).await?;
+        let mut sliding = self.slides(on, Some(sweep)).await?;
         let is_exact = sliding.tangents.restrict(request.is_exact);
         let count = on.problem.judged_triangles().len() as f64;
         let (mut state, solution) =
@@ -72,14 +72,32 @@ impl Truncated {
         Ok(NewtonStep { held, is_exact, ..taken(&state, count) })
     }
 
-    /// Sweeps, and returns the sliding vertices after the sweep with their tangents.
-    async fn sweep(&self, on: &OnDevice<'_>, sweep: &SweepParams) -> Result<Sliding, GpuError> {
+    /// Measures as [`remaining`](Self::remaining) does, with vertices that slide.
+    pub(crate) async fn remaining_with_slides(
+        &mut self,
+        on: &OnDevice<'_>,
+        request: &StepRequest,
+    ) -> Result<Option<f64>, GpuError> {
+        let mut sliding = self.slides(on, None).await?;
+        sliding.tangents.restrict(request.is_exact);
+        let count = on.problem.judged_triangles().len() as f64;
+        let begin = begin(request, count, true);
+        let (state, _) = self.solve(on, &sliding.tangents, &begin).await?;
+        Ok(gain_of(&state, count))
+    }
+
+    /// Returns the sliding vertices with their tangents, after a sweep if given.
+    async fn slides(
+        &self,
+        on: &OnDevice<'_>,
+        sweep: Option<&SweepParams>,
+    ) -> Result<Sliding, GpuError> {
         let Prepared { gradient, fine, .. } = &self.prepared;
         let lost = || GpuError::Lost("no vertex slides".into());
         let curves = on.mesh.curves.as_ref().ok_or_else(lost)?;
         let encode = |encoder: &mut wgpu::CommandEncoder| {
             let mut passes = encoder.passes("gpu-smooth run");
-            on.dispatches.encode_sweep(&mut passes, sweep);
+            sweep.into_iter().for_each(|sweep| on.dispatches.encode_sweep(&mut passes, sweep));
             self.encode(&mut passes, gradient);
         };
         let residual = self.of_boundary(0);
