@@ -175,6 +175,18 @@ impl CpuEngine {
     }
 }
 
+/// Returns the gain of a Newton step of all vertices that is not taken; see [`Engine::remaining`].
+pub(crate) async fn remaining(
+    problem: &Problem,
+    positions: &[DVec2],
+    curves: Option<OnCurves>,
+    step: &SweepParams,
+    request: &StepRequest,
+) -> Option<f64> {
+    let mut truncated = Truncated::new(problem, curves.as_ref()).await;
+    truncated.remaining(step, problem, positions, curves, request).await
+}
+
 /// Computes the correction by the coarser levels from the gradient at the free vertices. The gradient must be projected
 /// onto `tangents`; so is the correction.
 async fn correction(
@@ -350,10 +362,9 @@ impl Engine for CpuEngine {
         step: &SweepParams,
         request: &StepRequest,
     ) -> Result<Option<f64>, GpuError> {
-        let Self { problem, positions, curves, moved, .. } = self;
-        *moved = Vec::new();
-        let mut truncated = Truncated::new(problem, curves.as_ref()).await;
-        Ok(truncated.remaining(step, problem, positions, curves.clone(), request).await)
+        self.moved = Vec::new();
+        let Self { problem, positions, curves, .. } = self;
+        Ok(remaining(problem, positions, curves.clone(), step, request).await)
     }
 
     fn go_on(&mut self, _tolerance: f64) -> Result<(), GpuError> {

@@ -13,6 +13,8 @@ mod vcycle;
 mod within;
 
 pub(crate) use engine::CpuEngine;
+#[cfg(feature = "gpu")]
+pub(crate) use engine::remaining;
 pub(crate) use objective::{mean_excess, mean_excess_left_out};
 pub(crate) use sweep::held_back;
 pub(crate) use vcycle::correction;

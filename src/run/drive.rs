@@ -132,8 +132,7 @@ impl<E: Engine> Session<E> {
         &self.history
     }
 
-    /// Sweeps to the end of a leg. Returns the reason if the run ends, and `None` at the end of the leg or if the run
-    /// [needs double precision](Self::needs_double).
+    /// Sweeps to the end of a leg. Returns the reason if the run ends, and `None` at the end of the leg.
     pub(crate) async fn advance(
         &mut self,
         leg: Leg<'_>,
@@ -143,7 +142,7 @@ impl<E: Engine> Session<E> {
         let Leg { until, requires_levels, phase, done, period } = leg;
         loop {
             let left = until - self.history.sweeps().min(until);
-            if left == 0 && !self.history.is_empty() || self.needs_double() {
+            if left == 0 && !self.history.is_empty() {
                 return Ok(None);
             }
             let (start, known) = (Instant::now(), self.history.f().len());
@@ -183,26 +182,6 @@ impl<E: Engine> Session<E> {
             Strategy::Sweeps(sweeping) => sweeping.advance(engine, plan, history, sweeps).await,
             Strategy::Corrected(corrections) => corrections.advance(engine, history, sweeps).await,
         }
-    }
-
-    /// Returns whether the next sweep needs an engine in double precision.
-    pub(crate) fn needs_double(&self) -> bool {
-        matches!(&self.strategy, Strategy::Corrected(corrections) if corrections.needs_double())
-    }
-
-    /// Continues the run on another engine, made by `engine` for the problem of the corrections. The objectives of the
-    /// new engine replace those after the last sweep.
-    pub(crate) async fn continue_in_double(
-        &mut self,
-        engine: impl FnOnce(&Problem) -> Result<E, GpuError>,
-    ) -> Result<(), GpuError> {
-        let Strategy::Corrected(corrections) = &mut self.strategy else { return Ok(()) };
-        corrections.continue_in_double();
-        self.batch = 1;
-        self.engine = engine(corrections.problem())?;
-        let now = self.engine.objectives().await?;
-        self.disturbed(self.history.sweeps().saturating_sub(1), now);
-        Ok(())
     }
 
     /// Records that the host has moved vertices after `from` sweeps, or has changed targets. `now` are the objectives

@@ -112,7 +112,21 @@ impl Engine for AnyEngine<'_> {
         step: &SweepParams,
         request: &StepRequest,
     ) -> Result<Option<f64>, GpuError> {
-        on!(self, engine => engine.remaining(step, request).await)
+        let left = on!(self, engine => engine.remaining(step, request).await)?;
+        let AnyEngine::Device(engine) = self else { return Ok(left) };
+        let most = 2.0 * request.least_gain * request.objective;
+        if left.is_some_and(|left| left <= most) {
+            return Ok(left);
+        }
+        // In single precision, rounding looks like a gain or like negative curvature, and a device takes no steps on some meshes.
+        #[cfg(feature = "gpu")]
+        {
+            let curves = engine.best_curves().await?;
+            let positions = engine.positions().await?.into_owned();
+            Ok(crate::cpu::remaining(engine.problem(), &positions, curves, step, request).await)
+        }
+        #[cfg(not(feature = "gpu"))]
+        match **engine {}
     }
 
     fn go_on(&mut self, tolerance: f64) -> Result<(), GpuError> {

@@ -1,5 +1,5 @@
 //! The sweeps of a whole run on several engines: in double precision while triangles are too flat for a device, on the
-//! device, and on the CPU after a failure of the device, or once corrections that the device refused are tried again. A
+//! device, and on the CPU after a failure of the device. A
 //! run with targets on a strongly stretched mesh is done on the CPU alone.
 
 use std::borrow::Cow;
@@ -70,8 +70,7 @@ pub(crate) struct Live<'s> {
     /// Tracked objectives of the given mesh, if the run begins at means of neighbors instead.
     given: Option<Objectives>,
     opened: Option<DoublePrelude>,
-    /// Number of sweeps before the CPU replaced a device, because the run needs double precision, or triangles are too
-    /// flat or too small for the device; 0 also if the vertices have more maps than a device stores. `None` without such
+    /// Number of sweeps before the CPU replaced a device, because triangles are too flat or too small for the device; 0 also if the vertices have more maps than a device stores. `None` without such
     /// a change.
     on_cpu_from: Option<u32>,
     fault: Option<DeviceFault>,
@@ -229,18 +228,7 @@ impl<'s> Live<'s> {
         let done = self.opened.as_ref().map_or(0, DoublePrelude::sweeps);
         let requires_levels = self.spec.options.method == Method::Multilevel;
         let leg = Leg { until, requires_levels, phase: self.spec.phase, done, period };
-        let mut stop = session.advance(leg, checkpointer, observe).await?;
-        if stop.is_none() && session.needs_double() {
-            let positions = session.engine.best_positions().await?;
-            let curves = session.engine.best_curves().await?;
-            let on_cpu = |problem: &Problem| {
-                let engine = CpuEngine::new(problem, positions, curves, &self.plan);
-                Ok(AnyEngine::Cpu(Box::new(engine)))
-            };
-            session.continue_in_double(on_cpu).await?;
-            self.leave_device(session.history().sweeps(), checkpointer);
-            stop = session.advance(leg, checkpointer, observe).await?;
-        }
+        let stop = session.advance(leg, checkpointer, observe).await?;
         let positions = session.engine.best_positions().await?;
         self.curves = session.engine.best_curves().await?;
         self.session = Some(session);

@@ -299,23 +299,27 @@ fn levels_are_built_again_in_long_runs() {
 }
 
 /// On graded meshes, rounding in single precision refuses corrections that gain less than 1e-6 of f. A run by `tmop-94` left
-/// 6.5e-6 and reported 2e-6, and a run by `shape-size` stalled: former defects.
+/// 6.5e-6 and reported 2e-6, a former defect. A device that cannot lower f further now stalls, and reports the measured rest.
 #[test]
-fn corrections_refused_by_rounding_are_tried_again_in_double_precision() {
+fn corrections_refused_by_rounding_leave_what_is_reported() {
     for (around, strength, seed, metric) in
         [(48, 0.3, 1, Metric::Tmop94), (24, 0.1, 6, Metric::ShapeSize)]
     {
         let mesh = support::perturb_random(&support::graded(around, 1e-3), strength, seed);
         for backend in backends() {
             let (outcome, left) = with_gain_left(&mesh, None, metric, backend);
-            let label = format!("{metric} on the {}: {} sweeps", name(backend), outcome.sweeps);
-            assert_eq!(outcome.stop, Stop::Converged, "{label}");
             let told = outcome.remaining.unwrap();
-            assert!(left <= 2.0 * told, "{label}: {told:e} of {left:e}");
-            assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1, "{label}");
-            let closing = outcome.closing_sweeps;
-            assert!(closing < outcome.sweeps, "{label}: {closing} on the CPU");
-            assert_eq!(closing > 0, matches!(backend, Backend::Gpu(_)), "{label}");
+            let (stop, sweeps) = (outcome.stop, outcome.sweeps);
+            let label =
+                format!("{metric} on the {}: {sweeps} sweeps, {told:e} of {left:e}", name(backend));
+            let may_stall = matches!(backend, Backend::Gpu(_)) && told > 1e-6;
+            assert!(
+                stop == Stop::Converged || may_stall && stop == Stop::Stalled,
+                "{stop:?}: {label}"
+            );
+            assert!(left <= 2.0 * told && told <= 1e-5 && sweeps <= 400, "{label}");
+            assert_eq!(outcome.history.len() as u32, sweeps + 1, "{label}");
+            assert_eq!(outcome.closing_sweeps, 0, "{label}");
         }
     }
 }
@@ -382,10 +386,10 @@ fn a_loose_tolerance_does_not_end_a_run_while_f_falls_steeply() {
     assert!(outcome.stop == Stop::Converged && f < 0.06, "{:?} at f = {f}", outcome.stop);
 }
 
-/// Runs with bounds or with work between sweeps reported estimates below the tolerance, and a remaining gain of 0 after a run with targets of
+/// Runs with bounds or with work between sweeps reported too little, and a remaining gain of 0 after a run with targets of
 /// places whose last move did not lower f: former defects.
 #[test]
-fn converged_runs_with_stages_do_not_report_less_than_the_tolerance() {
+fn converged_runs_with_bounds_or_stages_do_not_report_too_little() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let topology = Topology::new(&mesh).unwrap();
     let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
@@ -403,7 +407,12 @@ fn converged_runs_with_stages_do_not_report_less_than_the_tolerance() {
         }
         let outcome = run(&smoother, &options, &Backend::Cpu);
         assert_eq!(outcome.stop, Stop::Converged, "{outcome:?}");
-        assert!(outcome.remaining.is_none_or(|left| left >= 1e-6), "{:?}", outcome.remaining);
+        if let Some(told) = outcome.remaining {
+            let stopping = Stopping::Tolerance(1e-11);
+            let long = run(&smoother, &Options { stopping, ..options }, &Backend::Cpu);
+            let [f, least] = [&outcome, &long].map(|run| run.movable_f[1]);
+            assert!(f / least - 1.0 <= 2.0 * told, "{told:e} of {:e}", f / least - 1.0);
+        }
         told.push(outcome.remaining.is_some());
     }
     // No part of the last move lowers f by the targets at the new positions.

@@ -34,8 +34,7 @@ pub(crate) struct Report {
     /// Number of first sweeps computed in double precision on the CPU, because triangles were too flat, too small, or too
     /// stretched relative to their targets, for the GPU, or because moves or altitudes in degrees are bounded.
     pub(crate) opening_sweeps: u32,
-    /// Number of last sweeps computed in double precision on the CPU, because single precision did not suffice to end the
-    /// run.
+    /// Number of last sweeps computed in double precision on the CPU, because triangles had become too flat for the GPU.
     pub(crate) closing_sweeps: u32,
     pub(crate) levels_left_out: bool,
     /// The sweep whose result was written; 0 for the mesh as it was.

@@ -102,6 +102,10 @@ impl<'a> GpuEngine<'a> {
         })
     }
 
+    pub(crate) fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
     #[cfg(test)]
     pub(super) fn truncated(&self) -> Option<&Truncated> {
         self.truncated.as_ref()

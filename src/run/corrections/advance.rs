@@ -30,7 +30,7 @@ const MIN_FIRST_FOR_EDGE: f64 = 0.1;
 /// Number of consecutive refused corrections after which the run returns to sweeps alone.
 const MAX_REFUSED: u32 = 2;
 /// Smallest number of sweeps alone before corrections begin again.
-const SWEEPS_BETWEEN: usize = 5;
+pub(super) const SWEEPS_BETWEEN: usize = 5;
 /// Number of corrections in one stage after which levels leave the coordinates of target maps. Most runs end before. Two
 /// meshes adapted to several shocks then take 77 and 98 sweeps instead of 269 and 442.
 const MOST_IN_MAPS: u32 = 32;
@@ -56,7 +56,7 @@ impl Corrections {
         exponents(plan).flat_map(of_exponent).collect()
     }
 
-    /// Does up to `sweeps` further sweeps, fewer if the run ends or needs another engine. Sweeps that
+    /// Does up to `sweeps` further sweeps, fewer if the run ends. Sweeps that
     /// [reopen](super::reopening) triangles are not counted.
     pub(crate) async fn advance(
         &mut self,
@@ -66,10 +66,10 @@ impl Corrections {
     ) -> Result<(), GpuError> {
         if history.is_empty() {
             let start = engine.objectives().await?;
-            self.record(start, history, engine.noise());
+            self.record(engine, start, history).await?;
         }
         for _ in 0..sweeps {
-            if history.stop().is_some() || self.needs_double {
+            if history.stop().is_some() {
                 break;
             }
             let objectives = match self.stage {
@@ -82,7 +82,7 @@ impl Corrections {
                 Stage::Without { .. } => self.sweep_without(engine).await?,
             };
             let before = self.sharpness;
-            self.record(objectives, history, engine.noise());
+            self.record(engine, objectives, history).await?;
             self.reopen(engine, history, self.sharpness > before).await?;
             if std::mem::take(&mut self.anew) {
                 engine.forget();

@@ -7,7 +7,6 @@ pub(crate) mod plan_steps;
 mod record;
 mod reopening;
 mod saving;
-mod slow_decay;
 mod state;
 mod stepping;
 

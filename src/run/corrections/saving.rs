@@ -39,8 +39,6 @@ impl Corrections {
             ("no room for levels", self.is_left_out()),
             ("reopened", self.was_reopened),
             ("levels in the plane", self.problem.are_levels_in_plane()),
-            ("from the end", self.from_end),
-            ("needs double precision", self.needs_double),
             ("can step", self.can_step),
         ] {
             out.add_flag(name, holds);
@@ -52,6 +50,8 @@ impl Corrections {
             ("exponent", self.sharpness),
             ("levels built", self.built as u32),
             ("levels fitted", self.fitted as u32),
+            ("refused ends", self.refused_ends),
+            ("unmeasured until", self.unmeasured_until as u32),
         ] {
             out.add(name, number);
         }
@@ -89,8 +89,9 @@ impl Corrections {
         (self.built, self.fitted) = (index("levels built")?, index("levels fitted")?);
         (self.settled, self.accelerated) = (from.flag("settled")?, from.flag("accelerated")?);
         (self.was_left_out, self.has_levels) = (from.flag("no room for levels")?, has_levels);
-        (self.was_reopened, self.from_end) = (from.flag("reopened")?, from.flag("from the end")?);
-        self.needs_double = from.flag("needs double precision")?;
+        self.was_reopened = from.flag("reopened")?;
+        self.refused_ends = count("refused ends")?;
+        self.unmeasured_until = from.one::<u32>("unmeasured until")? as usize;
         self.tail = Tail::saved_in(from)?;
         if from.flag("levels in the plane")? {
             self.problem.set_levels_in_plane();

@@ -12,17 +12,13 @@ use crate::run::saved::EngineState;
 use crate::run::sweep_params::SweepParams;
 use crate::run::truncated::Tail;
 
-/// Number of successive estimates below the tolerance that end a run with accelerated corrections, whose gains are
-/// irregular. One estimate is enough if each of the last gains was less than 0.3 times the gain before (`STEADY` in
+/// Number of successive estimates below the tolerance that end a run by EDGE, whose gains are irregular. The estimates are of
+/// a p-norm near f. One estimate is enough if each of the last gains was less than 0.3 times the gain before (`STEADY` in
 /// `record.rs`).
-pub(super) const ESTIMATES: usize = 4;
+pub(super) const ESTIMATES: usize = 2;
 
 /// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 pub(super) const SWEPT: f64 = 0.1;
-
-/// Number of neighbors of a vertex in usual meshes, which is at most 14, with a margin. Around vertices with more neighbors,
-/// gains are as irregular as with accelerated corrections.
-const MOST_USUAL: u32 = 16;
 
 /// Number of times that corrections begin after a few sweeps alone. Refused once more, corrections wait until sweeps alone
 /// would end the run.
@@ -32,8 +28,6 @@ pub(super) const ATTEMPTS: u32 = 5;
 pub(crate) struct Corrections {
     pub(super) problem: Problem,
     pub(super) plan: Plan,
-    /// Whether a free vertex has more than [`MOST_USUAL`] neighbors.
-    pub(super) has_hub: bool,
     /// Whether stages of the driver change positions between sweeps, so that the history of f is not a decay.
     pub(super) is_staged: bool,
     pub(super) stage: Stage,
@@ -45,9 +39,6 @@ pub(crate) struct Corrections {
     pub(super) alternated: u32,
     /// Whether neither the last correction nor a further sweep can gain anything.
     pub(super) settled: bool,
-    /// Whether the present stage of corrections, or the last one, began because sweeps alone would have ended the run as
-    /// converged.
-    pub(super) from_end: bool,
     /// Slope along the last correction of the present stage. `None` before the first correction.
     pub(super) slope: Option<f64>,
     /// Binary logarithm of the present exponent of EDGE's p-norm.
@@ -74,9 +65,9 @@ pub(crate) struct Corrections {
     pub(super) was_reopened: bool,
     /// Whether the engine of the saved state, from which the run continues, had no room for the levels.
     pub(super) was_left_out: bool,
-    /// Whether the next sweep needs an engine in double precision: corrections begin again, and in single precision
-    /// they would be refused because of rounding.
-    pub(super) needs_double: bool,
+    /// Number of ends that a measurement has refused, and the index in the history from which the next is measured.
+    pub(super) refused_ends: u32,
+    pub(super) unmeasured_until: usize,
     /// Time of building and fitting the levels.
     pub(super) levels_time: Duration,
     /// State of the Newton steps of all vertices.
@@ -120,14 +111,12 @@ impl Corrections {
         Self {
             problem: problem.clone(),
             plan: plan.clone(),
-            has_hub: problem.ring_start().windows(2).any(|range| range[1] - range[0] > MOST_USUAL),
             is_staged,
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
             alternated: 0,
             settled: false,
-            from_end: false,
             slope: None,
             sharpness: *exponents(plan).start(),
             lowered: Vec::new(),
@@ -140,8 +129,9 @@ impl Corrections {
             left_out: None,
             was_reopened: false,
             was_left_out: false,
+            refused_ends: 0,
+            unmeasured_until: 0,
             levels_time: Duration::ZERO,
-            needs_double: false,
             tail: Tail::new(),
             can_step: can_step(problem, plan, is_staged),
         }
@@ -150,22 +140,6 @@ impl Corrections {
     /// Returns the time of building and fitting the levels, from the readback of the stiffness to the upload.
     pub(crate) fn levels_time(&self) -> Duration {
         self.levels_time
-    }
-
-    /// Returns the mesh with the maps of the present levels.
-    pub(crate) fn problem(&self) -> &Problem {
-        &self.problem
-    }
-
-    /// Returns whether the run continues on an engine in double precision.
-    pub(crate) fn needs_double(&self) -> bool {
-        self.needs_double
-    }
-
-    /// Records that an engine in double precision continues the run.
-    pub(crate) fn continue_in_double(&mut self) {
-        // With acceleration, a run converges only after several estimates. The modes that remain are slow.
-        (self.needs_double, self.accelerated) = (false, true);
     }
 
     /// Returns the number of sweeps with alternating metrics. `None` before the first correction.
@@ -210,7 +184,6 @@ impl Corrections {
         self.anew = self.accelerated;
         self.estimates = [f64::INFINITY; ESTIMATES];
         self.lowered.clear();
-        self.from_end = false;
         self.stage = Stage::Correcting(Correcting { since: done, length, proposed: 0, refused: 0 });
     }
 

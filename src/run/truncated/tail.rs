@@ -160,7 +160,7 @@ impl Tail {
     /// Returns the state that [`save`](Self::save) has added. `None` for an invalid state.
     pub(crate) fn saved_in(from: &Named) -> Option<Self> {
         let counts = from.list_of::<u32>("idle, agreed, steps and iterations", 4)?;
-        let &[idle, agreed, steps, iterations] = counts.as_array()?;
+        let [idle, agreed, steps, iterations] = counts.try_into().ok()?;
         let least_ritz = from.one("least Ritz value").filter(|&least| least > 0.0)?;
         let forcing = from.one("forcing").filter(|f| (FORCING[0]..=FORCING[1]).contains(f))?;
         let is_exact = from.flag("exact")?;
