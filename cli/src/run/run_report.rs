@@ -95,9 +95,8 @@ pub(super) fn report(
     }
 }
 
-/// Multiple of the tolerance that runs with slow modes report as the least
-/// [`Outcome::remaining`](gpu_smooth::Outcome::remaining), on any engine.
-const SLOW_MODES: f64 = 2.0;
+/// Multiple of the tolerance that a run reports if bounds or a guard may hold vertices, whatever the precision of the engine.
+const HELD: f64 = 2.0;
 
 /// Returns whether a GPU ended the run as converged, although the error of its f exceeds the tolerance.
 fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
@@ -107,7 +106,7 @@ fn is_imprecise(input: &Input<'_>, ran: &FinishedRun) -> bool {
     let is_smooth = request.scheme().base() != Metric::Edge;
     let exceeds = |tolerance: f64| {
         let is_of_precision = |left: &f64| {
-            *left > tolerance.max(outcome.projection_error) && *left != SLOW_MODES * tolerance
+            *left > tolerance.max(outcome.projection_error) && *left != HELD * tolerance
         };
         outcome.remaining.as_ref().is_some_and(is_of_precision)
     };
