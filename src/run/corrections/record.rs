@@ -91,8 +91,8 @@ impl Corrections {
         Ok(())
     }
 
-    /// Applies the stop rule to the decay of the objective in the present stage. Returns the estimate of the remaining gain as a
-    /// share of f, if any, and the reason for which the objective ends the run, if it does.
+    /// Applies the stop rule to the decay of the objective in the present stage. Returns the estimated remaining gain as a
+    /// share of f, and the reason for which the objective ends the run; `None` without an estimate, and if the run goes on.
     fn judged_by_decay(
         &mut self,
         rule: &StopRule,

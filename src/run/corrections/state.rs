@@ -12,8 +12,8 @@ use crate::run::saved::EngineState;
 use crate::run::sweep_params::SweepParams;
 use crate::run::truncated::Tail;
 
-/// Number of successive estimates below the tolerance that end a run by EDGE, whose gains are irregular. The estimates are of
-/// a p-norm near f. One estimate is enough if each of the last gains was less than 0.3 times the gain before (`STEADY` in
+/// Number of successive estimates below the tolerance that end a run by EDGE, whose gains are irregular. Each
+/// is an estimate of a p-norm near f. One estimate is enough if each of the last gains was less than 0.3 times the gain before (`STEADY` in
 /// `record.rs`).
 pub(super) const ESTIMATES: usize = 2;
 
