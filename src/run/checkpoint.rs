@@ -15,7 +15,7 @@ use crate::run::saved::{CPU, EngineState, PeriodState, Saved};
 pub struct Checkpoint {
     pub(crate) about: RunFingerprint,
     pub(crate) saved: Saved,
-    /// State of the stages. `None` for a run without stages.
+    /// State of the stage of a target field. `None` for a run without such a stage.
     pub(crate) period: Option<PeriodState>,
 }
 
@@ -97,14 +97,12 @@ impl Checkpoint {
             out.list(roots, |out, roots| out.list(roots, |out, r| out.0.extend(r.to_le_bytes())));
             out.named(own);
         });
-        if let Some(PeriodState { began, before, f_before, stages }) = period {
+        if let Some(PeriodState { began, before, f_before, stage }) = period {
             out.record("period", |out| {
                 out.number((*began).into());
                 out.points(before);
                 out.real(*f_before);
-            });
-            out.record("stages", |out| {
-                stages.iter().for_each(|(name, state)| out.record(name, |out| out.0.extend(state)));
+                out.named(stage);
             });
         }
         let sum = crc32(&out.0);
@@ -171,22 +169,10 @@ impl Checkpoint {
                 began: from.count()?,
                 before: from.points()?,
                 f_before: from.real()?,
-                stages: Vec::new(),
+                stage: from.named()?,
             })
         })?;
-        let stages = records.read_if_any("stages", |from| {
-            let mut stages = Vec::new();
-            while !from.is_empty() {
-                stages.push((from.text()?, from.bytes()?.to_vec()));
-            }
-            Some(stages)
-        })?;
         records.end()?;
-        let period = match (period, stages) {
-            (Some(period), Some(stages)) => Some(PeriodState { stages, ..period }),
-            (None, None) => None,
-            _ => return None,
-        };
         Some(Self { about, saved, period })
     }
 }
@@ -229,9 +215,9 @@ mod tests {
             positions: points.clone(),
             best: points,
         };
-        let stages = vec![("slide".to_owned(), vec![1, 2, 3]), ("move limit".to_owned(), vec![])];
+        let stage = control.clone();
         let period =
-            PeriodState { began: 2, before: engine.positions.clone(), f_before: 1.5, stages };
+            PeriodState { began: 2, before: engine.positions.clone(), f_before: 1.5, stage };
         Checkpoint {
             period: Some(period),
             about: RunFingerprint {

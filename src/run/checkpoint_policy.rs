@@ -65,7 +65,7 @@ pub(crate) struct NoCheckpoints;
 
 impl CheckpointPolicy for NoCheckpoints {}
 
-/// Returns the state of the host and the stages at the start of the present period. `None` in a run without stages.
+/// Returns the state of the host and the stage at the start of the present period. `None` in a run without a target field.
 pub(crate) type PeriodSource<'p> = Option<&'p (dyn Fn() -> PeriodState + Sync)>;
 
 /// Smallest ratio of the time between two saves to the time of a save.

@@ -70,7 +70,7 @@ pub(crate) fn steps(plan: &Plan, corrected: bool) -> Vec<SweepParams> {
     if corrected { Corrections::steps(plan) } else { plan.steps() }
 }
 
-/// A leg of a run: the sweeps between two stages on the host.
+/// A leg of a run: the whole run, or a period between two evaluations of a target field on the host.
 #[derive(Clone, Copy)]
 pub(crate) struct Leg<'l> {
     /// Last sweep of the leg, counted from the start of the session.
@@ -82,7 +82,7 @@ pub(crate) struct Leg<'l> {
     pub(crate) phase: Phase,
     /// Number of sweeps on the CPU before the engine began, which reports to the observer include.
     pub(crate) done: u32,
-    /// Source of the state of the host and the stages, for checkpoints.
+    /// Source of the state of the host and the stage, for checkpoints.
     pub(crate) period: PeriodSource<'l>,
 }
 

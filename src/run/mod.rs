@@ -35,6 +35,7 @@ pub(crate) use drive::{Counts, DriveError, Leg, Session, Strategy, steps};
 pub use drive::{Observer, Phase, Progress};
 pub(crate) use engine::{EXCLUSION_PASSES, Engine, Proposal};
 pub(crate) use history::History;
+pub(crate) use named::Named;
 pub use objectives::Objectives;
 
 pub use plan::Plan;

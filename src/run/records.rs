@@ -96,14 +96,6 @@ impl<'b> Reader<'b> {
         u32::try_from(self.number()?).ok()
     }
 
-    pub(crate) fn flag(&mut self) -> Option<bool> {
-        match self.number()? {
-            0 => Some(false),
-            1 => Some(true),
-            _ => None,
-        }
-    }
-
     pub(crate) fn real(&mut self) -> Option<f64> {
         self.number().map(f64::from_bits)
     }

@@ -31,7 +31,7 @@ impl Saved {
     }
 }
 
-/// The state of the host and of its stages when a period began.
+/// The state of the host and of the stage of a target field when a period began.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PeriodState {
     /// Number of sweeps before the period.
@@ -40,8 +40,8 @@ pub(crate) struct PeriodState {
     pub(crate) before: Vec<DVec2>,
     /// Base objective f before the period.
     pub(crate) f_before: f64,
-    /// Name and encoded state of each stage, in the order of their work.
-    pub(crate) stages: Vec<(String, Vec<u8>)>,
+    /// State of the stage.
+    pub(crate) stage: Named,
 }
 
 /// The state of an engine between two sweeps.

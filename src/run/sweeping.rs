@@ -28,7 +28,7 @@ pub(crate) struct Sweeping {
 }
 
 impl Sweeping {
-    /// Creates the state at the start of a run. `is_held` is whether bounds, stages or other limits keep vertices from the minimum
+    /// Creates the state at the start of a run. `is_held` is whether bounds or a target field keep vertices from the minimum
     /// of f.
     ///
     /// By the paper's method, if metrics alternate, and with a guard of triangles, the decay alone decides where a run ends, and the

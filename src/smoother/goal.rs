@@ -109,9 +109,9 @@ impl Smoother<'_> {
         set_guards(&mut plan, options.guard, problem, positions).await;
         let device = device.filter(|_| !self.slides_on_cpu());
         let (phase, curves) = (Phase::Reference, curves.as_ref());
-        let spec = Spec { problem, device, options, phase, is_staged: false, curves };
+        let spec = Spec { problem, device, options, phase, has_field: false, curves };
         let mut checkpointer = Checkpointer::new(policy);
         let live = Live::new(spec, plan, positions, None, &mut checkpointer).await?;
-        drive(live, &mut [], &mut checkpointer, observe, None).await
+        drive(live, None, &mut checkpointer, observe, None).await
     }
 }

@@ -24,7 +24,6 @@ use crate::whole::{Improvement, RunEnd, altitude};
 
 use super::over_all::OverAll;
 use super::prepared::Smoother;
-use super::stages::Stages;
 
 /// Number of coordinates that one task rounds, and of triangles that one task measures.
 const CHUNK: usize = 1 << 14;
@@ -76,14 +75,13 @@ impl Smoother<'_> {
         JudgedBy { over_all, initial }: JudgedBy<'_>,
         goal: Option<GoalOutcome>,
         mut ended: RunEnd,
-        stages: Stages<'_>,
         observe: &mut dyn Observer,
     ) -> Result<Outcome, SmoothError> {
         let base = options.scheme.base();
         let best_sweep = best_sweep(&ended, options);
         let swept = f_after(&ended, base, best_sweep);
         let mut problem = over_all.problem.clone();
-        stages.set_targets_at(&mut problem, &ended.positions)?;
+        self.set_targets_at(&mut problem, &ended.positions)?;
         let (improving, mut points, mut returned) =
             self.improved(options, &problem, &mut ended, observe).await?;
         let mut curves = ended.curves.take();
@@ -98,7 +96,7 @@ impl Smoother<'_> {
             }
         };
         let mut judged = self.problem.normalized(&points, take(&mut ended.positions)).await;
-        stages.set_targets_at(&mut problem, &judged)?;
+        self.set_targets_at(&mut problem, &judged)?;
         let problem = &problem;
         // f of the sweeps as stored, before the floor trades some of it for better triangles.
         let rounded = base.ideal_squared() + mean_excess(base, problem, &judged).await;

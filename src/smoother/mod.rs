@@ -11,7 +11,6 @@ mod prepared;
 mod run;
 mod running;
 mod slivers;
-mod stages;
 
 pub use backend::Backend;
 pub use prepared::Smoother;

@@ -17,10 +17,11 @@ use crate::metric::Metric;
 use crate::options::{Guard, Options};
 use crate::parallel::pace::now;
 use crate::precision::Precision;
-use crate::slide::{Slide, Sliding};
+use crate::slide::{OnCurves, Slide, Sliding};
 use crate::targets::{OutsideReport, Surface, TargetField, Targets};
 use crate::topology::{Topology, certified};
-use crate::whole::set_targets_of;
+use crate::whole::altitude::least_of;
+use crate::whole::{radii, set_targets_of};
 
 use super::slivers;
 
@@ -395,6 +396,27 @@ impl<'a> Smoother<'a> {
                 more => returned += more + certified(topology, before, points).await?,
             }
         }
+    }
+
+    /// Returns the sliding vertices at the start of a run, within the bounds of the options. `None` if no vertex slides.
+    pub(super) fn on_curves(&self, options: &Options) -> Option<OnCurves> {
+        let sliding = self.sliding.clone()?;
+        let floor = if options.keep_altitude { least_of(&self.problem) } else { 0.0 };
+        let reach = options.max_move.map(|most| {
+            let all = radii(&self.mesh, &self.topology, most, options.stored);
+            sliding.for_each_vertex(|v| all[v as usize])
+        });
+        Some(OnCurves::new(sliding, reach, floor))
+    }
+
+    /// Evaluates the field of targets with the vertices at normalized `positions`. Does nothing without a field.
+    pub(super) fn set_targets_at(
+        &self,
+        problem: &mut Problem,
+        positions: &[DVec2],
+    ) -> Result<(), MeshError> {
+        let set = |field| set_targets_of(field, &self.mesh, problem, positions);
+        self.field.as_ref().map_or(Ok(()), set)
     }
 
     /// Returns the problem of a run, judged by the triangles with a corner that is free or slides. With a field of targets,

@@ -17,12 +17,11 @@ use crate::run::{
 };
 use crate::slide::Slide;
 use crate::targets::TargetField;
-use crate::whole::{Device, Live, Spec, bounded, drive};
+use crate::whole::{Device, Live, Spec, TargetFieldStage, bounded, drive};
 
 use super::judging::JudgedBy;
 use super::over_all::OverAll;
 use super::prepared::{Smoother, objective};
-use super::stages::Stages;
 
 /// Returns whether a run by the metric can begin at the mesh, where f is `objective`.
 async fn is_usable(problem: &Problem, metric: Metric, objective: f64) -> bool {
@@ -106,20 +105,21 @@ impl Smoother<'_> {
         let mut plan = Plan::toward(options, target);
         let start = problem.positions();
         set_guards(&mut plan, options.guard, problem, start).await;
-        let mut stages = Stages::new(self, options);
+        let tolerance = options.stopping.tolerance();
+        let stage = |field| TargetFieldStage::new(&self.mesh, field, tolerance);
+        let mut stage = self.field.as_ref().map(stage);
         let curves = self.on_curves(options);
-        let mut in_order = stages.in_order();
         checkpointer.about = Some(about);
-        let (phase, is_staged) = (Phase::Smoothing, !in_order.is_empty());
-        let spec = Spec { problem, device, options, phase, is_staged, curves: curves.as_ref() };
+        let (phase, has_field) = (Phase::Smoothing, stage.is_some());
+        let spec = Spec { problem, device, options, phase, has_field, curves: curves.as_ref() };
         let period = resumed.and_then(|resumed| resumed.period.as_ref());
-        if period.is_some() && !is_staged {
+        if period.is_some() && !has_field {
             return Err(resume::foreign());
         }
         let live = Live::new(spec, plan, start, resumed, &mut checkpointer).await?;
-        let ended = drive(live, &mut in_order, &mut checkpointer, &mut observe, period).await?;
+        let ended = drive(live, stage.as_mut(), &mut checkpointer, &mut observe, period).await?;
         let judged = JudgedBy { over_all: &over_all, initial };
-        let outcome = self.judged(options, judged, goal, ended, stages, &mut observe).await?;
+        let outcome = self.judged(options, judged, goal, ended, &mut observe).await?;
         let device_fault = fault.or(outcome.device_fault);
         Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
     }

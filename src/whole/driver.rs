@@ -1,49 +1,42 @@
-//! The loop of a whole run: sweeps on the engine, and stages on the host between sweeps.
+//! The loop of a whole run: sweeps on the engine, and the evaluation of a field of targets on the host between sweeps.
 
 use crate::error::SmoothError;
 use crate::resume;
-use crate::run::records::{Reader, Writer};
 use crate::run::{Checkpointer, Observer, PeriodState, Stop};
 use crate::whole::host::{Host, objectives};
 use crate::whole::live::{Live, Moved, RunEnd};
-use crate::whole::stage::{Judgment, Period, Stage};
+use crate::whole::target_field::{Judgment, Period, TargetFieldStage};
 
-/// Sweeps until the run ends. After each period, all stages work, in order. The last stage decides whether the run
-/// ends.
+/// Sweeps until the run ends. With a field of targets, its stage works after each period, and decides whether the run ends.
 pub(crate) async fn drive(
     mut live: Live<'_>,
-    stages: &mut [&mut dyn Stage],
+    stage: Option<&mut TargetFieldStage<'_>>,
     checkpointer: &mut Checkpointer<'_>,
     observe: &mut dyn Observer,
     resumed: Option<&PeriodState>,
 ) -> Result<RunEnd, SmoothError> {
     let max_sweeps = live.plan.stop.max_sweeps;
-    if stages.is_empty() || max_sweeps == 0 {
-        // Without stages, the engine ends the run. With stages, the host does.
-        let until = if stages.is_empty() { u32::MAX } else { 0 };
-        let (positions, stop) = live.sweep(until, None, checkpointer, observe).await?;
+    let Some(stage) = stage.filter(|_| max_sweeps > 0) else {
+        let (positions, stop) = live.sweep(max_sweeps, None, checkpointer, observe).await?;
         return Ok(live.end(positions, stop.unwrap_or(Stop::MaxSweeps)).await);
-    }
+    };
     let plan = live.plan.clone();
     let mut host = Host::new(live.problem.clone(), &plan, live.start()).await;
     let mut began = 0;
     if let Some(period) = resumed {
-        restore(period, &mut host, stages).ok_or_else(resume::foreign)?;
+        restore(period, &mut host, stage).ok_or_else(resume::foreign)?;
         began = period.began;
         live.problem = host.problem.clone();
     }
     loop {
-        let period = stages.iter().map(|stage| stage.period()).min().unwrap_or(u32::MAX);
-        let until = began.saturating_add(period).min(max_sweeps);
-        let state = || saved(&host, stages, began);
+        let until = began.saturating_add(TargetFieldStage::SWEEPS).min(max_sweeps);
+        let state = || saved(&host, stage, began);
         let (swept_to, swept) = live.sweep(until, Some(&state), checkpointer, observe).await?;
         if let Some(stop) = swept.filter(|stop| *stop == Stop::NotFinite) {
             return Ok(live.end(swept_to, stop).await);
         }
         host.positions.clone_from(&swept_to);
-        for stage in stages.iter_mut() {
-            stage.work(&mut host)?;
-        }
+        stage.work(&mut host)?;
         let now = objectives(&host.problem, &plan, &host.positions).await;
         let f = now.of(plan.scheme.base()).unwrap_or(f64::NAN);
         let moved = Moved {
@@ -54,9 +47,7 @@ pub(crate) async fn drive(
         };
         live.write_back(began, moved, checkpointer).await?;
         let period = Period { f: [host.f_before, f], is_last: live.sweeps() >= max_sweeps };
-        let judged = stages.last_mut().map(|stage| stage.judge(&period));
-        let Judgment { stop, remaining } =
-            judged.unwrap_or(Judgment { stop: None, remaining: None });
+        let Judgment { stop, remaining } = stage.judge(&period);
         let stop = if swept == Some(Stop::Canceled) { swept } else { stop };
         if let Some(stop) = stop {
             // An extrapolation cannot show less than the tolerance: slow modes may remain.
@@ -70,38 +61,22 @@ pub(crate) async fn drive(
     }
 }
 
-/// Returns the state of the host and the stages for a checkpoint, in a period that began after `began` sweeps.
-fn saved(host: &Host<'_>, stages: &[&mut dyn Stage], began: u32) -> PeriodState {
-    let state = |stage: &&mut dyn Stage| {
-        let mut out = Writer::default();
-        stage.save(&mut out);
-        (stage.name().to_owned(), out.0)
-    };
+/// Returns the state of the host and the stage for a checkpoint, in a period that began after `began` sweeps.
+fn saved(host: &Host<'_>, stage: &TargetFieldStage<'_>, began: u32) -> PeriodState {
     let Host { before, f_before, .. } = host;
-    PeriodState {
-        began,
-        before: before.clone(),
-        f_before: *f_before,
-        stages: stages.iter().map(state).collect(),
-    }
+    PeriodState { began, before: before.clone(), f_before: *f_before, stage: stage.save() }
 }
 
-/// Restores the host and the stages from a saved state. `None` if the state belongs to another mesh or to other stages.
-fn restore(period: &PeriodState, host: &mut Host<'_>, stages: &mut [&mut dyn Stage]) -> Option<()> {
-    if period.stages.len() != stages.len() {
-        return None;
-    }
+/// Restores the host and the stage from a saved state. `None` if the state is invalid.
+fn restore(
+    period: &PeriodState,
+    host: &mut Host<'_>,
+    stage: &mut TargetFieldStage<'_>,
+) -> Option<()> {
     host.before.clone_from(&period.before);
     host.positions.clone_from(&period.before);
     host.f_before = period.f_before;
-    for (stage, (name, state)) in stages.iter_mut().zip(&period.stages) {
-        let mut from = Reader(state);
-        if stage.name() != name {
-            return None;
-        }
-        stage.restore(host, &mut from)?;
-        from.is_empty().then_some(())?;
-    }
+    stage.restore(host, &period.stage)?;
     host.has_new_targets = false;
     Some(())
 }

@@ -8,7 +8,7 @@ use crate::parallel::map_parts;
 use crate::patch::{Circle, keeps_altitude};
 use crate::run::{Objectives, Plan};
 
-/// The state that stages change between sweeps. Positions are normalized and include fixed vertices.
+/// The state that the stage of a target field changes between sweeps. Positions are normalized and include fixed vertices.
 pub(crate) struct Host<'r> {
     /// Layout of the mesh, with the present targets.
     pub(crate) problem: Problem,

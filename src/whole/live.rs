@@ -37,8 +37,8 @@ pub(crate) struct Spec<'s> {
     pub(crate) device: Option<Device<'s>>,
     pub(crate) options: &'s Options,
     pub(crate) phase: Phase,
-    /// Whether stages on the host move vertices between sweeps.
-    pub(crate) is_staged: bool,
+    /// Whether the targets belong to places, so that a stage on the host moves vertices between sweeps.
+    pub(crate) has_field: bool,
     /// The sliding vertices at the start of the run, `None` if no vertex slides.
     pub(crate) curves: Option<&'s OnCurves>,
 }
@@ -118,7 +118,7 @@ impl<'s> Live<'s> {
     ) -> Result<Self, SmoothError> {
         let mut problem = with_local_maps(&spec, from).await;
         // Bounds hold from the given positions on, and plain sweeps are a sequence that the caller determines.
-        let may_begin_elsewhere = !spec.is_staged && !problem.is_bounded() && spec.curves.is_none();
+        let may_begin_elsewhere = !spec.has_field && !problem.is_bounded() && spec.curves.is_none();
         let relief = match spec.options.is_multilevel() && may_begin_elsewhere {
             true => relieved(spec.problem, &problem, &plan, from).await?,
             false => None,
@@ -188,7 +188,7 @@ impl<'s> Live<'s> {
     }
 
     /// Sweeps until the run has done `until` sweeps, or ends before. Returns the best positions, and the reason if the
-    /// run ends. `period` is the source of the state of the host and the stages, for checkpoints.
+    /// run ends. `period` is the source of the state of the host and the stage, for checkpoints.
     pub(crate) async fn sweep(
         &mut self,
         until: u32,
@@ -203,8 +203,8 @@ impl<'s> Live<'s> {
                 Err(DriveError::NotFinite { sweep }) => {
                     let error = GpuError::NotFinite { sweep };
                     if self.device.is_none() || self.fall_back(error, checkpointer).is_err() {
-                        // Sweeps after the last stages may have moved vertices beyond the bounds of the stages.
-                        let saved = checkpointer.last.take().filter(|_| !self.spec.is_staged);
+                        // Sweeps after the last period may have moved vertices to where f by the field is larger.
+                        let saved = checkpointer.last.take().filter(|_| !self.spec.has_field);
                         return Ok((self.undone(saved).await, Some(Stop::NotFinite)));
                     }
                 }
@@ -247,8 +247,8 @@ impl<'s> Live<'s> {
                 plan,
             ))),
             Some(device) => {
-                // The host judges runs with corrections or stages, so the device must not end them.
-                let is_judged_by_host = corrected || self.spec.is_staged;
+                // The host judges runs with corrections or a target field, so the device must not end them.
+                let is_judged_by_host = corrected || self.spec.has_field;
                 let judged = if is_judged_by_host { plan.clone().endless() } else { plan.clone() };
                 let steps = steps(plan, corrected);
                 AnyEngine::Device(
@@ -256,11 +256,11 @@ impl<'s> Live<'s> {
                 )
             }
         };
-        let is_staged = self.spec.is_staged;
+        let has_field = self.spec.has_field;
         let strategy = match corrected {
-            true => Strategy::Corrected(Box::new(Corrections::new(problem, plan, is_staged))),
+            true => Strategy::Corrected(Box::new(Corrections::new(problem, plan, has_field))),
             false => {
-                let is_held = is_staged || problem.is_bounded() || problem.free_count() == 0;
+                let is_held = has_field || problem.is_bounded() || problem.free_count() == 0;
                 Strategy::Sweeps(Sweeping::new(plan, self.spec.options.method, is_held))
             }
         };
@@ -319,7 +319,7 @@ impl<'s> Live<'s> {
         self.last.positions.to_vec()
     }
 
-    /// Records the changes of the stages after sweep `from`: the positions of vertices and the targets. Sends the changes to the engine.
+    /// Records the changes of the stage after sweep `from`: the positions of vertices and the targets. Sends the changes to the engine.
     pub(crate) async fn write_back(
         &mut self,
         from: u32,
@@ -329,7 +329,7 @@ impl<'s> Live<'s> {
         let Moved { positions, swept_to, targets, now } = moved;
         let Some(mut session) = self.session.take() else { return Ok(()) };
         session.disturbed(from, now);
-        // The state that was saved before belongs to other positions and stages.
+        // The state that was saved before belongs to other positions and targets.
         checkpointer.last = None;
         self.last = Point {
             log: session.history().log().to_vec(),
@@ -432,10 +432,10 @@ async fn with_local_maps(spec: &Spec<'_>, positions: &[DVec2]) -> Problem {
     problem
 }
 
-/// The changes that stages on the host make between sweeps.
+/// The changes that the stage of a target field makes between sweeps.
 pub(crate) struct Moved<'h> {
     pub(crate) positions: &'h [DVec2],
-    /// Positions at the end of the sweeps, before the stages moved vertices.
+    /// Positions at the end of the sweeps, before the stage moved vertices.
     pub(crate) swept_to: &'h [DVec2],
     /// The problem with new targets. `None` if the targets have not changed.
     pub(crate) targets: Option<&'h Problem>,

@@ -1,4 +1,4 @@
-//! Whole runs: sweeps on one engine or on several in turn, stages between the sweeps, and the improvement of the worst
+//! Whole runs: sweeps on one engine or on several in turn, the evaluation of target fields between the sweeps, and the improvement of the worst
 //! triangles after the last sweep.
 
 pub(crate) mod altitude;
@@ -11,7 +11,6 @@ mod host;
 mod improving;
 mod live;
 mod relief;
-mod stage;
 mod target_field;
 
 pub(crate) use bounds::{bounded, radii};
@@ -19,5 +18,4 @@ pub(crate) use device::Device;
 pub(crate) use driver::drive;
 pub(crate) use improving::Improvement;
 pub(crate) use live::{Live, RunEnd, Spec};
-pub(crate) use stage::Stage;
 pub(crate) use target_field::{TargetFieldStage, set_targets_of};

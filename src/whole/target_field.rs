@@ -7,14 +7,10 @@ use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
 use crate::parallel::pace::now;
-use crate::run::records::{Reader, Writer};
-use crate::run::{NOISE, Stop};
+use crate::run::{NOISE, Named, Stop};
 use crate::targets::TargetField;
 use crate::whole::host::Host;
-use crate::whole::stage::{Judgment, Period, Stage};
 
-/// Number of sweeps in a period.
-const SWEEPS: u32 = 5;
 /// Largest number of times that the stage halves the move of a period, until f falls.
 const MAX_HALVINGS: u32 = 4;
 /// Number of consecutive periods with remaining gains within the tolerance, after which a run ends.
@@ -39,7 +35,23 @@ pub(crate) fn set_targets_of(
     Ok(())
 }
 
-/// The stage that evaluates a field of targets at the vertices after each period.
+/// A finished period: sweeps, and the evaluation of the targets after them.
+pub(crate) struct Period {
+    /// f by the base metric before and after the period.
+    pub(crate) f: [f64; 2],
+    /// Whether the run has reached its largest number of sweeps.
+    pub(crate) is_last: bool,
+}
+
+/// A decision after a period.
+pub(crate) struct Judgment {
+    /// Reason why the run ends. `None` if the run continues.
+    pub(crate) stop: Option<Stop>,
+    /// Estimated remaining gain as a share of f. `None` without an estimate.
+    pub(crate) remaining: Option<f64>,
+}
+
+/// The stage that evaluates a field of targets at the vertices after each period of sweeps, and decides whether the run ends.
 pub(crate) struct TargetFieldStage<'s> {
     mesh: &'s Mesh,
     field: &'s TargetField,
@@ -76,19 +88,17 @@ impl<'s> TargetFieldStage<'s> {
     }
 }
 
-impl Stage for TargetFieldStage<'_> {
-    fn name(&self) -> &'static str {
-        "target field"
-    }
-
-    fn period(&self) -> u32 {
-        SWEEPS
-    }
+impl TargetFieldStage<'_> {
+    /// Largest number of sweeps in a period.
+    pub(crate) const SWEEPS: u32 = 5;
 
     /// Moves the vertices to their swept positions, and evaluates the targets there. Halves the move until f falls by
     /// the new targets and no triangle is inverted. After [`MAX_HALVINGS`] halvings without success, the vertices return to
     /// their former positions.
-    fn work(&mut self, host: &mut Host<'_>) -> Result<(), MeshError> {
+    ///
+    /// # Errors
+    /// [`MeshError::NotFinite`] if a position at which a target is needed is infinite or NaN.
+    pub(crate) fn work(&mut self, host: &mut Host<'_>) -> Result<(), MeshError> {
         let to = std::mem::take(&mut host.positions);
         let mut share = 1.0;
         self.has_moved = false;
@@ -114,7 +124,8 @@ impl Stage for TargetFieldStage<'_> {
         Ok(())
     }
 
-    fn judge(&mut self, period: &Period) -> Judgment {
+    /// Decides whether the run ends.
+    pub(crate) fn judge(&mut self, period: &Period) -> Judgment {
         let [before, last] = period.f;
         let gain = before - last;
         let share = match self.gained {
@@ -134,16 +145,23 @@ impl Stage for TargetFieldStage<'_> {
         Judgment { stop, remaining: is_estimate.then_some(to_come) }
     }
 
-    fn save(&self, out: &mut Writer) {
-        out.optional(self.gained);
-        out.number(self.settled.into());
-        out.number(self.has_moved.into());
-        out.number(self.has_followed.into());
+    /// Returns the state of the stage between two periods.
+    pub(crate) fn save(&self) -> Named {
+        let mut out = Named::default();
+        if let Some(gained) = self.gained {
+            out.add("gained", gained);
+        }
+        out.add("settled", self.settled);
+        out.add_flag("moved", self.has_moved);
+        out.add_flag("followed", self.has_followed);
+        out
     }
 
-    fn restore(&mut self, host: &mut Host<'_>, from: &mut Reader<'_>) -> Option<()> {
-        (self.gained, self.settled) = (from.option(Reader::real)?, from.count()?);
-        (self.has_moved, self.has_followed) = (from.flag()?, from.flag()?);
+    /// Restores a state that [`save`](Self::save) returned. The vertices of `host` have the positions of the saved period.
+    /// `None` for an invalid state.
+    pub(crate) fn restore(&mut self, host: &mut Host<'_>, from: &Named) -> Option<()> {
+        (self.gained, self.settled) = (from.one("gained"), from.one("settled")?);
+        (self.has_moved, self.has_followed) = (from.flag("moved")?, from.flag("followed")?);
         if self.has_followed {
             let before = host.before.clone();
             self.follow_to(host, &before).ok()?;

@@ -55,7 +55,7 @@ impl Corrections {
         let rebuild_from = match self.has_local_maps() {
             true => REBUILD_LOCAL_FROM,
             // The exponents of EDGE decide when its levels change. Stages change the targets between sweeps.
-            false if self.is_staged || !self.metric().is_smooth() => u32::MAX,
+            false if self.has_field || !self.metric().is_smooth() => u32::MAX,
             false => REBUILD_FROM,
         };
         match proposed {

@@ -122,7 +122,7 @@ impl Corrections {
         estimate: Option<f64>,
         end: Option<Stop>,
     ) -> Result<(Option<f64>, Option<Stop>), GpuError> {
-        if self.metric().curved().is_none() || self.is_staged {
+        if self.metric().curved().is_none() || self.has_field {
             return Ok((estimate, end));
         }
         let last = history.f().len() - 1;

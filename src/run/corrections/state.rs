@@ -28,8 +28,8 @@ pub(super) const ATTEMPTS: u32 = 5;
 pub(crate) struct Corrections {
     pub(super) problem: Problem,
     pub(super) plan: Plan,
-    /// Whether stages of the driver change positions between sweeps, so that the history of f is not a decay.
-    pub(super) is_staged: bool,
+    /// Whether the targets change between sweeps, by a target field, so that the history of f is not a decay.
+    pub(super) has_field: bool,
     pub(super) stage: Stage,
     /// Number of times that a stage of corrections has begun.
     pub(super) attempts: u32,
@@ -106,12 +106,12 @@ pub(super) enum Stage {
 }
 
 impl Corrections {
-    /// Creates the state at the start of a run. `is_staged` is whether stages work between sweeps.
-    pub(crate) fn new(problem: &Problem, plan: &Plan, is_staged: bool) -> Self {
+    /// Creates the state at the start of a run. `has_field` is whether a target field changes the targets between sweeps.
+    pub(crate) fn new(problem: &Problem, plan: &Plan, has_field: bool) -> Self {
         Self {
             problem: problem.clone(),
             plan: plan.clone(),
-            is_staged,
+            has_field,
             stage: Stage::Before { until: 1 },
             attempts: 0,
             taken: 0,
@@ -133,7 +133,7 @@ impl Corrections {
             unmeasured_until: 0,
             levels_time: Duration::ZERO,
             tail: Tail::new(),
-            can_step: can_step(problem, plan, is_staged),
+            can_step: can_step(problem, plan, has_field),
         }
     }
 
@@ -241,8 +241,8 @@ impl Corrections {
 /// and a guard that holds triangles of any metric, refuse most of such steps. By SHAPE-SIZE, which is not convex in map and
 /// area, a run on a graded mesh came to a saddle: the bound of the remaining gain does not see it, and 3e-5 of f were left
 /// of reported 1e-6.
-fn can_step(problem: &Problem, plan: &Plan, is_staged: bool) -> bool {
+fn can_step(problem: &Problem, plan: &Plan, has_field: bool) -> bool {
     let base = plan.scheme.base();
     let is_convex = base.curved().is_some() && base != Metric::ShapeSize;
-    is_convex && !is_staged && !problem.is_bounded() && plan.worst_guard.is_infinite()
+    is_convex && !has_field && !problem.is_bounded() && plan.worst_guard.is_infinite()
 }
