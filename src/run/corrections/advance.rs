@@ -3,7 +3,7 @@
 use super::plan_steps::{
     OMEGA_ALTERNATING, OMEGA_BEFORE, OMEGA_BETWEEN, exponents, reopening_sweep,
 };
-use super::state::{ATTEMPTS, Correcting, Corrections, SWEPT, Stage};
+use super::state::{ATTEMPTS, Correcting, Corrections, SWEEPS_BETWEEN, SWEPT, Stage};
 use crate::error::GpuError;
 use crate::metric::Metric;
 use crate::run::engine::{Engine, Proposal};
@@ -29,8 +29,6 @@ const SHORT_FOR_EDGE: f64 = 0.005;
 const MIN_FIRST_FOR_EDGE: f64 = 0.1;
 /// Number of consecutive refused corrections after which the run returns to sweeps alone.
 const MAX_REFUSED: u32 = 2;
-/// Smallest number of sweeps alone before corrections begin again.
-pub(super) const SWEEPS_BETWEEN: usize = 5;
 /// Number of corrections in one stage after which levels leave the coordinates of target maps. Most runs end before. Two
 /// meshes adapted to several shocks then take 77 and 98 sweeps instead of 269 and 442.
 const MOST_IN_MAPS: u32 = 32;

@@ -1,7 +1,6 @@
 //! The log of a run with corrections, and the stop rule for each stage of such a run.
 
-use super::advance::SWEEPS_BETWEEN;
-use super::state::{Correcting, Corrections, ESTIMATES, SWEPT, Stage};
+use super::state::{Correcting, Corrections, ESTIMATES, SWEEPS_BETWEEN, SWEPT, Stage};
 use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;

@@ -20,6 +20,10 @@ pub(super) const ESTIMATES: usize = 2;
 /// Share of the tolerance. If a sweep gains less, and the correction is expected to gain nothing, the run ends.
 pub(super) const SWEPT: f64 = 0.1;
 
+/// Smallest number of sweeps alone before corrections begin again, and of sweeps between a refused end and the next
+/// measurement.
+pub(super) const SWEEPS_BETWEEN: usize = 5;
+
 /// Number of times that corrections begin after a few sweeps alone. Refused once more, corrections wait until sweeps alone
 /// would end the run.
 pub(super) const ATTEMPTS: u32 = 5;
