@@ -35,7 +35,7 @@ pub struct Outcome {
     /// a GPU has no room for such a mesh's second map per vertex, and of a run with a bound of moves or altitudes in degrees,
     /// as single precision has too few digits for latitudes.
     pub opening_sweeps: u32,
-    /// Number of sweeps at the end of a run on a GPU that the CPU did. The CPU replaces the GPU if targets of places have
+    /// Number of last sweeps that the CPU did in a run on a GPU. The CPU replaces the GPU if targets of places have
     /// moved vertices to triangles too flat for single precision.
     pub closing_sweeps: u32,
     /// Whether [`Method::Auto`](crate::Method::Auto) ran without corrections because the coarser levels do not fit the
@@ -52,17 +52,19 @@ pub struct Outcome {
     /// [`points`](Self::points). The tolerance, [`remaining`](Self::remaining) and the test for a gain use this objective,
     /// as other triangles never change. Equal to the mean over all triangles if targets belong to places.
     pub movable_f: [f64; 2],
-    /// Estimated gain of further sweeps, as a share of f over the triangles that can move (of 1e-6 if f is smaller). The estimate extrapolates the decay
-    /// of f in the last sweeps, but never beyond the ideal of f. By smooth metrics, except with targets of places, the end of sweeps alone or with corrections is
-    /// measured: the number is the gain of a Newton step of all vertices that the run does not take, if that gain is within the tolerance.
-    /// After a Newton step of all vertices, the number is instead a
-    /// bound of the gain of the quadratic model, plus the discrepancy of model and f in that step. After a run by EDGE with corrections, the estimate
-    /// includes the distance between the minima of f and of EDGE's p-norm.
+    /// Estimated gain of further sweeps, as a share of f over the triangles that can move (of 1e-6 if f is smaller). The
+    /// estimate extrapolates the decay of f in the last sweeps, but never beyond the ideal of f. After a Newton step of all
+    /// vertices, the number is instead a bound of the gain of the quadratic model, plus the discrepancy of model and f in that
+    /// step. Where a run by a smooth metric ends by sweeps alone or with corrections, and targets belong to vertices, the number
+    /// is the gain that the quadratic model of a further Newton step has. Bounds or a guard may forbid
+    /// that gain, so after corrections, a gain of more than ten tolerances does not count with them, and sweeps alone with bounds
+    /// are not measured. After a run by EDGE with corrections, the estimate includes the distance
+    /// between the minima of f and of EDGE's p-norm.
     ///
-    /// The estimate has lower bounds. If the estimate ended the run as converged, the bound is the tolerance. If
-    /// bounds or a guard may hold vertices, the bound is twice the tolerance.
-    /// If the last correction gained nothing, the bound is a tenth of the tolerance, but at least 1e-8. If a run converged because f is level up to rounding, the bound is the variation of f over its
-    /// last sweeps. On a device, the bound is the error of the f that the run was judged by, in single precision. In a
+    /// The estimate has lower bounds. If an extrapolation ended the run as converged, the bound is the tolerance, or twice the
+    /// tolerance if bounds or a guard may hold vertices. If the last correction gained nothing, the bound is a tenth of the
+    /// tolerance, but at least 1e-8. If a run converged because f is level up to rounding, the bound is the variation of f over
+    /// its last sweeps. On a device, the bound is the error of the f that the run was judged by, in single precision. In a
     /// projection, the bound is [`projection_error`](Self::projection_error).
     ///
     /// `None` if the run has not converged and its sweeps allow no estimate: the run did too few sweeps, or the gains per

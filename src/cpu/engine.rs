@@ -175,7 +175,7 @@ impl CpuEngine {
     }
 }
 
-/// Returns the gain of a Newton step of all vertices that is not taken; see [`Engine::remaining`].
+/// Returns the remaining gain by the quadratic model of a Newton step; see [`Engine::remaining`].
 pub(crate) async fn remaining(
     problem: &Problem,
     positions: &[DVec2],

@@ -104,7 +104,7 @@ pub(crate) trait Engine: Send {
         std::future::ready(Ok(None))
     }
 
-    /// Goes on after the end of [`sweeps`](Self::sweeps) by the stop rule, with another tolerance.
+    /// Resumes a run that the stop rule has ended in [`sweeps`](Self::sweeps), with another tolerance.
     fn go_on(&mut self, tolerance: f64) -> Result<(), GpuError>;
 
     /// Drops the secant pairs, so that the next accelerated correction starts without any.

@@ -23,7 +23,7 @@ pub(crate) struct Sweeping {
     tolerance: f64,
     /// Whether the end of the run is measured.
     is_measured: bool,
-    /// Whether the run goes on if more than the tolerance remains.
+    /// Whether a measured gain above the tolerance refuses the end of the run.
     goes_on: bool,
 }
 

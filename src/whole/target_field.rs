@@ -35,7 +35,7 @@ pub(crate) fn set_targets_of(
     Ok(())
 }
 
-/// A finished period: sweeps, and the evaluation of the targets after them.
+/// A finished period of sweeps, with the targets evaluated at its end.
 pub(crate) struct Period {
     /// f by the base metric before and after the period.
     pub(crate) f: [f64; 2],

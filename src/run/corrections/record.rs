@@ -26,7 +26,7 @@ const FORBIDDEN: f64 = 10.0;
 /// Smallest remaining gain that a run reports by an extrapolation if bounds or a guard may hold vertices, as a multiple of the
 /// tolerance. Of 230 runs on random meshes, 2.2 to 3.9 times the tolerance was found to remain after four.
 const LEAST_IF_HELD: f64 = 2.0;
-/// Number of ends that a measurement may refuse. A run with bounds or a guard has one such end.
+/// Number of ends that a measurement may refuse. With bounds or a guard, a measurement refuses one end at most.
 const MOST_REFUSED_ENDS: u32 = 8;
 
 /// Decrease of the objective by a sweep, as a share of the objective, above which gains do not predict the remaining
@@ -91,7 +91,7 @@ impl Corrections {
     }
 
     /// Applies the stop rule to the decay of the objective in the present stage. Returns the estimated remaining gain as a
-    /// share of f, and the reason for which the objective ends the run; `None` without an estimate, and if the run goes on.
+    /// share of f, and the reason for which the objective ends the run. Both are `None` if they are missing.
     fn judged_by_decay(
         &mut self,
         rule: &StopRule,
@@ -111,8 +111,8 @@ impl Corrections {
         (remaining.or(level), end)
     }
 
-    /// Measures the end of a run by a smooth metric: the gain of a Newton step of all vertices, which is not taken, is what
-    /// remains. If more is left than the tolerance, or if the model of f curves down, corrections begin again with new levels. A
+    /// Measures the end of a run by a smooth metric: the remaining gain is that of a further Newton step of all vertices, by its
+    /// quadratic model. If more is left than the tolerance, or if the model of f curves down, corrections begin again with new levels. A
     /// bound or a guard may forbid a large gain, which then refuses no end. Returns the remaining gain and the end.
     async fn measured(
         &mut self,

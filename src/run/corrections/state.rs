@@ -69,7 +69,7 @@ pub(crate) struct Corrections {
     pub(super) was_reopened: bool,
     /// Whether the engine of the saved state, from which the run continues, had no room for the levels.
     pub(super) was_left_out: bool,
-    /// Number of ends that a measurement has refused, and the index in the history from which the next is measured.
+    /// Number of refused ends, and the index in the history before which no end is measured.
     pub(super) refused_ends: u32,
     pub(super) unmeasured_until: usize,
     /// Time of building and fitting the levels.

@@ -80,7 +80,8 @@ pub(crate) struct NewtonStep {
     pub(crate) iterations: u32,
 }
 
-/// Returns how far a step could lower the objective: the gain of its model, with the bound of the rest. `None` with negative
+/// Returns how far a step could lower the objective: the gain of its quadratic model, and the bound of the gain that conjugate
+/// gradients have left out. `None` with negative
 /// curvature, and without a finite bound.
 pub(crate) fn could_gain(model_gain: f64, bound: f64, is_curved_down: bool) -> Option<f64> {
     Some(model_gain + bound).filter(|gain| !is_curved_down && gain.is_finite())

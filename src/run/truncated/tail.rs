@@ -74,7 +74,7 @@ impl Tail {
         StepRequest { objective, forcing, least_gain, least_ritz, is_exact }
     }
 
-    /// Returns how an engine measures the gain of a step that is not taken. `objective` is f, and `tolerance` that of the run.
+    /// Returns the request for a measurement of the remaining gain. `objective` is f, and `tolerance` that of the run.
     pub(crate) fn measuring(objective: f64, tolerance: f64) -> StepRequest {
         let accurate = Self { forcing: FORCING[0], is_exact: true, ..Self::new() };
         accurate.request(objective, tolerance)
