@@ -8,7 +8,7 @@ use glam::{DVec2, Vec2};
 
 use crate::cpu::along::{Along, broken, nearest};
 use crate::cpu::disc_tangents::DiscTangents;
-use crate::cpu::objective::{mean_excess, mean_excess_along, mean_model};
+use crate::cpu::objective::{mean_excess_along, mean_model, objective, objectives};
 use crate::cpu::secants::{Levels, Secants, dot};
 use crate::cpu::truncated::Truncated;
 use crate::cpu::{sweep, vcycle};
@@ -113,11 +113,7 @@ impl CpuEngine {
 
     /// Evaluates the tracked objectives. Copies the positions if the objective of the base metric is the lowest so far.
     async fn objectives_now(&mut self) -> Objectives {
-        let mut values = Objectives::empty();
-        for &metric in &self.tracked {
-            let excess = mean_excess(metric, &self.problem, &self.positions).await;
-            values.set(metric, metric.ideal_squared() + excess);
-        }
+        let values = objectives(&self.tracked, &self.problem, &self.positions).await;
         if let Some(best) = &mut self.best
             && let Some(f) = values.of(self.base)
             && f < best.f
@@ -234,6 +230,10 @@ async fn as_transformed(problem: &Problem, vectors: &[Vec2]) -> Vec<Vec2> {
 }
 
 impl Engine for CpuEngine {
+    fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
     fn noise(&self) -> f64 {
         NOISE
     }
@@ -398,9 +398,9 @@ impl Engine for CpuEngine {
         if let Some(curves) = &self.curves {
             curves.save(self.best.as_ref().and_then(|best| best.params.as_ref()), &mut state);
         }
+        state.add_maps(&self.problem, whole);
         if whole {
             state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
-            state.add_local_maps(&self.problem);
             if let Some(secants) = &self.secants {
                 secants.save(&mut state);
             }
@@ -422,11 +422,11 @@ impl Engine for CpuEngine {
             best_params = params;
         }
         self.positions.clone_from(&state.positions);
-        state.restore_local_maps(&mut self.problem);
+        state.restore_maps(&mut self.problem);
         if let Some(kept) = &mut self.best {
             kept.positions.clone_from(best);
-            let excess = mean_excess(self.base, &self.problem, &kept.positions).await;
-            (kept.params, kept.f) = (best_params, self.base.ideal_squared() + excess);
+            let f = objective(self.base, &self.problem, &kept.positions).await;
+            (kept.params, kept.f) = (best_params, f);
         }
         self.hierarchy = Hierarchy::of_build_log(&self.problem, &state.roots).await;
         self.secants = Secants::saved_in(state, self.problem.free_count());

@@ -15,6 +15,6 @@ mod within;
 pub(crate) use engine::CpuEngine;
 #[cfg(feature = "gpu")]
 pub(crate) use engine::remaining;
-pub(crate) use objective::{mean_excess, mean_excess_left_out};
+pub(crate) use objective::{mean_excess, mean_excess_left_out, objective, objectives};
 pub(crate) use sweep::held_back;
 pub(crate) use vcycle::correction;

@@ -9,7 +9,7 @@ use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
 use crate::parallel::paced;
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, vertex_maps, with_lanes};
 use crate::patch::{is_no_worse, is_positive, is_within};
-use crate::run::SweepParams;
+use crate::run::{Objectives, SweepParams};
 
 /// Number of triangles that one task evaluates.
 const CHUNK: usize = 1024;
@@ -18,6 +18,24 @@ const CHUNK: usize = 1024;
 /// depend on the number of threads.
 pub(crate) async fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
     mean(metric, None, problem, problem.judged_triangles(), positions).await
+}
+
+/// Returns the objective by a metric, over the triangles that a problem is judged by.
+pub(crate) async fn objective(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
+    metric.ideal_squared() + mean_excess(metric, problem, positions).await
+}
+
+/// Returns the objectives by several metrics.
+pub(crate) async fn objectives(
+    metrics: &[Metric],
+    problem: &Problem,
+    positions: &[DVec2],
+) -> Objectives {
+    let mut objectives = Objectives::empty();
+    for &metric in metrics {
+        objectives.set(metric, objective(metric, problem, positions).await);
+    }
+    objectives
 }
 
 /// Returns the mean of q² - ideal² over the triangles that are left out of the objective of a problem; NaN if no

@@ -197,9 +197,11 @@ impl Problem {
         self.local_maps = Some(maps.into());
     }
 
-    /// Copies the local maps of another problem of equal layout. Removes the local maps if the other problem has none.
-    pub(crate) fn share_local_maps(&mut self, other: &Self) {
+    /// Copies the local maps of another problem of equal layout, and the coordinates in which its coarser levels work. Removes
+    /// the local maps if the other problem has none.
+    pub(crate) fn share_maps_of_levels(&mut self, other: &Self) {
         self.local_maps.clone_from(&other.local_maps);
+        self.levels_in_plane = other.levels_in_plane;
     }
 
     /// Copies the targets of another problem of the same mesh. `number` has the index in `other` of each vertex of the

@@ -38,7 +38,7 @@ impl Checkpoint {
     /// First bytes of a checkpoint file in every version of the format.
     pub const MAGIC: &[u8; 22] = b"gpu-smooth checkpoint ";
     /// Version of the format that the library reads and writes. The version follows [`Self::MAGIC`], on the same line.
-    const VERSION: &str = "7";
+    const VERSION: &str = "8";
     /// Start of the second line. The rest of the line names the program and version that wrote the checkpoint.
     const WRITER: &str = "written by ";
     /// Name and version of this library.
@@ -268,7 +268,7 @@ mod tests {
         assert_eq!(error(b"any notes"), "the file is not a checkpoint of gpu-smooth");
         let other = format!("{own} does not read checkpoints that");
         for (head, writer) in [
-            ("8\nwritten by gpu-smooth 9.1\n", "gpu-smooth 9.1"),
+            ("9\nwritten by gpu-smooth 9.1\n", "gpu-smooth 9.1"),
             ("2\n", "an earlier version of gpu-smooth"),
         ] {
             let bytes = [Checkpoint::MAGIC, head.as_bytes(), &bytes[60..]].concat();

@@ -65,9 +65,6 @@ pub(crate) struct NoCheckpoints;
 
 impl CheckpointPolicy for NoCheckpoints {}
 
-/// Returns the state of the host and the stage at the start of the present period. `None` in a run without a target field.
-pub(crate) type PeriodSource<'p> = Option<&'p (dyn Fn() -> PeriodState + Sync)>;
-
 /// Smallest ratio of the time between two saves to the time of a save.
 const SHARE: u32 = 50;
 
@@ -83,9 +80,9 @@ pub(crate) struct Checkpointer<'k> {
 }
 
 impl<'k> Checkpointer<'k> {
-    pub(crate) fn new(policy: &'k mut dyn CheckpointPolicy) -> Self {
+    pub(crate) fn new(policy: &'k mut dyn CheckpointPolicy, about: Option<RunFingerprint>) -> Self {
         let due = Instant::now().checked_add(policy.interval());
-        Self { policy, about: None, last: None, due }
+        Self { policy, about, last: None, due }
     }
 
     /// Saves the state after some sweeps if a save is due, or if the policy wants a checkpoint.
@@ -94,7 +91,7 @@ impl<'k> Checkpointer<'k> {
         engine: &mut impl Engine,
         history: &History,
         control: impl FnOnce() -> Named,
-        period: PeriodSource<'_>,
+        period: impl FnOnce() -> Option<PeriodState>,
         is_ending: bool,
     ) -> Result<(), GpuError> {
         let whole = self.about.is_some() && self.policy.wants_checkpoint(is_ending);
@@ -111,9 +108,8 @@ impl<'k> Checkpointer<'k> {
         let (log, remaining) = (history.log().to_vec(), history.remaining());
         let saved = Saved { log, remaining, control: control(), engine };
         if let (true, Some(about)) = (whole, &self.about) {
-            let period = period.map(|period| period());
             let (about, saved) = (about.clone(), saved.clone());
-            self.policy.checkpoint(Checkpoint { about, saved, period });
+            self.policy.checkpoint(Checkpoint { about, saved, period: period() });
         }
         self.last = Some(saved);
         let next = self.policy.interval().max(SHARE * start.elapsed());

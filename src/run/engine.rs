@@ -19,6 +19,9 @@ use crate::run::truncated::{NewtonStep, StepRequest};
 ///
 /// The caller decides which sweep comes next. Calls return an error if the device fails; the run is then lost.
 pub(crate) trait Engine: Send {
+    /// Returns the layout of the mesh, with the present targets and local maps.
+    fn problem(&self) -> &Problem;
+
     /// Returns the relative error of an evaluated f. Gains below the error do not decay.
     fn noise(&self) -> f64;
 

@@ -11,6 +11,8 @@ pub(crate) const CPU: &str = "cpu";
 
 /// Name of the local maps of the vertices in [`EngineState::own`].
 const LOCAL_MAPS: &str = "local maps";
+/// Name of the flag for coarser levels in the coordinates of the plane in [`EngineState::own`].
+const IN_PLANE: &str = "levels in the plane";
 
 /// The state of a run between two sweeps: log, corrections and engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,19 +63,24 @@ pub(crate) struct EngineState {
 }
 
 impl EngineState {
-    /// Adds the local maps of a problem, if it has any.
-    pub(crate) fn add_local_maps(&mut self, problem: &Problem) {
-        if let (true, Some(maps)) = (problem.has_local_maps(), problem.maps()) {
+    /// Adds the coordinates in which the coarser levels of a problem work, and its local maps if the state is whole.
+    pub(crate) fn add_maps(&mut self, problem: &Problem, whole: bool) {
+        self.own.add_flag(IN_PLANE, problem.are_levels_in_plane());
+        if let (true, true, Some(maps)) = (whole, problem.has_local_maps(), problem.maps()) {
             self.own.add_list(LOCAL_MAPS, maps);
         }
     }
 
-    /// Sets the local maps of a problem to the saved maps. Returns false, and changes nothing, if the state has none for
-    /// this problem.
-    pub(crate) fn restore_local_maps(&self, problem: &mut Problem) -> bool {
+    /// Restores what [`add_maps`](Self::add_maps) added. Returns false, and changes nothing, if the state has no local maps
+    /// for this problem, and if its coarser levels work in the coordinates of the maps.
+    pub(crate) fn restore_maps(&self, problem: &mut Problem) -> bool {
+        let is_in_plane = self.own.flag(IN_PLANE) == Some(true);
+        if is_in_plane {
+            problem.set_levels_in_plane();
+        }
         let maps = self.own.list_of::<[f32; 3]>(LOCAL_MAPS, problem.positions().len());
         let maps = maps.filter(|maps| maps.as_flattened().iter().all(|x| x.is_finite()));
         let maps = maps.filter(|_| problem.has_local_maps());
-        maps.map(|maps| problem.set_local_maps(maps)).is_some()
+        maps.map(|maps| problem.set_local_maps(maps)).is_some() || is_in_plane
     }
 }

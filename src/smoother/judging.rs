@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::DVec2;
 
-use crate::cpu::mean_excess;
+use crate::cpu::objective;
 use crate::error::{MeshError, SmoothError};
 use crate::layout::Problem;
 use crate::metric::{Corner, Ideal, Metric};
@@ -65,6 +65,48 @@ fn came_to(
     GoalOutcome { best_fraction, desired, ..goal }
 }
 
+/// The result of a run as it is stored. Objectives are by the base metric of the run.
+struct Stored {
+    points: Vec<[f64; 2]>,
+    /// Normalized positions of the points.
+    at: Vec<DVec2>,
+    /// Layout of the mesh, with the targets at the points.
+    problem: Problem,
+    curves: Option<OnCurves>,
+    /// Number of vertices that were set back.
+    returned: usize,
+    improving: Option<Improvement>,
+    floored: Option<Floored>,
+    /// Number of vertices that moved, before the floor.
+    moved: usize,
+    /// f before rounding, as the engine of the last sweep computed it, and in double precision.
+    swept: f64,
+    exact: f64,
+    /// f at the points, before the floor and with it.
+    rounded: f64,
+    written: f64,
+}
+
+impl Stored {
+    /// Returns the share of the gain on `initial` that was lost because coordinates are rounded and vertices were set back.
+    fn lost(&self, initial: f64) -> f64 {
+        // In a smaller gain, the errors of f on a device would be a considerable share.
+        match initial - self.swept > 100.0 * JITTER * initial {
+            true => ((self.rounded - self.swept) / (initial - self.swept)).clamp(0.0, 1.0),
+            false => 0.0,
+        }
+    }
+
+    /// Returns the error of the f that the engine computed, as a share of f. A device sums in single precision, and so
+    /// cannot find a gain below this error.
+    fn error(&self) -> f64 {
+        match self.improving {
+            None => (self.exact - self.swept).abs() / self.written.max(MIN_SCALE),
+            Some(_) => 0.0,
+        }
+    }
+}
+
 impl Smoother<'_> {
     /// Converts the final positions of the sweeps to coordinates, and evaluates the result. Rounding, and vertices that
     /// were set back, may have cost more than the sweeps gained. A device also moves the vertices of an optimal mesh by
@@ -80,75 +122,22 @@ impl Smoother<'_> {
         let base = options.scheme.base();
         let best_sweep = best_sweep(&ended, options);
         let swept = f_after(&ended, base, best_sweep);
-        let mut problem = over_all.problem.clone();
-        self.set_targets_at(&mut problem, &ended.positions)?;
-        let (improving, mut points, mut returned) =
-            self.improved(options, &problem, &mut ended, observe).await?;
-        let mut curves = ended.curves.take();
-        let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
-        // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
-        let is_as_swept =
-            returned == 0 && self.sliding.is_none() && matches!(options.stored, Precision::Double);
-        let exact = match is_as_swept {
-            true => None,
-            false => {
-                Some(base.ideal_squared() + mean_excess(base, &problem, &ended.positions).await)
-            }
-        };
-        let mut judged = self.problem.normalized(&points, take(&mut ended.positions)).await;
-        self.set_targets_at(&mut problem, &judged)?;
-        let problem = &problem;
-        // f of the sweeps as stored, before the floor trades some of it for better triangles.
-        let rounded = base.ideal_squared() + mean_excess(base, problem, &judged).await;
-        let all_moved = self.moved(&points);
-        let (to, at, curves_at) = (&mut points, &mut judged, curves.as_mut());
-        let raised = self.raised(options, problem, rounded, &mut ended, curves_at, to, at, observe);
-        let (written, mut floored) = match raised.await? {
-            Some((written, raised)) => {
-                let f = [rounded, written].map(|f| over_all.f(base, f));
-                (written, Some(Floored { f, ..raised }))
-            }
-            None => (rounded, None),
-        };
-        let mut gains =
-            initial - written > NOISE * initial + ROUNDING && self.is_lower(base, &points).await?;
-        if let (false, Some(improving)) = (gains, &improving) {
-            gains = improving.is_better(problem, &judged).await;
-        }
-        // In a smaller gain, the errors of f on a device would be a considerable share.
-        let lost = match initial - swept > 100.0 * JITTER * initial {
-            true => ((rounded - swept) / (initial - swept)).clamp(0.0, 1.0),
-            false => 0.0,
-        };
+        let mut stored = self.stored(options, over_all, swept, &mut ended, observe).await?;
+        let gains = self.gains(base, initial, &stored).await?;
         if !gains {
-            points.clone_from(&self.mesh.points);
-            returned = 0;
-            floored = floored
-                .map(|floored: Floored| floored.undone(all_moved, over_all.f(base, initial)));
+            stored.points.clone_from(&self.mesh.points);
+            stored.returned = 0;
+            let (moved, f) = (stored.moved, over_all.f(base, initial));
+            stored.floored = stored.floored.map(|floored| floored.undone(moved, f));
         }
-        // A device sums in single precision, and so cannot find a gain below the error of its f.
-        let error = match improving {
-            None => (exact.unwrap_or(rounded) - swept).abs() / written.max(MIN_SCALE),
-            Some(_) => 0.0,
-        };
-        let projection_error = self.projection_error(&points).await;
-        let slid = curves.as_ref().map(|curves| self.slid(curves, &points));
-        let best = if gains { written } else { initial };
-        let least = base.least_objective(problem.targets().is_some());
+        let projection_error = self.projection_error(&stored.points).await;
+        let best = if gains { stored.written } else { initial };
+        let improved = self.improvement(&stored, over_all, base, best, gains).await;
+        let least = base.least_objective(stored.problem.targets().is_some());
         let possible = (best - least).max(0.0) / best.max(MIN_SCALE);
-        let slides = self.sliding.as_deref().map(Sliding::vertices).unwrap_or_default();
-        let improved = match improving {
-            Some(improving) => {
-                let positions = if gains { &judged } else { self.problem.positions() };
-                let improved = improving.outcome(problem, positions, best, &slides, gains).await;
-                Some(Improved { f: improved.f.map(|f| over_all.f(base, f)), ..improved })
-            }
-            None => None,
-        };
-        let goal = goal.map(|goal| came_to(goal, options, over_all, [initial, best]));
-        let history = ended.history.iter().map(|now| over_all.objectives(*now)).collect();
+        let (lost, error) = (stored.lost(initial), stored.error());
+        let Stored { points, curves, returned, floored, .. } = stored;
         Ok(Outcome {
-            points,
             stop: ended.stop,
             sweeps: ended.history.len() as u32 - 1,
             alternated: ended.counts.alternated,
@@ -167,16 +156,95 @@ impl Smoother<'_> {
             projection_error,
             held_back: ended.held_back,
             lost,
-            history,
+            history: ended.history.iter().map(|now| over_all.objectives(*now)).collect(),
             movable_f: [initial, best],
-            goal,
+            goal: goal.map(|goal| came_to(goal, options, over_all, [initial, best])),
             returned,
-            slid,
+            slid: curves.as_ref().map(|curves| self.slid(curves, &points)),
             floored,
             improved,
             device_fault: ended.fault,
             smooth: Duration::ZERO,
+            points,
         })
+    }
+
+    /// Improves the worst triangles if the options ask for that, converts the positions to coordinates as they are stored,
+    /// and raises the result to the floor. `swept` is f of the best sweep.
+    async fn stored(
+        &self,
+        options: &Options,
+        over_all: &OverAll<'_>,
+        swept: f64,
+        ended: &mut RunEnd,
+        observe: &mut dyn Observer,
+    ) -> Result<Stored, SmoothError> {
+        let base = options.scheme.base();
+        let mut problem = over_all.problem.clone();
+        self.set_targets_at(&mut problem, &ended.positions)?;
+        let (improving, points, returned) =
+            self.improved(options, &problem, ended, observe).await?;
+        let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
+        // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
+        let is_as_swept =
+            returned == 0 && self.sliding.is_none() && matches!(options.stored, Precision::Double);
+        let before = match is_as_swept {
+            true => None,
+            false => Some(objective(base, &problem, &ended.positions).await),
+        };
+        let at = self.problem.normalized(&points, take(&mut ended.positions)).await;
+        self.set_targets_at(&mut problem, &at)?;
+        let rounded = objective(base, &problem, &at).await;
+        let moved = self.moved(&points);
+        let mut stored = Stored {
+            points,
+            at,
+            problem,
+            curves: ended.curves.take(),
+            returned,
+            improving,
+            floored: None,
+            moved,
+            swept,
+            exact: before.unwrap_or(rounded),
+            rounded,
+            written: rounded,
+        };
+        if let Some(raised) = self.raised(options, &mut stored, ended, observe).await? {
+            let f = [stored.rounded, stored.written].map(|f| over_all.f(base, f));
+            stored.floored = Some(Floored { f, ..raised });
+        }
+        Ok(stored)
+    }
+
+    /// Returns whether a run has gained on the mesh, where f is `initial`: in f, or in its worst triangle.
+    async fn gains(&self, base: Metric, initial: f64, stored: &Stored) -> Result<bool, MeshError> {
+        let Stored { points, at, problem, improving, written, .. } = stored;
+        let is_lower = initial - written > NOISE * initial + ROUNDING;
+        if is_lower && self.is_lower(base, points).await? {
+            return Ok(true);
+        }
+        Ok(match improving {
+            Some(improving) => improving.is_better(problem, at).await,
+            None => false,
+        })
+    }
+
+    /// Returns the result of the improvement of the worst triangles, if the options ask for that. `best` is f of the outcome,
+    /// which has the stored points if the run `gains`.
+    async fn improvement(
+        &self,
+        stored: &Stored,
+        over_all: &OverAll<'_>,
+        base: Metric,
+        best: f64,
+        gains: bool,
+    ) -> Option<Improved> {
+        let Stored { at, problem, improving, .. } = stored;
+        let slides = self.sliding.as_deref().map(Sliding::vertices).unwrap_or_default();
+        let positions = if gains { at } else { self.problem.positions() };
+        let improved = improving.as_ref()?.outcome(problem, positions, best, &slides, gains).await;
+        Some(Improved { f: improved.f.map(|f| over_all.f(base, f)), ..improved })
     }
 
     /// Improves the worst triangles if the options ask for that, and returns the improvement, the points as they are stored, and
@@ -206,23 +274,18 @@ impl Smoother<'_> {
         Ok((improving, without.0, without.1))
     }
 
-    /// Raises the result to the floor if a measure has become worse. `rounded` is f of the result before. Returns f after, and
-    /// the record of the floor.
-    #[allow(clippy::too_many_arguments)]
+    /// Raises the result to the floor if a measure has become worse. Returns the record of the floor.
     async fn raised(
         &self,
         options: &Options,
-        problem: &Problem,
-        rounded: f64,
+        stored: &mut Stored,
         ended: &mut RunEnd,
-        curves: Option<&mut OnCurves>,
-        points: &mut [[f64; 2]],
-        judged: &mut Vec<DVec2>,
         observe: &mut dyn Observer,
-    ) -> Result<Option<(f64, Floored)>, MeshError> {
+    ) -> Result<Option<Floored>, MeshError> {
+        let Stored { points, at, problem, curves, rounded, written, .. } = stored;
         let Some(floor) = self.lacking_floor(options, points).await else { return Ok(None) };
         let (was_canceled, sweep) = (ended.stop == Stop::Canceled, ended.history.len() as u32 - 1);
-        let now = Progress { phase: Phase::Improving, sweep, f: rounded };
+        let now = Progress { phase: Phase::Improving, sweep, f: *rounded };
         // A canceled run ends soon, but not with a worse triangle than before.
         let goes_on = || {
             let goes_on = was_canceled || observe(&now).is_continue();
@@ -231,11 +294,10 @@ impl Smoother<'_> {
             }
             goes_on
         };
-        let raised = floor.raise(options, problem, curves, judged, points, goes_on).await?;
-        *judged = self.problem.normalized(points, take(judged)).await;
-        let base = options.scheme.base();
-        let written = base.ideal_squared() + mean_excess(base, problem, judged).await;
-        Ok(Some((written, raised)))
+        let raised = floor.raise(options, problem, curves.as_mut(), at, points, goes_on).await?;
+        *at = self.problem.normalized(points, take(at)).await;
+        *written = objective(options.scheme.base(), problem, at).await;
+        Ok(Some(raised))
     }
 
     /// Returns the number of vertices whose points differ from the mesh.

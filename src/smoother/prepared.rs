@@ -8,7 +8,7 @@ use std::time::Duration;
 use glam::DVec2;
 use web_time::Instant;
 
-use crate::cpu::mean_excess;
+use crate::cpu::objective;
 use crate::error::{MeshError, SmoothError};
 use crate::layers::{Elements, KeepLayers, Layers};
 use crate::layout::{Mercator, Problem, laid_out, prepare_to_slide};
@@ -326,11 +326,11 @@ impl<'a> Smoother<'a> {
         }
         let positions = now(self.problem.normalized(points, Vec::new()));
         let Some(field) = &self.field else {
-            return Ok(now(objective(&self.problem, metric, &positions)));
+            return Ok(now(objective(metric, &self.problem, &positions)));
         };
         let mut problem = self.problem.clone();
         set_targets_of(field, &self.mesh, &mut problem, &positions)?;
-        Ok(metric.ideal_squared() + now(mean_excess(metric, &problem, &positions)))
+        Ok(now(objective(metric, &problem, &positions)))
     }
 
     /// Returns the number of pairs of vertices with equal coordinates that slide together, as on both sides of a crack, and
@@ -436,11 +436,6 @@ fn topology_of<'a>(mesh: &Cow<'a, Mesh>) -> Result<Topology<'a>, MeshError> {
         Cow::Borrowed(mesh) => Topology::new(mesh),
         Cow::Owned(mesh) => Ok(Topology::new(mesh)?.into_owned()),
     }
-}
-
-/// Returns the objective of a problem by a metric at normalized positions.
-pub(super) async fn objective(problem: &Problem, metric: Metric, positions: &[DVec2]) -> f64 {
-    metric.ideal_squared() + mean_excess(metric, problem, positions).await
 }
 
 #[cfg(test)]

@@ -1,14 +1,16 @@
 //! A run of a prepared mesh, from the check of its options to the end of its last stage.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use web_time::Instant;
 
+use crate::cpu::objective;
 use crate::error::{MeshError, SmoothError};
 use crate::layout::Problem;
 use crate::metric::Metric;
-use crate::options::{Feature, Goal, Options};
-use crate::outcome::{DeviceFault, GoalOutcome, Outcome};
+use crate::options::{Feature, Options};
+use crate::outcome::{GoalOutcome, Outcome};
 use crate::quality::Quality;
 use crate::resume;
 use crate::run::{
@@ -17,11 +19,11 @@ use crate::run::{
 };
 use crate::slide::Slide;
 use crate::targets::TargetField;
-use crate::whole::{Device, Live, Spec, TargetFieldStage, bounded, drive};
+use crate::whole::{Device, Place, Session, Spec, TargetFieldStage, bounded, drive};
 
 use super::judging::JudgedBy;
 use super::over_all::OverAll;
-use super::prepared::{Smoother, objective};
+use super::prepared::Smoother;
 
 /// Returns whether a run by the metric can begin at the mesh, where f is `objective`.
 async fn is_usable(problem: &Problem, metric: Metric, objective: f64) -> bool {
@@ -66,15 +68,14 @@ impl Smoother<'_> {
         let began = Instant::now();
         options.check_with(&self.features())?;
         self.check_movable()?;
-        let device = device.filter(|_| self.problem.free_count() > 0);
-        let device = device.filter(|_| !self.slides_on_cpu());
-        let (device, fault) = self.checked(device, policy).await?;
+        let is_for_device = self.problem.free_count() > 0 && !self.slides_on_cpu();
+        let place = Place::given(device, is_for_device, self.size(), policy).await?;
         let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
-        let mut about = self.about(problem, options).await;
+        let about = self.about(problem, options).await;
         let resumed =
             from.map(|from| resume::check(&about, from, problem).map(|()| from)).transpose()?;
         let base = options.scheme.base();
-        let initial = objective(problem, base, problem.positions()).await;
+        let initial = objective(base, problem, problem.positions()).await;
         if !is_usable(problem, base, initial).await {
             return Err(self.refusal(problem, base).await?.into());
         }
@@ -85,43 +86,31 @@ impl Smoother<'_> {
             _ => observe(&Progress { f: over_all.f(base, now.f), ..*now }),
         };
         let known = resumed.and_then(|resumed| resumed.about.goal.clone());
-        let goal = match (options.stopping.goal(), known) {
-            (Some(Goal { fraction, .. }), Some((desired, origin))) => {
-                Some(GoalOutcome { fraction, desired, origin, best_fraction: 0.0 })
-            }
-            (Some(goal), None) => {
-                let found =
-                    self.resolve_goal(&over_all, goal, options, device, policy, &mut observe);
-                match found.await? {
-                    Some(aimed) => Some(aimed),
-                    None => return Ok(self.unchanged(base, over_all.f(base, initial), began)),
-                }
-            }
-            (None, _) => None,
+        let found = self.resolve_goal(&over_all, options, known, &place, policy, &mut observe);
+        let ControlFlow::Continue(goal) = found.await? else {
+            return Ok(self.unchanged(base, over_all.f(base, initial), began));
         };
+        let aimed = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
+        let about = Some(RunFingerprint { goal: aimed, ..about });
         let target = goal.as_ref().map(|goal| target_of(goal, initial));
-        about.goal = goal.as_ref().map(|goal| (goal.desired, goal.origin.clone()));
-        let mut checkpointer = Checkpointer::new(policy);
         let mut plan = Plan::toward(options, target);
-        let start = problem.positions();
-        set_guards(&mut plan, options.guard, problem, start).await;
+        let from = problem.positions();
+        set_guards(&mut plan, options.guard, problem, from).await;
         let tolerance = options.stopping.tolerance();
         let stage = |field| TargetFieldStage::new(&self.mesh, field, tolerance);
-        let mut stage = self.field.as_ref().map(stage);
-        let curves = self.on_curves(options);
-        checkpointer.about = Some(about);
-        let (phase, has_field) = (Phase::Smoothing, stage.is_some());
-        let spec = Spec { problem, device, options, phase, has_field, curves: curves.as_ref() };
-        let period = resumed.and_then(|resumed| resumed.period.as_ref());
-        if period.is_some() && !has_field {
+        let field = self.field.as_ref().map(stage);
+        if field.is_none() && resumed.is_some_and(|resumed| resumed.period.is_some()) {
             return Err(resume::foreign());
         }
-        let live = Live::new(spec, plan, start, resumed, &mut checkpointer).await?;
-        let ended = drive(live, stage.as_mut(), &mut checkpointer, &mut observe, period).await?;
+        let curves = self.on_curves(options);
+        let (phase, curves) = (Phase::Smoothing, curves.as_ref());
+        let spec = Spec { problem, options, phase, from, curves, resumed };
+        let checkpointer = Checkpointer::new(policy, about);
+        let run = Session::new(spec, plan, place, field, checkpointer).await?;
+        let ended = drive(run, &mut observe).await?;
         let judged = JudgedBy { over_all: &over_all, initial };
         let outcome = self.judged(options, judged, goal, ended, &mut observe).await?;
-        let device_fault = fault.or(outcome.device_fault);
-        Ok(Outcome { device_fault, smooth: began.elapsed(), ..outcome })
+        Ok(Outcome { smooth: began.elapsed(), ..outcome })
     }
 
     /// Returns the error of a run by a metric that cannot judge the mesh, with the metrics that can.
@@ -129,7 +118,7 @@ impl Smoother<'_> {
         let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
         let mut usable = Vec::new();
         for &metric in Metric::ALL.iter() {
-            let f = objective(problem, metric, problem.positions()).await;
+            let f = objective(metric, problem, problem.positions()).await;
             if is_usable(problem, metric, f).await {
                 usable.push(metric.name());
             }
@@ -160,24 +149,6 @@ impl Smoother<'_> {
             (Feature::Targets, self.problem.targets().is_some()),
             (Feature::TargetField, self.field.is_some()),
         ])
-    }
-
-    /// Returns the device on which a run begins, after checks that the mesh fits the device and that its arithmetic
-    /// keeps all digits. If the device drops digits, `policy` may let the run begin on the CPU.
-    async fn checked<'g>(
-        &self,
-        device: Option<Device<'g>>,
-        policy: &mut dyn CheckpointPolicy,
-    ) -> Result<(Option<Device<'g>>, Option<DeviceFault>), SmoothError> {
-        let Some(checked) = device else { return Ok((None, None)) };
-        checked.check_size(self.size())?;
-        match checked.check_arithmetic().await {
-            Ok(()) => Ok((device, None)),
-            Err(error) if policy.falls_back_to_cpu(&error, 0) => {
-                Ok((None, Some(DeviceFault { sweep: 0, error })))
-            }
-            Err(error) => Err(error.into()),
-        }
     }
 
     /// Returns the outcome of a run that was canceled before its first sweep.

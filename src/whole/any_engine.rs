@@ -42,6 +42,10 @@ impl AnyEngine<'_> {
 }
 
 impl Engine for AnyEngine<'_> {
+    fn problem(&self) -> &Problem {
+        on!(self, engine => engine.problem())
+    }
+
     fn noise(&self) -> f64 {
         on!(self, engine => engine.noise())
     }

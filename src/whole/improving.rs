@@ -2,23 +2,17 @@
 
 use glam::DVec2;
 
-use crate::cpu::mean_excess;
+use crate::cpu::objective;
 use crate::layout::Problem;
-use crate::metric::Metric;
 use crate::options::{Options, WorstBy};
 use crate::outcome::Improved;
 use crate::run::{NOISE, Observer, Phase, Plan, Progress, Stop};
 use crate::whole::altitude;
-use crate::whole::live::RunEnd;
+use crate::whole::end::RunEnd;
 use crate::worst::{Badness, MoveConstraints, Passes, stuck, worst_movable};
 
 /// Share by which rounding may raise the worst inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
-
-/// Returns f by the base metric at the given positions.
-async fn objective(base: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
-    base.ideal_squared() + mean_excess(base, problem, positions).await
-}
 
 /// The result of the stage that improves the worst triangles, evaluated at the coordinates as they are written.
 pub(crate) struct Improvement {

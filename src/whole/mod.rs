@@ -7,15 +7,18 @@ mod bounds;
 #[cfg_attr(not(feature = "gpu"), path = "no_device.rs")]
 mod device;
 mod driver;
-mod host;
+mod end;
 mod improving;
-mod live;
+mod place;
 mod relief;
+mod session;
 mod target_field;
 
 pub(crate) use bounds::{bounded, radii};
 pub(crate) use device::Device;
 pub(crate) use driver::drive;
+pub(crate) use end::RunEnd;
 pub(crate) use improving::Improvement;
-pub(crate) use live::{Live, RunEnd, Spec};
+pub(crate) use place::Place;
+pub(crate) use session::{Session, Spec};
 pub(crate) use target_field::{TargetFieldStage, set_targets_of};

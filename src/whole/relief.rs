@@ -7,14 +7,13 @@
 
 use glam::DVec2;
 
-use crate::cpu::CpuEngine;
+use crate::cpu::{CpuEngine, objectives};
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
 use crate::run::{Engine, History, Objectives, Plan, sweeps, worst_movable};
 use crate::untangle::feasible_means;
-use crate::whole::host::objectives;
 
 /// Largest inverse mean ratio of a triangle with a free vertex, above which sweeps are tried before a run. Among 130 meshes
 /// with ratios of 1e6 to 1e8, sweeps leave two with f = 1.7e5 after 1,000 sweeps. From means of neighbors, 101 sweeps reach
@@ -69,11 +68,11 @@ pub(super) async fn relieved(
         pause().await;
     }
     let Some(positions) = feasible_means(problem, from) else { return Ok(None) };
-    let f = objectives(problem, plan, &positions).await.of(base).unwrap_or(f64::NAN);
+    let f = objectives(&plan.tracked(), problem, &positions).await.of(base).unwrap_or(f64::NAN);
     let is_better = f < GAIN * history.least() && worst_movable(problem, &positions).await < worst;
     if !is_better {
         return Ok(None);
     }
-    let given = objectives(problem, plan, from).await;
+    let given = objectives(&plan.tracked(), problem, from).await;
     Ok(Some(Relief { given, positions }))
 }

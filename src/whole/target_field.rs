@@ -3,14 +3,16 @@
 
 use glam::DVec2;
 
+use crate::cpu::objective;
 use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
-use crate::parallel::pace::now;
-use crate::run::{NOISE, Named, Stop};
+use crate::parallel::map_parts;
+use crate::run::{NOISE, Named, PeriodState, Plan, Stop};
 use crate::targets::TargetField;
-use crate::whole::host::Host;
 
+/// Largest number of sweeps in a period.
+const SWEEPS: u32 = 5;
 /// Largest number of times that the stage halves the move of a period, until f falls.
 const MAX_HALVINGS: u32 = 4;
 /// Number of consecutive periods with remaining gains within the tolerance, after which a run ends.
@@ -35,14 +37,6 @@ pub(crate) fn set_targets_of(
     Ok(())
 }
 
-/// A finished period of sweeps, with the targets evaluated at its end.
-pub(crate) struct Period {
-    /// f by the base metric before and after the period.
-    pub(crate) f: [f64; 2],
-    /// Whether the run has reached its largest number of sweeps.
-    pub(crate) is_last: bool,
-}
-
 /// A decision after a period.
 pub(crate) struct Judgment {
     /// Reason why the run ends. `None` if the run continues.
@@ -56,6 +50,12 @@ pub(crate) struct TargetFieldStage<'s> {
     mesh: &'s Mesh,
     field: &'s TargetField,
     tolerance: f64,
+    /// Number of sweeps before the present period.
+    began: u32,
+    /// Normalized positions of all vertices before the period.
+    before: Vec<DVec2>,
+    /// f by the base metric at `before`.
+    f_before: f64,
     /// Gain of f in the last period. `None` before the first period.
     gained: Option<f64>,
     /// Number of consecutive periods with remaining gains within the tolerance.
@@ -67,13 +67,16 @@ pub(crate) struct TargetFieldStage<'s> {
 }
 
 impl<'s> TargetFieldStage<'s> {
-    /// Creates the stage of a run that ends at the given tolerance, a share of f.
+    /// Creates the stage of a run that ends at the given tolerance, a share of f. A run begins with [`begin`](Self::begin) or
+    /// [`restore`](Self::restore).
     pub(crate) fn new(mesh: &'s Mesh, field: &'s TargetField, tolerance: f64) -> Self {
-        let tolerance = tolerance.max(NOISE);
         Self {
             mesh,
             field,
-            tolerance,
+            tolerance: tolerance.max(NOISE),
+            began: 0,
+            before: Vec::new(),
+            f_before: f64::INFINITY,
             gained: None,
             settled: 0,
             has_moved: true,
@@ -81,72 +84,94 @@ impl<'s> TargetFieldStage<'s> {
         }
     }
 
-    fn follow_to(&mut self, host: &mut Host<'_>, positions: &[DVec2]) -> Result<(), MeshError> {
-        host.has_new_targets = true;
-        self.has_followed = true;
-        set_targets_of(self.field, self.mesh, &mut host.problem, positions)
+    /// Begins the first period at the start of a run, with the targets there.
+    pub(crate) async fn begin(&mut self, problem: &Problem, plan: &Plan, positions: Vec<DVec2>) {
+        let f = objective(plan.scheme.base(), problem, &positions).await;
+        self.begin_period(0, positions, f);
     }
-}
 
-impl TargetFieldStage<'_> {
-    /// Largest number of sweeps in a period.
-    pub(crate) const SWEEPS: u32 = 5;
+    fn follow_to(&mut self, problem: &mut Problem, positions: &[DVec2]) -> Result<(), MeshError> {
+        self.has_followed = true;
+        set_targets_of(self.field, self.mesh, problem, positions)
+    }
 
-    /// Moves the vertices to their swept positions, and evaluates the targets there. Halves the move until f falls by
+    /// Begins a period after `began` sweeps, at positions with the given f by the base metric.
+    pub(crate) fn begin_period(&mut self, began: u32, positions: Vec<DVec2>, f: f64) {
+        (self.began, self.before, self.f_before) = (began, positions, f);
+    }
+
+    /// Returns the number of sweeps before the present period.
+    pub(crate) fn began(&self) -> u32 {
+        self.began
+    }
+
+    /// Returns the last sweep of the present period.
+    pub(crate) fn until(&self) -> u32 {
+        self.began.saturating_add(SWEEPS)
+    }
+
+    /// Moves the vertices to their swept positions `to`, and evaluates the targets there. Halves the move until f falls by
     /// the new targets and no triangle is inverted. After [`MAX_HALVINGS`] halvings without success, the vertices return to
-    /// their former positions.
+    /// their former positions. Returns the positions of the vertices, and sets the targets of `problem` to those there.
     ///
     /// # Errors
     /// [`MeshError::NotFinite`] if a position at which a target is needed is infinite or NaN.
-    pub(crate) fn work(&mut self, host: &mut Host<'_>) -> Result<(), MeshError> {
-        let to = std::mem::take(&mut host.positions);
+    pub(crate) async fn work(
+        &mut self,
+        problem: &mut Problem,
+        plan: &Plan,
+        to: &[DVec2],
+    ) -> Result<Vec<DVec2>, MeshError> {
+        let base = plan.scheme.base();
+        let guard = plan.base_step(1.0).shape_guard;
         let mut share = 1.0;
-        self.has_moved = false;
         for _ in 0..=MAX_HALVINGS {
-            let way = host.before.iter().zip(&to);
+            let way = self.before.iter().zip(to);
             // With a share of 1, the positions equal the given positions exactly.
             let there: Vec<DVec2> = match share == 1.0 {
-                true => to.clone(),
+                true => to.to_vec(),
                 false => way.map(|(from, to)| *from + (*to - *from) * share).collect(),
             };
-            if host.is_sound(&host.before, &there) {
-                self.follow_to(host, &there)?;
-                if now(host.f(&there)) < host.f_before {
-                    (host.positions, self.has_moved) = (there, true);
-                    return Ok(());
+            if is_sound(problem, guard, &self.before, &there) {
+                self.follow_to(problem, &there)?;
+                if objective(base, problem, &there).await < self.f_before {
+                    self.has_moved = true;
+                    return Ok(there);
                 }
             }
             share *= 0.5;
         }
-        host.positions.clone_from(&host.before);
-        let before = host.before.clone();
-        self.follow_to(host, &before)?;
-        Ok(())
+        self.has_moved = false;
+        let before = self.before.clone();
+        self.follow_to(problem, &before)?;
+        Ok(before)
     }
 
-    /// Decides whether the run ends.
-    pub(crate) fn judge(&mut self, period: &Period) -> Judgment {
-        let [before, last] = period.f;
-        let gain = before - last;
+    /// Decides whether the run ends after a period, with f by the present targets. `is_last` tells whether the run has done
+    /// its largest number of sweeps.
+    pub(crate) fn judge(&mut self, f: f64, is_last: bool) -> Judgment {
+        let gain = self.f_before - f;
         let share = match self.gained {
             Some(before) if before > 0.0 => (gain / before).clamp(0.0, SLOWEST),
             Some(_) => 0.0,
             None => SLOWEST,
         };
-        let to_come = gain * (share / (1.0 - share)).max(1.0) / last;
+        let to_come = gain * (share / (1.0 - share)).max(1.0) / f;
         self.gained = Some(gain);
         self.settled = if to_come <= self.tolerance { self.settled.saturating_add(1) } else { 0 };
         let stop = match self.settled >= SETTLED || !self.has_moved {
             true => Some(Stop::Converged),
-            false => period.is_last.then_some(Stop::MaxSweeps),
+            false => is_last.then_some(Stop::MaxSweeps),
         };
         // If no part of the move lowers f, the gains of sweeps with constant targets predict nothing.
         let is_estimate = self.has_moved && to_come.is_finite();
-        Judgment { stop, remaining: is_estimate.then_some(to_come) }
+        // An extrapolation cannot show less than the tolerance: slow modes may remain.
+        let least = if stop == Some(Stop::Converged) { self.tolerance } else { 0.0 };
+        Judgment { stop, remaining: is_estimate.then_some(to_come.max(least)) }
     }
 
-    /// Returns the state of the stage between two periods.
-    pub(crate) fn save(&self) -> Named {
+    /// Returns the state of the stage in the present period.
+    pub(crate) fn save(&self) -> PeriodState {
         let mut out = Named::default();
         if let Some(gained) = self.gained {
             out.add("gained", gained);
@@ -154,18 +179,34 @@ impl TargetFieldStage<'_> {
         out.add("settled", self.settled);
         out.add_flag("moved", self.has_moved);
         out.add_flag("followed", self.has_followed);
-        out
+        let &Self { began, f_before, .. } = self;
+        PeriodState { began, before: self.before.clone(), f_before, stage: out }
     }
 
-    /// Restores a state that [`save`](Self::save) returned. The vertices of `host` have the positions of the saved period.
-    /// `None` for an invalid state.
-    pub(crate) fn restore(&mut self, host: &mut Host<'_>, from: &Named) -> Option<()> {
-        (self.gained, self.settled) = (from.one("gained"), from.one("settled")?);
-        (self.has_moved, self.has_followed) = (from.flag("moved")?, from.flag("followed")?);
+    /// Restores a state that [`save`](Self::save) returned, and the targets of `problem` in that state. `None` for an invalid
+    /// state.
+    pub(crate) fn restore(&mut self, problem: &mut Problem, from: &PeriodState) -> Option<()> {
+        let PeriodState { began, before, f_before, stage } = from;
+        self.begin_period(*began, before.clone(), *f_before);
+        (self.gained, self.settled) = (stage.one("gained"), stage.one("settled")?);
+        (self.has_moved, self.has_followed) = (stage.flag("moved")?, stage.flag("followed")?);
         if self.has_followed {
-            let before = host.before.clone();
-            self.follow_to(host, &before).ok()?;
+            self.follow_to(problem, before).ok()?;
         }
         Some(())
     }
+}
+
+/// Returns whether a move from `from` to `to` is sound: no triangle may become inverted or flat, and none may have an inverse
+/// mean ratio both above the guard and worse than before.
+fn is_sound(problem: &Problem, guard: f64, from: &[DVec2], to: &[DVec2]) -> bool {
+    let ratio = |positions: &[DVec2], t: &[u32; 3]| {
+        problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()
+    };
+    let is_sound = |t: &[u32; 3]| {
+        let now = ratio(to, t);
+        now.is_finite() && (now <= guard || now <= ratio(from, t))
+    };
+    let parts = map_parts(problem.triangles().chunks(4096), |_, part| part.iter().all(is_sound));
+    parts.into_iter().all(|is_sound| is_sound)
 }

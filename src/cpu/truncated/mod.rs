@@ -67,10 +67,7 @@ impl Truncated {
         let metric: Metric = sweep.metric;
         let count = problem.judged_triangles().len() as f64;
         let swept = mean_excess(metric, problem, positions).await;
-        let mut tangents = match &mut curves {
-            Some(curves) => tangents(curves, sweep, problem, positions),
-            None => Tangents::default(),
-        };
+        let mut tangents = tangents(curves.as_deref_mut(), sweep, problem, positions);
         let is_exact = tangents.restrict(request.is_exact);
         let scale = (swept + metric.ideal_squared()).max(MIN_SCALE) * count;
         let solved = self.solve(metric, problem, positions, &tangents, request, scale).await;
@@ -113,10 +110,7 @@ impl Truncated {
         mut curves: Option<OnCurves>,
         request: &StepRequest,
     ) -> Option<f64> {
-        let mut tangents = match &mut curves {
-            Some(curves) => tangents(curves, sweep, problem, positions),
-            None => Tangents::default(),
-        };
+        let mut tangents = tangents(curves.as_mut(), sweep, problem, positions);
         tangents.restrict(request.is_exact);
         let count = problem.judged_triangles().len() as f64;
         let (metric, scale) = (sweep.metric, request.objective * count);
@@ -177,13 +171,14 @@ impl Truncated {
     }
 }
 
-/// Returns the sliding vertices as unknowns of a step by the metric of `sweep` from `positions`.
+/// Returns the sliding vertices, if any, as unknowns of a step by the metric of `sweep` from `positions`.
 fn tangents(
-    curves: &mut OnCurves,
+    curves: Option<&mut OnCurves>,
     sweep: &SweepParams,
     problem: &Problem,
     positions: &[DVec2],
 ) -> Tangents {
+    let Some(curves) = curves else { return Tangents::default() };
     curves.tangents(problem, |fan| {
         let patch = fan.patch(problem, positions, 0.0);
         sweep.of(&patch).expansion(positions[fan.own() as usize].to_array()).gradient.into()

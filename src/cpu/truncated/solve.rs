@@ -44,6 +44,18 @@ pub(super) struct Solved {
     pub(super) iterations: u32,
 }
 
+impl Solved {
+    /// The state before the first iteration.
+    const NONE: Self = Self {
+        model_gain: 0.0,
+        descent: 0.0,
+        bound: f64::INFINITY,
+        least_ritz: f64::INFINITY,
+        is_curved_down: false,
+        iterations: 0,
+    };
+}
+
 impl<T: Scalar> Solver<T> {
     /// Prepares a mesh from its connectivity, with the vertices that slide.
     pub(super) async fn new(problem: &Problem, curves: Option<&OnCurves>) -> Self {
@@ -118,14 +130,7 @@ impl<T: Scalar> Solver<T> {
     pub(super) async fn solve(&mut self, request: &StepRequest, least_gain: f64) -> Solved {
         let mut bound = ErrorBound::new(request.least_ritz);
         let mut rough = ErrorBound::new(StepRequest::ROUGH_RITZ);
-        let mut solved = Solved {
-            model_gain: 0.0,
-            descent: 0.0,
-            bound: f64::INFINITY,
-            least_ritz: f64::INFINITY,
-            is_curved_down: false,
-            iterations: 0,
-        };
+        let mut solved = Solved::NONE;
         for vector in [&mut self.solution, &mut self.direction, &mut self.product] {
             *vector = vec![[T::default(); 2]; self.blocks.order.len()];
         }

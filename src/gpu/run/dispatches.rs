@@ -172,6 +172,28 @@ async fn sweep_pipelines(
     Ok(sweeps)
 }
 
+/// Creates the buffers of a run: `params`, the control, the best positions of `kept` vertices, the uniforms of the dispatches,
+/// and room for `sums` pairs of partial sums.
+fn buffers(
+    gpu: &Gpu,
+    params: Params,
+    uniforms: &Uniforms,
+    kept: u64,
+    sums: u64,
+) -> Result<[wgpu::Buffer; 5], GpuError> {
+    let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+    scoped(&gpu.device, || {
+        [
+            filled(gpu, "params", &[params], Usage::UNIFORM | Usage::COPY_DST),
+            // Zeros mean: not done, nothing evaluated.
+            zeroed(gpu, "control", size_of::<Control>() as u64, usage),
+            zeroed(gpu, "best positions", kept * POSITION, usage),
+            filled(gpu, "parts", &uniforms.bytes(), Usage::UNIFORM),
+            zeroed(gpu, "partial sums", sums * size_of::<[f32; 2]>() as u64, Usage::STORAGE),
+        ]
+    })
+}
+
 impl Dispatches {
     /// Creates the pipelines and buffers of a plan whose sweeps use only `steps`. With `keep_best`, each evaluation
     /// copies the positions of a new lowest objective.
@@ -184,8 +206,8 @@ impl Dispatches {
         keep_best: bool,
     ) -> Result<Self, GpuError> {
         let form = mesh.parts.form();
-        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
         let sweeps = sweep_pipelines(gpu, form, &steps).await?;
+        let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
         let objective = pipeline(Kernel::Objective(plan.tracked()))?;
         pause().await;
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
@@ -194,25 +216,13 @@ impl Dispatches {
         pause().await;
 
         let partials = objective_invocations(problem.judged_triangles().len());
-        let partial_bytes =
-            (plan.tracked().len() as u64 + 2) * u64::from(partials) * size_of::<[f32; 2]>() as u64;
+        let sums = (plan.tracked().len() as u64 + 2) * u64::from(partials);
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
         let uniforms = Uniforms::new(gpu, steps.clone(), problem.colors(), &mesh.parts);
         let params = params(problem, &plan, partials);
-
-        let (control, best, params, bind_groups) = scoped(&gpu.device, || {
-            let params = filled(gpu, "params", &[params], Usage::UNIFORM | Usage::COPY_DST);
-            let parts = filled(gpu, "parts", &uniforms.bytes(), Usage::UNIFORM);
-            let partial_sums = zeroed(gpu, "partial sums", partial_bytes, Usage::STORAGE);
-            // Zeros mean: not done, nothing evaluated.
-            let control = zeroed(
-                gpu,
-                "control",
-                size_of::<Control>() as u64,
-                Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST,
-            );
-            let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
-            let best = zeroed(gpu, "best positions", kept * POSITION, usage);
+        let [params, control, best, parts, partial_sums] =
+            buffers(gpu, params, &uniforms, kept, sums)?;
+        let bind_groups = scoped(&gpu.device, || {
             let bound = BoundRun {
                 params: &params,
                 parts: &parts,
@@ -221,9 +231,7 @@ impl Dispatches {
                 best: &best,
                 free: keep_best.as_ref().map(|_| &uniforms.free[..]),
             };
-            let bind_groups =
-                (0..mesh.parts.count()).map(|part| bound.bind(gpu, mesh, part)).collect();
-            (control, best, params, bind_groups)
+            (0..mesh.parts.count()).map(|part| bound.bind(gpu, mesh, part)).collect()
         })?;
         let slides = match &mesh.curves {
             Some(curves) if !steps.is_empty() => {

@@ -102,10 +102,6 @@ impl<'a> GpuEngine<'a> {
         })
     }
 
-    pub(crate) fn problem(&self) -> &Problem {
-        &self.problem
-    }
-
     #[cfg(test)]
     pub(super) fn truncated(&self) -> Option<&Truncated> {
         self.truncated.as_ref()
@@ -286,6 +282,10 @@ impl<'a> GpuEngine<'a> {
 }
 
 impl Engine for GpuEngine<'_> {
+    fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
     fn noise(&self) -> f64 {
         NOISE_OF_F
     }
@@ -522,13 +522,13 @@ impl Engine for GpuEngine<'_> {
             }
             state.best = Some(best);
         }
+        state.add_maps(&self.problem, whole);
         if whole {
             state.own.add_list(POSITIONS, &positions);
             let control: Vec<Control> =
                 readback::read(gpu, &self.dispatches.control, 1, waiting).await?;
             state.own.add_list(CONTROL, &control);
             state.roots = self.hierarchy.as_ref().map(Hierarchy::build_log).unwrap_or_default();
-            state.add_local_maps(&self.problem);
             if let Some(secants) = &self.secants {
                 secants.save(gpu, &mut state, waiting).await?;
             }
@@ -553,8 +553,9 @@ impl Engine for GpuEngine<'_> {
             return Ok(false);
         }
         self.mesh.write_positions(gpu, &positions)?;
-        if state.restore_local_maps(&mut self.problem) {
+        if state.restore_maps(&mut self.problem) {
             self.mesh.write_maps(gpu, &self.problem)?;
+            self.dispatches.write_params(gpu, &self.problem)?;
         }
         self.evaluated = control.evaluated;
         let best = match self.dispatches.plan.is_monotone() {

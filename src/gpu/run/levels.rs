@@ -52,6 +52,15 @@ pub(crate) enum Fitting {
     EachTime,
 }
 
+/// Checks that the device has room for a number of vectors in one binding.
+fn check_vectors(gpu: &Gpu, count: u32) -> Result<(), GpuError> {
+    let limits = gpu.device.limits();
+    let what = || "the vectors of the coarse levels".to_owned();
+    let bytes = u64::from(count) * size_of::<[f32; 2]>() as u64;
+    let bound = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    check_limit("max_storage_buffer_binding_size", bound, &what, bytes)
+}
+
 impl Levels {
     /// Uploads a hierarchy and creates the pipelines for corrections of a run by its base metric.
     ///
@@ -91,13 +100,7 @@ impl Levels {
         let sum = listing.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
         let (kernel, whole) = (Kernel::MoveAlongCorrection, Bound::Fine { part: 0 });
         let movement = listing.step(kernel, whole, Groups::ForRows, Op::Fine(fine))?;
-
-        let limits = gpu.device.limits();
-        let what = || "the vectors of the coarse levels".to_owned();
-        let bytes = u64::from(listing.vectors) * size_of::<[f32; 2]>() as u64;
-        let bound = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        check_limit("max_storage_buffer_binding_size", bound, &what, bytes)?;
-
+        check_vectors(gpu, listing.vectors)?;
         let listed = find_gradient.iter().chain(&correction).chain(&left_out).chain(&objective);
         let (stride, ops) = uniforms(gpu, listed.chain([&sum, &movement]), listing.listed);
         let Uploaded { bind_groups, ops, vectors, gradient, direction } =

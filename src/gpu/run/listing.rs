@@ -274,53 +274,73 @@ impl<'g> Listing<'g> {
 
         let [gradient, direction] =
             ["gradient", "correction"].map(|label| pairs(label, free.into()));
+        let shared = Shared { mesh, params, ops: &ops, vectors: &vectors };
         let bind_groups = self.bound.iter().map(|&bound| {
-            let params = params.as_entire_binding();
-            let vectors = vectors.as_entire_binding();
-            match bound {
-                Bound::Fine { part } => {
-                    let bindings = FineBindings {
-                        params,
-                        op: uniform::<FineOp>(&ops),
-                        positions: mesh.bind_positions(),
-                        ring_start: mesh.ring_start.as_entire_binding(),
-                        ring: mesh.bind_ring(part),
-                        triangles: mesh.bind_triangles(part),
-                        gradient: gradient.as_entire_binding(),
-                        direction: direction.as_entire_binding(),
-                        vectors,
-                    };
-                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
-                }
-                Bound::Transfer { part, structure: page, values: of_values } => {
-                    let bindings = TransferBindings {
-                        params,
-                        op: uniform::<TransferOp>(&ops),
-                        ring_start: mesh.ring_start.as_entire_binding(),
-                        ring: mesh.bind_ring(part),
-                        structure: structure[page].as_entire_binding(),
-                        values: values[of_values].as_entire_binding(),
-                        gradient: gradient.as_entire_binding(),
-                        direction: direction.as_entire_binding(),
-                        vectors,
-                    };
-                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
-                }
-                Bound::Coarse { structure: page, values: of_values } => {
-                    let bindings = CoarseBindings {
-                        params,
-                        op: uniform::<CoarseOp>(&ops),
-                        structure: structure[page].as_entire_binding(),
-                        values: values[of_values].as_entire_binding(),
-                        vectors,
-                    };
-                    gpu.pipelines.bind(&gpu.device, self.form, bindings)
-                }
-            }
+            self.bind(bound, &shared, [&gradient, &direction], [&structure, &values])
         });
         let bind_groups = bind_groups.collect();
         Uploaded { bind_groups, ops, vectors, gradient, direction }
     }
+
+    /// Binds the buffers of a dispatch. To be called in an error scope.
+    fn bind(
+        &self,
+        bound: Bound,
+        &Shared { mesh, params, ops, vectors }: &Shared<'_>,
+        [gradient, direction]: [&wgpu::Buffer; 2],
+        [structure, values]: [&[wgpu::Buffer]; 2],
+    ) -> wgpu::BindGroup {
+        let gpu = self.gpu;
+        let (params, vectors) = (params.as_entire_binding(), vectors.as_entire_binding());
+        match bound {
+            Bound::Fine { part } => {
+                let bindings = FineBindings {
+                    params,
+                    op: uniform::<FineOp>(ops),
+                    positions: mesh.bind_positions(),
+                    ring_start: mesh.ring_start.as_entire_binding(),
+                    ring: mesh.bind_ring(part),
+                    triangles: mesh.bind_triangles(part),
+                    gradient: gradient.as_entire_binding(),
+                    direction: direction.as_entire_binding(),
+                    vectors,
+                };
+                gpu.pipelines.bind(&gpu.device, self.form, bindings)
+            }
+            Bound::Transfer { part, structure: page, values: of_values } => {
+                let bindings = TransferBindings {
+                    params,
+                    op: uniform::<TransferOp>(ops),
+                    ring_start: mesh.ring_start.as_entire_binding(),
+                    ring: mesh.bind_ring(part),
+                    structure: structure[page].as_entire_binding(),
+                    values: values[of_values].as_entire_binding(),
+                    gradient: gradient.as_entire_binding(),
+                    direction: direction.as_entire_binding(),
+                    vectors,
+                };
+                gpu.pipelines.bind(&gpu.device, self.form, bindings)
+            }
+            Bound::Coarse { structure: page, values: of_values } => {
+                let bindings = CoarseBindings {
+                    params,
+                    op: uniform::<CoarseOp>(ops),
+                    structure: structure[page].as_entire_binding(),
+                    values: values[of_values].as_entire_binding(),
+                    vectors,
+                };
+                gpu.pipelines.bind(&gpu.device, self.form, bindings)
+            }
+        }
+    }
+}
+
+/// The buffers that all listed dispatches bind.
+struct Shared<'b> {
+    mesh: &'b MeshBuffers,
+    params: &'b wgpu::Buffer,
+    ops: &'b wgpu::Buffer,
+    vectors: &'b wgpu::Buffer,
 }
 
 /// The buffers and bind groups of the listed dispatches.

@@ -124,7 +124,7 @@ impl Corrections {
             _ => SWEEPS_PAY,
         };
         let pays = 1.0 - (1.0 - share).powi(period as i32);
-        let gain = last - (f - self.least_objective());
+        let gain = last - (f - self.least);
         // The two sides are equal if f has its least value.
         if done >= until.max(period) && gain <= pays * last {
             if self.attempts == 0 {
@@ -171,10 +171,10 @@ impl Corrections {
     ) -> Result<Objectives, GpuError> {
         let Correcting { since, length: last_length, proposed, refused } = state;
         let done = history.f().len();
-        if proposed == MOST_IN_MAPS && !self.has_local_maps() {
+        if proposed == MOST_IN_MAPS && !engine.problem().has_local_maps() {
             self.leave_maps(engine)?;
         }
-        let change = self.change_of_levels(history, done - 1, proposed);
+        let change = self.change_of_levels(engine.problem(), history, done - 1, proposed);
         if let Some(change) = change
             && !self.change_levels(engine, change, done - 1).await?
         {
@@ -189,7 +189,7 @@ impl Corrections {
         // If the correction of all vertices leads uphill, the levels no longer fit the stiffness of the mesh.
         let misleads = proposal.slope > 0.0 && !is_smooth;
         let proposed = if misleads { self.drop_levels(engine) } else { proposed + 1 };
-        let can_break = step.shape_guard.is_finite() || self.problem.floor() > 0.0;
+        let can_break = step.shape_guard.is_finite() || engine.problem().floor() > 0.0;
         if proposal.slope < 0.0 && proposal.there.is_none() && can_break {
             proposal = engine.exclude_broken(length, !self.accelerated).await?;
         }

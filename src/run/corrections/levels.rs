@@ -5,6 +5,7 @@ use web_time::Instant;
 use super::plan_steps::OMEGA_BETWEEN;
 use super::state::{Corrections, ESTIMATES};
 use crate::error::GpuError;
+use crate::layout::Problem;
 use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
@@ -43,6 +44,7 @@ impl Corrections {
     /// corrections computed in this stage, `now` the index of the last evaluation in the history.
     pub(super) fn change_of_levels(
         &self,
+        problem: &Problem,
         history: &History,
         now: usize,
         proposed: u32,
@@ -52,7 +54,7 @@ impl Corrections {
             let before = self.excess(history, since);
             before - excess > share * before
         };
-        let rebuild_from = match self.has_local_maps() {
+        let rebuild_from = match problem.has_local_maps() {
             true => REBUILD_LOCAL_FROM,
             // The exponents of EDGE decide when its levels change. Stages change the targets between sweeps.
             false if self.has_field || !self.metric().is_smooth() => u32::MAX,
@@ -76,15 +78,16 @@ impl Corrections {
     /// by the former levels had lengths below 0.001, and five runs took 59 to 204 sweeps. By the latter levels, the five
     /// runs take 22 to 40.
     pub(super) fn leave_maps(&mut self, engine: &mut impl Engine) -> Result<(), GpuError> {
-        if !self.problem.is_stretched() || self.problem.are_levels_in_plane() {
+        let mut problem = engine.problem().clone();
+        if !problem.is_stretched() || problem.are_levels_in_plane() {
             return Ok(());
         }
         self.drop_levels(engine);
         // Secant pairs and gains belong to the former levels.
         engine.forget();
         self.estimates = [f64::INFINITY; ESTIMATES];
-        self.problem.set_levels_in_plane();
-        engine.set_maps(&self.problem)
+        problem.set_levels_in_plane();
+        engine.set_maps(&problem)
     }
 
     /// Drops the levels, which are then built again before the next correction. Returns 0, the number of corrections
@@ -110,17 +113,18 @@ impl Corrections {
         if before.is_none() {
             self.built = now;
         }
-        if self.has_local_maps() {
+        let mut problem = engine.problem().clone();
+        if problem.has_local_maps() {
             // The levels fit the stiffness in local coordinates, which follow the triangles.
-            self.problem.set_local_maps_at(&engine.positions().await?).await;
-            engine.set_maps(&self.problem)?;
+            problem.set_local_maps_at(&engine.positions().await?).await;
+            engine.set_maps(&problem)?;
             // Gains by other levels predict nothing.
             self.estimates = [f64::INFINITY; ESTIMATES];
         }
         let roots = engine.stiffness_roots(self.step(OMEGA_BETWEEN).smoothing()).await?;
         let hierarchy = match before {
-            Some(before) => before.fitted_to(&self.problem, roots).await,
-            None => Hierarchy::new(&self.problem, roots).await,
+            Some(before) => before.fitted_to(&problem, roots).await,
+            None => Hierarchy::new(&problem, roots).await,
         };
         let set = engine.set_hierarchy(hierarchy).await;
         self.levels_time += began.elapsed();

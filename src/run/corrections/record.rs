@@ -72,7 +72,7 @@ impl Corrections {
         let mut end = end.or(is_at_bound.then_some(Stop::Converged));
         // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
         let is_extrapolated = end == Some(Stop::Converged) && !is_settled;
-        let least = if self.is_held() { LEAST_IF_HELD * whole.tolerance } else { whole.tolerance };
+        let least = if self.is_held { LEAST_IF_HELD * whole.tolerance } else { whole.tolerance };
         let least_left = if is_extrapolated { least } else { 0.0 };
         let remaining = remaining.map(|left| (left + self.above()).max(least_left));
         let mut remaining = remaining.into_iter().chain(bound).reduce(f64::min);
@@ -138,10 +138,10 @@ impl Corrections {
             let has_tolerance = rule.target.is_none() && rule.tolerance > 0.0;
             return Ok((left, if has_tolerance { Some(Stop::Converged) } else { end }));
         }
-        if self.is_held() && left.is_none_or(|left| left > FORBIDDEN * tolerance) {
+        if self.is_held && left.is_none_or(|left| left > FORBIDDEN * tolerance) {
             return Ok((estimate, end));
         }
-        let most = if self.is_held() { 1 } else { MOST_REFUSED_ENDS };
+        let most = if self.is_held { 1 } else { MOST_REFUSED_ENDS };
         if self.refused_ends == most || self.is_left_out() {
             return Ok((left.or(estimate), end));
         }
@@ -175,11 +175,6 @@ impl Corrections {
         self.lowered.push(history.last());
     }
 
-    /// Returns whether bounds or a guard may forbid the gain of a Newton step.
-    fn is_held(&self) -> bool {
-        self.problem.is_bounded() || self.step(1.0).shape_guard.is_finite()
-    }
-
     /// Returns whether corrections begin again because sweeps without corrections have doubled the number of sweeps. Corrections
     /// that were refused on a rough mesh may succeed on the smoothed mesh, and lower modes that sweeps alone hardly change.
     fn tries_again(&self, history: &History) -> bool {
@@ -210,7 +205,7 @@ impl Corrections {
     /// run. f cannot fall below the limit, so no estimate is needed there.
     fn bound(&self, history: &History) -> Option<f64> {
         let (f, tolerance) = (history.last(), history.rule().tolerance);
-        let above_least = (f - self.least_objective()) / f.max(MIN_SCALE);
+        let above_least = (f - self.least) / f.max(MIN_SCALE);
         let is_within = tolerance > 0.0 && above_least.max(NOISE) <= tolerance && f.is_finite();
         is_within.then_some(above_least.max(NOISE))
     }

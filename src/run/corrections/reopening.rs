@@ -44,7 +44,8 @@ impl Corrections {
         if self.was_reopened || !is_due || !is_left || history.stop().is_some() {
             return Ok(());
         }
-        let mut worst = worst_movable(&self.problem, &engine.positions().await?).await;
+        let problem = engine.problem().clone();
+        let mut worst = worst_movable(&problem, &engine.positions().await?).await;
         if worst <= FLAT {
             return Ok(());
         }
@@ -58,7 +59,7 @@ impl Corrections {
                 continue;
             }
             let last = worst;
-            worst = worst_movable(&self.problem, &engine.positions().await?).await;
+            worst = worst_movable(&problem, &engine.positions().await?).await;
             if worst <= FLAT {
                 break;
             }

@@ -38,7 +38,6 @@ impl Corrections {
             ("accelerated", self.accelerated),
             ("no room for levels", self.is_left_out()),
             ("reopened", self.was_reopened),
-            ("levels in the plane", self.problem.are_levels_in_plane()),
             ("can step", self.can_step),
         ] {
             out.add_flag(name, holds);
@@ -93,9 +92,6 @@ impl Corrections {
         self.refused_ends = count("refused ends")?;
         self.unmeasured_until = from.one::<u32>("unmeasured until")? as usize;
         self.tail = Tail::saved_in(from)?;
-        if from.flag("levels in the plane")? {
-            self.problem.set_levels_in_plane();
-        }
         self.slope = from.one("slope");
         self.estimates = from.list_of("estimates", ESTIMATES)?.try_into().ok()?;
         Some(())

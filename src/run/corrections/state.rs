@@ -8,7 +8,6 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::history::History;
 use crate::run::plan::Plan;
-use crate::run::saved::EngineState;
 use crate::run::sweep_params::SweepParams;
 use crate::run::truncated::Tail;
 
@@ -30,8 +29,11 @@ pub(super) const ATTEMPTS: u32 = 5;
 
 /// The state of a run with corrections from coarser levels.
 pub(crate) struct Corrections {
-    pub(super) problem: Problem,
     pub(super) plan: Plan,
+    /// Lower limit of f.
+    pub(super) least: f64,
+    /// Whether bounds or a guard may forbid the gain of a Newton step.
+    pub(super) is_held: bool,
     /// Whether the targets change between sweeps, by a target field, so that the history of f is not a decay.
     pub(super) has_field: bool,
     pub(super) stage: Stage,
@@ -113,8 +115,9 @@ impl Corrections {
     /// Creates the state at the start of a run. `has_field` is whether a target field changes the targets between sweeps.
     pub(crate) fn new(problem: &Problem, plan: &Plan, has_field: bool) -> Self {
         Self {
-            problem: problem.clone(),
             plan: plan.clone(),
+            least: plan.scheme.base().least_objective(problem.targets().is_some()),
+            is_held: problem.is_bounded() || plan.base_step(1.0).shape_guard.is_finite(),
             has_field,
             stage: Stage::Before { until: 1 },
             attempts: 0,
@@ -203,41 +206,9 @@ impl Corrections {
         }
     }
 
-    /// Replaces the targets by those of `problem`. Its layout must equal that of the run's problem. Local maps and the
-    /// coordinates of the levels do not change. Returns the problem for the engine.
-    pub(crate) fn set_targets(&mut self, problem: &Problem) -> &Problem {
-        let before = std::mem::replace(&mut self.problem, problem.clone());
-        self.problem.share_local_maps(&before);
-        if before.are_levels_in_plane() {
-            self.problem.set_levels_in_plane();
-        }
-        &self.problem
-    }
-
-    /// Returns the problem with levels in the coordinates of the plane. `None` if levels are in the coordinates of the
-    /// maps.
-    pub(crate) fn in_plane(&self) -> Option<&Problem> {
-        self.problem.are_levels_in_plane().then_some(&self.problem)
-    }
-
-    /// Replaces the local maps by the local maps of a saved state. Without local maps in the state, nothing changes.
-    pub(crate) fn restore_local_maps(&mut self, state: &EngineState) {
-        state.restore_local_maps(&mut self.problem);
-    }
-
-    /// Returns whether the mesh has local maps, which follow its triangles.
-    pub(super) fn has_local_maps(&self) -> bool {
-        self.problem.has_local_maps()
-    }
-
-    /// Returns the lower limit of f.
-    pub(super) fn least_objective(&self) -> f64 {
-        self.metric().least_objective(self.problem.targets().is_some())
-    }
-
     /// Returns the excess of f over its lower limit, at an index in the history.
     pub(super) fn excess(&self, history: &History, evaluation: usize) -> f64 {
-        history.f()[evaluation] - self.least_objective()
+        history.f()[evaluation] - self.least
     }
 }
 

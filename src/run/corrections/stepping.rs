@@ -29,7 +29,7 @@ impl Corrections {
         let f = step.excess + self.metric().ideal_squared();
         let tolerance = history.rule().tolerance;
         let (left, is_whole) = self.tail.record(&step, f.max(MIN_SCALE), tolerance, engine.noise());
-        let above = [history.last(), f].map(|f| f - self.least_objective());
+        let above = [history.last(), f].map(|f| f - self.least);
         match self.tail.is_stuck(&step, is_whole, above) {
             true => self.leave_steps(step.slides, history.f().len()),
             false => self.stage = Stage::Stepping { left },
@@ -55,7 +55,7 @@ impl Corrections {
     pub(super) fn judge_step(&self, left: Option<f64>, of_f: Option<Stop>, history: &mut History) {
         let rule = history.rule();
         let scale = history.last().max(MIN_SCALE);
-        let at_most = ((history.last() - self.least_objective()) / scale).max(NOISE);
+        let at_most = ((history.last() - self.least) / scale).max(NOISE);
         let at_most = Some(at_most).filter(|left| *left <= rule.tolerance);
         let remaining = left.into_iter().chain(at_most).reduce(f64::min);
         let is_within = |limit: f64| remaining.is_some_and(|left| left <= limit);

@@ -10,6 +10,8 @@ mod sliding;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::readback::{self, Waiting};
@@ -100,11 +102,25 @@ impl Truncated {
         count: f64,
         waiting: Waiting,
     ) -> Result<Option<f64>, GpuError> {
-        let Prepared { set_up, iteration, state: buffer, .. } = &self.prepared;
-        let begin = begin(request, count, false);
+        let (state, _) = self.solve(gpu, &begin(request, count, false), None, waiting).await?;
+        Ok(gain_of(&state, count))
+    }
+
+    /// Solves for a step from the present positions. Returns the state, and the vectors in the given bytes of `fine`.
+    async fn solve(
+        &mut self,
+        gpu: &Gpu,
+        begin: &StepState,
+        vectors: Option<Range<u64>>,
+        waiting: Waiting,
+    ) -> Result<(StepState, Vec<[f32; 2]>), GpuError> {
+        let Prepared { set_up, iteration, state: buffer, fine, .. } = &self.prepared;
         scoped(&gpu.device, || {
-            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&begin));
+            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(begin));
         })?;
+        let whole = size_of::<StepState>();
+        let vectors = vectors.map(|range| (fine, range));
+        let sources: Vec<_> = [(buffer, 0..whole as u64)].into_iter().chain(vectors).collect();
         let mut set_up = Some(set_up);
         loop {
             let encode = |encoder: &mut wgpu::CommandEncoder| {
@@ -112,11 +128,13 @@ impl Truncated {
                 set_up.take().into_iter().for_each(|set_up| self.encode(&mut passes, set_up));
                 (0..self.expected).for_each(|_| self.encode(&mut passes, iteration));
             };
-            let copied = readback::submit_and_copy::<StepState>(gpu, encode, buffer, 1)?;
-            let state = copied.first(waiting).await?;
+            let copied = readback::submit_and_copy_ranges::<u32>(gpu, encode, &sources)?;
+            let words = copied.values(waiting).await?;
+            let (state, vectors) = words.split_at(whole / size_of::<u32>());
+            let state: StepState = bytemuck::pod_read_unaligned(bytemuck::cast_slice(state));
             self.expected = expected_after(&state);
             if state.is_solved != 0 {
-                return Ok(gain_of(&state, count));
+                return Ok((state, bytemuck::cast_slice(vectors).to_vec()));
             }
         }
     }

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::buffers::PAIR;
 use super::list::Prepared;
-use super::{Truncated, begin, expected_after, gain_of, taken};
+use super::{Truncated, begin, gain_of, taken};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::readback::{self, Waiting};
@@ -49,7 +49,7 @@ impl Truncated {
         let is_exact = sliding.tangents.restrict(request.is_exact);
         let count = on.problem.judged_triangles().len() as f64;
         let (mut state, solution) =
-            self.solve(on, &sliding.tangents, &begin(request, count, true)).await?;
+            self.solve_with(on, &sliding.tangents, &begin(request, count, true)).await?;
         let mut to = None;
         while state.is_searched == 0 {
             let placed = self.place(on, &sliding, &solution, state.next_length)?;
@@ -82,7 +82,7 @@ impl Truncated {
         sliding.tangents.restrict(request.is_exact);
         let count = on.problem.judged_triangles().len() as f64;
         let begin = begin(request, count, true);
-        let (state, _) = self.solve(on, &sliding.tangents, &begin).await?;
+        let (state, _) = self.solve_with(on, &sliding.tangents, &begin).await?;
         Ok(gain_of(&state, count))
     }
 
@@ -117,40 +117,22 @@ impl Truncated {
         Ok(Sliding { curves, tangents })
     }
 
-    /// Solves for the step. Returns the state, and the solution at all vertices that are not free.
-    async fn solve(
+    /// Solves for a step in which the tangents are unknowns too. Returns the state, and the solution at all vertices that are
+    /// not free.
+    async fn solve_with(
         &mut self,
         on: &OnDevice<'_>,
         tangents: &Tangents,
         begin: &StepState,
     ) -> Result<(StepState, Vec<[f32; 2]>), GpuError> {
-        let Prepared { set_up, iteration, state: buffer, fine, lines, slides, .. } = &self.prepared;
+        let Prepared { lines, slides, step, .. } = &self.prepared;
         let vertices = slides.as_ref().map_or(&[][..], |slides| &slides.vertices);
+        let unknowns = lines_of(tangents, vertices);
         scoped(&on.gpu.device, || {
-            on.gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(begin));
-            let unknowns = lines_of(tangents, vertices);
             on.gpu.queue.write_buffer(lines, 0, bytemuck::cast_slice(&unknowns));
         })?;
-        let mut set_up = Some(set_up);
-        loop {
-            let iterations = self.expected;
-            let encode = |encoder: &mut wgpu::CommandEncoder| {
-                let mut passes = encoder.passes("gpu-smooth run");
-                set_up.take().into_iter().for_each(|set_up| self.encode(&mut passes, set_up));
-                (0..iterations).for_each(|_| self.encode(&mut passes, iteration));
-            };
-            let whole = size_of::<StepState>() as u64;
-            let solution = self.of_boundary(self.prepared.step.vector);
-            let sources = [(buffer, 0..whole), (fine, solution)];
-            let copied = readback::submit_and_copy_ranges::<u32>(on.gpu, encode, &sources)?;
-            let words = copied.values(on.waiting).await?;
-            let (state, solution) = words.split_at(size_of::<StepState>() / size_of::<u32>());
-            let state: StepState = bytemuck::pod_read_unaligned(bytemuck::cast_slice(state));
-            self.expected = expected_after(&state);
-            if state.is_solved != 0 {
-                return Ok((state, bytemuck::cast_slice(solution).to_vec()));
-            }
-        }
+        let solution = self.of_boundary(step.vector);
+        self.solve(on.gpu, begin, Some(solution), on.waiting).await
     }
 
     /// Moves the sliding vertices by a length along the solution, and writes their ways to the device. Returns their parameters.

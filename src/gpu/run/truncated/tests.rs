@@ -13,9 +13,10 @@ use crate::mesh::Mesh;
 use crate::metric::Metric;
 use crate::options::Options;
 use crate::parallel::pace::now;
+use crate::run::corrections::Corrections;
 use crate::run::truncated::fixtures::{hub, lattice, problem, with_targets};
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
-use crate::run::{Corrections, Engine, Plan, SweepParams};
+use crate::run::{Engine, Plan, SweepParams};
 use crate::slide::{OnCurves, Periodic, Slide, Sliding};
 use crate::topology::Topology;
 
