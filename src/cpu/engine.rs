@@ -19,7 +19,7 @@ use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
 use crate::run::truncated::{NewtonStep, StepRequest};
 use crate::run::{
-    CPU, EXCLUSION_PASSES, Engine, EngineState, History, NOISE, Objectives, Plan, Proposal,
+    CPU, EXCLUSION_PASSES, Engine, EngineState, GoesOn, History, NOISE, Objectives, Plan, Proposal,
     SweepParams,
 };
 use crate::slide::{OnCurves, Params};
@@ -178,9 +178,10 @@ pub(crate) async fn remaining(
     curves: Option<OnCurves>,
     step: &SweepParams,
     request: &StepRequest,
+    goes_on: &mut GoesOn<'_>,
 ) -> Option<f64> {
     let mut truncated = Truncated::new(problem, curves.as_ref()).await;
-    truncated.remaining(step, problem, positions, curves, request).await
+    truncated.remaining(step, problem, positions, curves, request, goes_on).await
 }
 
 /// Computes the correction by the coarser levels from the gradient at the free vertices. The gradient must be projected
@@ -347,24 +348,29 @@ impl Engine for CpuEngine {
         &mut self,
         step: &SweepParams,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<NewtonStep>, GpuError> {
         self.sweep_now(step).await;
-        let Self { problem, positions, curves, moved, truncated, .. } = self;
+        // The step takes the room of the scratch memory.
+        self.moved = Vec::new();
+        let Self { problem, positions, curves, truncated, .. } = self;
         if truncated.is_none() {
             *truncated = Some(Truncated::new(problem, curves.as_ref()).await);
         }
         let Some(truncated) = truncated else { return Ok(None) };
-        Ok(Some(truncated.step(step, problem, positions, curves.as_mut(), moved, request).await))
+        let curves = curves.as_mut();
+        Ok(Some(truncated.step(step, problem, positions, curves, request, goes_on).await))
     }
 
     async fn remaining(
         &mut self,
         step: &SweepParams,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<f64>, GpuError> {
         self.moved = Vec::new();
         let Self { problem, positions, curves, .. } = self;
-        Ok(remaining(problem, positions, curves.clone(), step, request).await)
+        Ok(remaining(problem, positions, curves.clone(), step, request, goes_on).await)
     }
 
     fn go_on(&mut self, _tolerance: f64) -> Result<(), GpuError> {

@@ -17,7 +17,8 @@ use crate::run::saved::{PeriodState, Saved};
 /// `&mut P` is a policy if `P` is.
 pub trait CheckpointPolicy: Send {
     /// Returns whether the run takes a checkpoint now. The run asks between two sweeps, about ten times a second. If
-    /// the [`Observer`](crate::Observer) ends the run, the run asks once more, with `is_ending` set.
+    /// the [`Observer`](crate::Observer) ends the run, the run asks again, with `is_ending` set. A run that wants no checkpoint
+    /// then ends at once, also in the middle of a step of all vertices.
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
         let _ = is_ending;
         false

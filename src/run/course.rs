@@ -10,6 +10,7 @@ use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::named::Named;
 use crate::run::plan::Plan;
+use crate::run::progress::GoesOn;
 use crate::run::sweep_params::SweepParams;
 use crate::run::sweeping::Sweeping;
 
@@ -49,17 +50,22 @@ impl Course {
         matches!(self, Self::Corrected(_))
     }
 
-    /// Does up to `sweeps` further sweeps of the plan, fewer if the run ends.
+    /// Does up to `sweeps` further sweeps of the plan, fewer if the run ends. Engines ask `goes_on` in the middle of long steps.
     pub(crate) async fn advance(
         &mut self,
         engine: &mut impl Engine,
         plan: &Plan,
         history: &mut History,
         sweeps: u32,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<(), GpuError> {
         match self {
-            Self::Sweeps(sweeping) => sweeping.advance(engine, plan, history, sweeps).await,
-            Self::Corrected(corrections) => corrections.advance(engine, history, sweeps).await,
+            Self::Sweeps(sweeping) => {
+                sweeping.advance(engine, plan, history, sweeps, goes_on).await
+            }
+            Self::Corrected(corrections) => {
+                corrections.advance(engine, history, sweeps, goes_on).await
+            }
         }
     }
 

@@ -10,6 +10,7 @@ use crate::metric::Smoothing;
 use crate::run::history::History;
 use crate::run::multilevel::Hierarchy;
 use crate::run::objectives::Objectives;
+use crate::run::progress::GoesOn;
 use crate::run::saved::EngineState;
 use crate::run::sweep_params::SweepParams;
 use crate::run::truncated::{NewtonStep, StepRequest};
@@ -87,22 +88,25 @@ pub(crate) trait Engine: Send {
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
     /// Sweeps once, and then takes a Newton step of all vertices from there: derivatives, conjugate gradients and a line
-    /// search. `None`, and nothing happens, if the engine takes no such steps.
+    /// search. The engine asks `goes_on` between two iterations; if not, it takes no step after the sweep. `None`, and nothing
+    /// happens, if the engine takes no such steps.
     fn sweep_and_step(
         &mut self,
         _step: &SweepParams,
         _request: &StepRequest,
+        _goes_on: &mut GoesOn<'_>,
     ) -> impl Future<Output = Result<Option<NewtonStep>, GpuError>> + Send {
         std::future::ready(Ok(None))
     }
 
     /// Returns how far a Newton step of all vertices could lower the mean excess from the present positions: the gain of the
-    /// quadratic model, with the bound of its rest. Moves no vertex. `None` if the model has negative curvature, or if the
-    /// engine takes no such steps.
+    /// quadratic model, with the bound of its rest. Moves no vertex. `None` if the model has negative curvature, if the
+    /// engine takes no such steps, or if the run does not go on.
     fn remaining(
         &mut self,
         _step: &SweepParams,
         _request: &StepRequest,
+        _goes_on: &mut GoesOn<'_>,
     ) -> impl Future<Output = Result<Option<f64>, GpuError>> + Send {
         std::future::ready(Ok(None))
     }

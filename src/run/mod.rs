@@ -38,6 +38,7 @@ pub(crate) use named::Named;
 pub use objectives::Objectives;
 
 pub use plan::Plan;
+pub(crate) use progress::GoesOn;
 pub use progress::{Observer, Phase, Progress};
 pub(crate) use saved::{CPU, EngineState, PeriodState, Saved};
 pub(crate) use shape_guard::{set_guards, worst_movable};

@@ -17,6 +17,9 @@ pub trait Observer: FnMut(&Progress) -> ControlFlow<()> {}
 #[cfg(target_family = "wasm")]
 impl<F: FnMut(&Progress) -> ControlFlow<()> + ?Sized> Observer for F {}
 
+/// Returns whether a run goes on, asked in the middle of a long step.
+pub(crate) type GoesOn<'o> = dyn FnMut() -> bool + Send + 'o;
+
 /// The progress of a run, as reported to an [`Observer`].
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {

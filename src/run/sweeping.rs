@@ -7,6 +7,7 @@ use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::named::Named;
 use crate::run::plan::Plan;
+use crate::run::progress::GoesOn;
 use crate::run::stop::{MIN_SCALE, NOISE, Stop};
 use crate::run::sweeps;
 use crate::run::truncated::Tail;
@@ -53,6 +54,7 @@ impl Sweeping {
         plan: &Plan,
         history: &mut History,
         sweeps: u32,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<(), GpuError> {
         sweeps::advance(engine, plan, history, sweeps).await?;
         if history.stop() != Some(Stop::Converged) || !self.is_measured {
@@ -60,7 +62,7 @@ impl Sweeping {
         }
         let f = history.last().max(MIN_SCALE);
         let request = Tail::measuring(f, plan.stop.tolerance);
-        let Some(left) = engine.remaining(&plan.base_step(1.0), &request).await? else {
+        let Some(left) = engine.remaining(&plan.base_step(1.0), &request, goes_on).await? else {
             return Ok(());
         };
         let left = (left / f).max(NOISE);

@@ -66,7 +66,8 @@ impl<'r> Run<'r> {
         Self { backend, ..self }
     }
 
-    /// Sets the observer. The run calls it every few sweeps, about ten times a second. If the observer ends the run, the
+    /// Sets the observer. The run calls it every few sweeps, and between the iterations of long Newton steps, about ten times a
+    /// second. If the observer ends the run, the
     /// outcome has the best positions so far and [`Stop::Canceled`](crate::Stop::Canceled).
     pub fn observe(self, observer: impl Observer + 'r) -> Self {
         Self { observer: Box::new(observer), ..self }

@@ -10,7 +10,7 @@ use crate::layout::Problem;
 use crate::metric::Smoothing;
 use crate::run::multilevel::Hierarchy;
 use crate::run::truncated::{NewtonStep, StepRequest};
-use crate::run::{Engine, EngineState, History, Objectives, Proposal, SweepParams};
+use crate::run::{Engine, EngineState, GoesOn, History, Objectives, Proposal, SweepParams};
 use crate::slide::OnCurves;
 use crate::whole::device::DeviceEngine;
 
@@ -107,16 +107,18 @@ impl Engine for AnyEngine<'_> {
         &mut self,
         step: &SweepParams,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<NewtonStep>, GpuError> {
-        on!(self, engine => engine.sweep_and_step(step, request).await)
+        on!(self, engine => engine.sweep_and_step(step, request, goes_on).await)
     }
 
     async fn remaining(
         &mut self,
         step: &SweepParams,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<f64>, GpuError> {
-        let left = on!(self, engine => engine.remaining(step, request).await)?;
+        let left = on!(self, engine => engine.remaining(step, request, goes_on).await)?;
         let AnyEngine::Device(engine) = self else { return Ok(left) };
         let most = 2.0 * request.least_gain * request.objective;
         if left.is_some_and(|left| left <= most) {
@@ -127,7 +129,8 @@ impl Engine for AnyEngine<'_> {
         {
             let curves = engine.best_curves().await?;
             let positions = engine.positions().await?.into_owned();
-            Ok(crate::cpu::remaining(engine.problem(), &positions, curves, step, request).await)
+            let problem = engine.problem();
+            Ok(crate::cpu::remaining(problem, &positions, curves, step, request, goes_on).await)
         }
         #[cfg(not(feature = "gpu"))]
         match **engine {}

@@ -9,6 +9,7 @@ mod device;
 mod driver;
 mod end;
 mod improving;
+mod patience;
 mod place;
 mod relief;
 mod session;

@@ -19,6 +19,7 @@ use crate::run::{
 };
 use crate::slide::OnCurves;
 use crate::whole::any_engine::AnyEngine;
+use crate::whole::patience::Patience;
 use crate::whole::place::Place;
 use crate::whole::relief::{Relief, relieved};
 use crate::whole::target_field::{Judgment, TargetFieldStage};
@@ -285,13 +286,25 @@ impl<'s> Session<'s> {
             }
             let (start, known) = (Instant::now(), history.f().len());
             let sweeps = (*batch).min(left);
-            course.advance(engine, plan, history, sweeps).await?;
+            let now =
+                Progress { phase: spec.phase, sweep: done + history.sweeps(), f: history.last() };
+            let mut patience = Patience::new(now, observe, checkpointer.policy);
+            #[cfg(not(target_family = "wasm"))]
+            let mut goes_on = || patience.goes_on();
+            // The observers of browsers are not `Send`, and futures of engines are.
+            #[cfg(target_family = "wasm")]
+            let mut goes_on = || true;
+            course.advance(engine, plan, history, sweeps, &mut goes_on).await?;
+            let is_canceled = patience.is_canceled();
             *batch = next_batch(sweeps.max(1), start.elapsed());
             if let Some(sweep) = history.first_not_finite(known) {
                 return Err(Failure::NotFinite { sweep: done + sweep });
             }
             if let Some(error) = course.left_out().filter(|_| requires_levels) {
                 return Err(Failure::LeftOut(error.clone()));
+            }
+            if is_canceled {
+                return Ok(Some(Stop::Canceled));
             }
             if let Some(stop) = history.stop() {
                 return Ok(Some(stop));

@@ -22,7 +22,7 @@ use crate::cpu::objective::{mean_excess, mean_excess_along};
 use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::run::truncated::{NewtonStep, StepRequest, StepSearch, could_gain};
-use crate::run::{MIN_SCALE, SweepParams};
+use crate::run::{GoesOn, MIN_SCALE, SweepParams};
 use crate::slide::{OfPatch, OnCurves, Params, Tangents};
 use solve::{Solved, Solver};
 
@@ -52,35 +52,36 @@ impl Truncated {
         }
     }
 
-    /// Takes a Newton step from `positions`. Sliding vertices move along `curves`. `moved` is scratch memory, freed while the
-    /// step is computed.
+    /// Takes a Newton step from `positions`. Sliding vertices move along `curves`.
     pub(super) async fn step(
         &mut self,
         sweep: &SweepParams,
         problem: &Problem,
         positions: &mut [DVec2],
         mut curves: Option<&mut OnCurves>,
-        moved: &mut Vec<DVec2>,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> NewtonStep {
-        *moved = Vec::new();
         let metric: Metric = sweep.metric;
         let count = problem.judged_triangles().len() as f64;
         let swept = mean_excess(metric, problem, positions).await;
         let mut tangents = tangents(curves.as_deref_mut(), sweep, problem, positions);
         let is_exact = tangents.restrict(request.is_exact);
-        let scale = (swept + metric.ideal_squared()).max(MIN_SCALE) * count;
-        let solved = self.solve(metric, problem, positions, &tangents, request, scale).await;
+        let objective = (swept + metric.ideal_squared()).max(MIN_SCALE);
+        let request = &StepRequest { objective, ..*request };
+        let solved = self.solve(metric, problem, positions, &tangents, request, goes_on).await;
         let Solved { model_gain, descent, bound, least_ritz, is_curved_down, iterations } = solved;
         let search = StepSearch::new(swept, descent / count);
         let on = curves.as_deref().map(|curves| (curves, &tangents));
-        let (search, accepted) = self.search(search, sweep, problem, positions, on, moved).await;
+        let mut moved = Vec::new();
+        let search = self.search(search, sweep, problem, positions, on, &mut moved);
+        let (search, accepted) = search.await;
         let (length, excess) = search.best();
         if let Some(curves) = &mut curves {
             curves.record_step(length);
         }
         if length > 0.0 {
-            positions[..moved.len()].copy_from_slice(moved);
+            positions[..moved.len()].copy_from_slice(&moved);
             if let (Some(curves), Some(params)) = (&mut curves, accepted) {
                 curves.set_params(&params);
             }
@@ -109,17 +110,18 @@ impl Truncated {
         positions: &[DVec2],
         mut curves: Option<OnCurves>,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Option<f64> {
         let mut tangents = tangents(curves.as_mut(), sweep, problem, positions);
         tangents.restrict(request.is_exact);
         let count = problem.judged_triangles().len() as f64;
-        let (metric, scale) = (sweep.metric, request.objective * count);
-        let solved = self.solve(metric, problem, positions, &tangents, request, scale).await;
+        let metric = sweep.metric;
+        let solved = self.solve(metric, problem, positions, &tangents, request, goes_on).await;
         let Solved { model_gain, bound, is_curved_down, .. } = solved;
         could_gain(model_gain / count, bound / count, is_curved_down)
     }
 
-    /// Solves for a step from `positions`. `scale` is the objective, summed over the triangles.
+    /// Solves for a step from `positions`, where f is the objective of the request.
     async fn solve(
         &mut self,
         metric: Metric,
@@ -127,14 +129,15 @@ impl Truncated {
         positions: &[DVec2],
         tangents: &Tangents,
         request: &StepRequest,
-        scale: f64,
+        goes_on: &mut GoesOn<'_>,
     ) -> Solved {
         on!(self, solver => solver.linearize(metric, problem, positions, tangents).await);
         let movers = problem.free_count() + tangents.vertices.len();
         let all_move = movers == problem.positions().len();
         let request = &request.for_mesh(all_move);
+        let scale = request.objective * problem.judged_triangles().len() as f64;
         let least_gain = request.least_gain * scale;
-        on!(self, solver => solver.solve(request, least_gain).await)
+        on!(self, solver => solver.solve(request, least_gain, goes_on).await)
     }
 
     /// Tries lengths along the solution, and writes the positions at the last of them to `moved`. Returns the search, and the

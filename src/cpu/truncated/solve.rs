@@ -15,6 +15,7 @@ use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::parallel::paced;
 use crate::patch::lanes::with_instructions;
+use crate::run::GoesOn;
 use crate::run::truncated::aggregation::{STIFFNESS, UNKNOWNS};
 use crate::run::truncated::{ErrorBound, StepRequest};
 use crate::slide::{Movers, OnCurves, Tangents};
@@ -126,8 +127,14 @@ impl<T: Scalar> Solver<T> {
         levels.update().await;
     }
 
-    /// Computes the step. `least_gain` is the sum over triangles of the request's least gain.
-    pub(super) async fn solve(&mut self, request: &StepRequest, least_gain: f64) -> Solved {
+    /// Computes the step, and gives it up if the run does not go on: the model then gains nothing. `least_gain` is the sum over
+    /// triangles of the request's least gain.
+    pub(super) async fn solve(
+        &mut self,
+        request: &StepRequest,
+        least_gain: f64,
+        goes_on: &mut GoesOn<'_>,
+    ) -> Solved {
         let mut bound = ErrorBound::new(request.least_ritz);
         let mut rough = ErrorBound::new(StepRequest::ROUGH_RITZ);
         let mut solved = Solved::NONE;
@@ -136,6 +143,10 @@ impl<T: Scalar> Solver<T> {
         }
         let (mut alpha, mut before) = (0.0, f64::INFINITY);
         while solved.iterations < StepRequest::MOST_ITERATIONS {
+            if !goes_on() {
+                solved = Solved { iterations: solved.iterations, ..Solved::NONE };
+                break;
+            }
             let rho = self.precondition(alpha).await;
             alpha = 0.0;
             if rho == 0.0 {
@@ -180,7 +191,7 @@ impl<T: Scalar> Solver<T> {
         if let Some(first) = self.levels.lattices.first_mut() {
             first.matrix.blocks = Vec::new();
         }
-        if solved.iterations > 0 {
+        if solved.model_gain > 0.0 {
             // The solution minimizes the model over the directions so far, so its gain is half of the descent.
             solved.descent = 2.0 * solved.model_gain;
             solved.least_ritz = bound.least_ritz();

@@ -110,10 +110,10 @@ fn request() -> StepRequest {
 fn stepped(problem: &Problem, metric: Metric, steps: usize) -> (NewtonStep, Vec<DVec2>) {
     let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });
     let mut positions = problem.positions().to_vec();
-    let (mut truncated, mut moved) = (now(Truncated::new(problem, None)), Vec::new());
+    let mut truncated = now(Truncated::new(problem, None));
     let sweep = plan.base_step(1.0);
     let mut step =
-        || now(truncated.step(&sweep, problem, &mut positions, None, &mut moved, &request()));
+        || now(truncated.step(&sweep, problem, &mut positions, None, &request(), &mut || true));
     let last = (0..steps).map(|_| step()).last().unwrap();
     (last, positions)
 }
@@ -140,10 +140,10 @@ fn a_step_has_equal_bits_on_any_number_of_threads_and_with_pauses() {
     let awaited = async {
         let plan = Plan::new(&Options::default());
         let mut positions = problem.positions().to_vec();
-        let (mut truncated, mut moved) = (Truncated::new(&problem, None).await, Vec::new());
+        let mut truncated = Truncated::new(&problem, None).await;
         for _ in 0..2 {
             let sweep = plan.base_step(1.0);
-            truncated.step(&sweep, &problem, &mut positions, None, &mut moved, &request()).await;
+            truncated.step(&sweep, &problem, &mut positions, None, &request(), &mut || true).await;
         }
         positions
     };

@@ -23,7 +23,9 @@ use crate::metric::Smoothing;
 use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
 use crate::run::truncated::{NewtonStep, StepRequest};
-use crate::run::{Engine, EngineState, History, Objectives, Plan, Proposal, Stop, SweepParams};
+use crate::run::{
+    Engine, EngineState, GoesOn, History, Objectives, Plan, Proposal, Stop, SweepParams,
+};
 use crate::slide::OnCurves;
 
 /// Relative error of f that the device sums from terms in single precision. Repeated evaluations on lavapipe differ by
@@ -424,6 +426,7 @@ impl Engine for GpuEngine<'_> {
         &mut self,
         step: &SweepParams,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<NewtonStep>, GpuError> {
         if !self.prepare_steps().await? {
             return Ok(None);
@@ -432,29 +435,29 @@ impl Engine for GpuEngine<'_> {
         let (waiting, Some(truncated)) = (*waiting, truncated) else { return Ok(None) };
         if mesh.curves.is_some() {
             let mut on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
-            return truncated.sweep_and_slide(&mut on, step, request).await.map(Some);
+            return truncated.sweep_and_slide(&mut on, step, request, goes_on).await.map(Some);
         }
-        let count = problem.judged_triangles().len() as f64;
-        let taken = truncated.sweep_and_step(gpu, dispatches, step, request, count, waiting);
-        Ok(Some(taken.await?))
+        let on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
+        truncated.sweep_and_step(&on, step, request, goes_on).await.map(Some)
     }
 
     async fn remaining(
         &mut self,
         _: &SweepParams,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<f64>, GpuError> {
         if !self.prepare_steps().await? {
             return Ok(None);
         }
         let Self { gpu, problem, start, mesh, dispatches, truncated, waiting, .. } = self;
         let (waiting, Some(mut truncated)) = (*waiting, truncated.take()) else { return Ok(None) };
-        if mesh.curves.is_some() {
-            let on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
-            return truncated.remaining_with_slides(&on, request).await;
+        let slides = mesh.curves.is_some();
+        let on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
+        match slides {
+            true => truncated.remaining_with_slides(&on, request, goes_on).await,
+            false => truncated.remaining(&on, request, goes_on).await,
         }
-        let count = problem.judged_triangles().len() as f64;
-        truncated.remaining(gpu, request, count, waiting).await
     }
 
     fn go_on(&mut self, tolerance: f64) -> Result<(), GpuError> {

@@ -11,6 +11,7 @@ use crate::run::history::History;
 use crate::run::multilevel::{MIN_FIRST_LENGTH, Search};
 use crate::run::objectives::Objectives;
 use crate::run::plan::Plan;
+use crate::run::progress::GoesOn;
 use crate::run::stop::{MIN_SCALE, NOISE};
 use crate::run::sweep_params::SweepParams;
 
@@ -61,10 +62,11 @@ impl Corrections {
         engine: &mut impl Engine,
         history: &mut History,
         sweeps: u32,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<(), GpuError> {
         if history.is_empty() {
             let start = engine.objectives().await?;
-            self.record(engine, start, history).await?;
+            self.record(engine, start, history, goes_on).await?;
         }
         for _ in 0..sweeps {
             if history.stop().is_some() {
@@ -73,14 +75,16 @@ impl Corrections {
             let objectives = match self.stage {
                 Stage::Before { until } => self.sweep_before(engine, history, until).await?,
                 Stage::Correcting(state) => self.sweep_and_correct(engine, history, state).await?,
-                Stage::Stepping { .. } => match self.sweep_and_step(engine, history).await? {
-                    Some(objectives) => objectives,
-                    None => self.correct_instead(engine, history).await?,
-                },
+                Stage::Stepping { .. } => {
+                    match self.sweep_and_step(engine, history, goes_on).await? {
+                        Some(objectives) => objectives,
+                        None => self.correct_instead(engine, history).await?,
+                    }
+                }
                 Stage::Without { .. } => self.sweep_without(engine).await?,
             };
             let before = self.sharpness;
-            self.record(engine, objectives, history).await?;
+            self.record(engine, objectives, history, goes_on).await?;
             self.reopen(engine, history, self.sharpness > before).await?;
             if std::mem::take(&mut self.anew) {
                 engine.forget();

@@ -5,6 +5,7 @@ use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
+use crate::run::progress::GoesOn;
 use crate::run::stop::{MIN_SCALE, NOISE, Stop, StopRule};
 use crate::run::truncated::Tail;
 
@@ -42,6 +43,7 @@ impl Corrections {
         engine: &mut impl Engine,
         objectives: Objectives,
         history: &mut History,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<(), GpuError> {
         history.add(objectives);
         let whole = history.rule();
@@ -77,7 +79,7 @@ impl Corrections {
         let remaining = remaining.map(|left| (left + self.above()).max(least_left));
         let mut remaining = remaining.into_iter().chain(bound).reduce(f64::min);
         if end.is_some() && of_f != Some(Stop::Reached) && bound.is_none() {
-            (remaining, end) = self.measured(engine, history, remaining, end).await?;
+            (remaining, end) = self.measured(engine, history, remaining, end, goes_on).await?;
         }
         let stop = if of_f == Some(Stop::Reached) { of_f } else { end.or(of_f) };
         if stop.is_none() && self.tries_again(history) {
@@ -120,6 +122,7 @@ impl Corrections {
         history: &History,
         estimate: Option<f64>,
         end: Option<Stop>,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<(Option<f64>, Option<Stop>), GpuError> {
         if self.metric().curved().is_none() || self.has_field {
             return Ok((estimate, end));
@@ -132,7 +135,7 @@ impl Corrections {
         let rule = history.rule();
         let f = history.last().max(MIN_SCALE);
         let tolerance = rule.tolerance.max(LEAST_SETTLED);
-        let left = engine.remaining(&step, &Tail::measuring(f, tolerance)).await?;
+        let left = engine.remaining(&step, &Tail::measuring(f, tolerance), goes_on).await?;
         let left = left.map(|left| (left / f).max(NOISE));
         if left.is_some_and(|left| left <= tolerance) {
             let has_tolerance = rule.target.is_none() && rule.tolerance > 0.0;

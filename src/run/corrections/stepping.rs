@@ -6,6 +6,7 @@ use crate::error::GpuError;
 use crate::run::engine::Engine;
 use crate::run::history::History;
 use crate::run::objectives::Objectives;
+use crate::run::progress::GoesOn;
 use crate::run::stop::{MIN_SCALE, NOISE, Stop};
 use crate::run::truncated::Tail;
 
@@ -20,10 +21,12 @@ impl Corrections {
         &mut self,
         engine: &mut impl Engine,
         history: &History,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<Objectives>, GpuError> {
         let objective = history.last().max(MIN_SCALE);
         let request = self.tail.request(objective, history.rule().tolerance);
-        let Some(step) = engine.sweep_and_step(&self.step(OMEGA_BETWEEN), &request).await? else {
+        let sweep = self.step(OMEGA_BETWEEN);
+        let Some(step) = engine.sweep_and_step(&sweep, &request, goes_on).await? else {
             return Ok(None);
         };
         let f = step.excess + self.metric().ideal_squared();

@@ -12,6 +12,8 @@ mod tests;
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::readback::{self, Waiting};
@@ -23,10 +25,9 @@ use crate::gpu::run::Dispatches;
 use crate::gpu::run::listing::{Dispatch, encode};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::run::SweepParams;
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest, could_gain};
+use crate::run::{GoesOn, SweepParams};
 use list::{List, Prepared};
-pub(crate) use sliding::OnDevice;
 
 /// Number of iterations in the first submission of a run. Later submissions have numbers between two limits.
 const FIRST_ITERATIONS: u32 = 8;
@@ -34,6 +35,23 @@ const ITERATIONS: [u32; 2] = [4, 32];
 /// Number of iterations that a submission adds to those of the last step. With four, a run on 20,000 vertices took a fifth more
 /// dispatches and no fewer submissions. An iteration after the end of the step takes a twentieth of the time.
 const MORE: u32 = 2;
+
+/// A mesh on a device, with the positions of its fixed vertices.
+pub(crate) struct OnDevice<'d> {
+    pub(crate) gpu: &'d Gpu,
+    pub(crate) problem: &'d Problem,
+    pub(crate) start: &'d [DVec2],
+    pub(crate) mesh: &'d mut MeshBuffers,
+    pub(crate) dispatches: &'d Dispatches,
+    pub(crate) waiting: Waiting,
+}
+
+impl OnDevice<'_> {
+    /// Returns the number of triangles by which a step is judged.
+    fn count(&self) -> f64 {
+        self.problem.judged_triangles().len() as f64
+    }
+}
 
 /// A mesh on a device prepared for Newton steps.
 pub(crate) struct Truncated {
@@ -58,66 +76,63 @@ impl Truncated {
         Ok(Self { prepared, expected: FIRST_ITERATIONS })
     }
 
-    /// Sweeps by `sweep`, and takes a Newton step from there. `count` is the number of triangles.
+    /// Sweeps by `sweep`, and takes a Newton step from there.
     pub(crate) async fn sweep_and_step(
         &mut self,
-        gpu: &Gpu,
-        dispatches: &Dispatches,
+        on: &OnDevice<'_>,
         sweep: &SweepParams,
         request: &StepRequest,
-        count: f64,
-        waiting: Waiting,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<NewtonStep, GpuError> {
-        let begin = begin(request, count, false);
         let Prepared { set_up, iteration, trials, state: buffer, .. } = &self.prepared;
-        scoped(&gpu.device, || {
-            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&begin));
-        })?;
+        let mut state = begin(request, on.count(), false);
+        self.write(on, &state)?;
         let mut set_up = Some(set_up);
-        let mut state = begin;
         while state.is_searched == 0 {
             let iterations = if state.is_solved == 0 { self.expected } else { 0 };
             let encode = |encoder: &mut wgpu::CommandEncoder| {
                 let mut passes = encoder.passes("gpu-smooth run");
                 if let Some(set_up) = set_up.take() {
-                    dispatches.encode_sweep(&mut passes, sweep);
+                    on.dispatches.encode_sweep(&mut passes, sweep);
                     self.encode(&mut passes, set_up);
                 }
                 (0..iterations).for_each(|_| self.encode(&mut passes, iteration));
                 self.encode(&mut passes, trials);
             };
-            let copied = readback::submit_and_copy::<StepState>(gpu, encode, buffer, 1)?;
-            state = copied.first(waiting).await?;
+            let copied = readback::submit_and_copy::<StepState>(on.gpu, encode, buffer, 1)?;
+            state = copied.first(on.waiting).await?;
             self.expected = expected_after(&state);
+            if state.is_solved == 0 && !goes_on() {
+                state = given_up(state);
+                self.write(on, &state)?;
+            }
         }
-        Ok(taken(&state, count))
+        Ok(taken(&state, on.count()))
     }
 
     /// Measures how far a step from the present positions could lower the mean excess. Moves no vertex. `None` if the model has
-    /// negative curvature.
+    /// negative curvature, or if the run does not go on.
     pub(crate) async fn remaining(
         &mut self,
-        gpu: &Gpu,
+        on: &OnDevice<'_>,
         request: &StepRequest,
-        count: f64,
-        waiting: Waiting,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<f64>, GpuError> {
-        let (state, _) = self.solve(gpu, &begin(request, count, false), None, waiting).await?;
-        Ok(gain_of(&state, count))
+        let begin = begin(request, on.count(), false);
+        let (state, _) = self.solve(on, &begin, None, goes_on).await?;
+        Ok(gain_of(&state, on.count()))
     }
 
     /// Solves for a step from the present positions. Returns the state, and the vectors in the given bytes of `fine`.
     async fn solve(
         &mut self,
-        gpu: &Gpu,
+        on: &OnDevice<'_>,
         begin: &StepState,
         vectors: Option<Range<u64>>,
-        waiting: Waiting,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<(StepState, Vec<[f32; 2]>), GpuError> {
+        self.write(on, begin)?;
         let Prepared { set_up, iteration, state: buffer, fine, .. } = &self.prepared;
-        scoped(&gpu.device, || {
-            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(begin));
-        })?;
         let whole = size_of::<StepState>();
         let vectors = vectors.map(|range| (fine, range));
         let sources: Vec<_> = [(buffer, 0..whole as u64)].into_iter().chain(vectors).collect();
@@ -128,15 +143,26 @@ impl Truncated {
                 set_up.take().into_iter().for_each(|set_up| self.encode(&mut passes, set_up));
                 (0..self.expected).for_each(|_| self.encode(&mut passes, iteration));
             };
-            let copied = readback::submit_and_copy_ranges::<u32>(gpu, encode, &sources)?;
-            let words = copied.values(waiting).await?;
+            let copied = readback::submit_and_copy_ranges::<u32>(on.gpu, encode, &sources)?;
+            let words = copied.values(on.waiting).await?;
             let (state, vectors) = words.split_at(whole / size_of::<u32>());
-            let state: StepState = bytemuck::pod_read_unaligned(bytemuck::cast_slice(state));
+            let mut state: StepState = bytemuck::pod_read_unaligned(bytemuck::cast_slice(state));
             self.expected = expected_after(&state);
+            if state.is_solved == 0 && !goes_on() {
+                state = given_up(state);
+                self.write(on, &state)?;
+            }
             if state.is_solved != 0 {
                 return Ok((state, bytemuck::cast_slice(vectors).to_vec()));
             }
         }
+    }
+
+    /// Writes the state of a step to the device.
+    fn write(&self, on: &OnDevice<'_>, state: &StepState) -> Result<(), GpuError> {
+        scoped(&on.gpu.device, || {
+            on.gpu.queue.write_buffer(&self.prepared.state, 0, bytemuck::bytes_of(state));
+        })
     }
 
     fn encode(&self, passes: &mut Passes<'_>, list: &[Dispatch]) {
@@ -198,6 +224,11 @@ fn begin(request: &StepRequest, count: f64, slides: bool) -> StepState {
         here: [0.0; 2],
         there: [0.0; 2],
     }
+}
+
+/// Returns the state of a step whose iterations end without a solution: the search then refuses all lengths.
+fn given_up(state: StepState) -> StepState {
+    StepState { is_solved: 1, model_gain: 0.0, descent: 0.0, bound: f32::MAX, ..state }
 }
 
 /// Returns the step in the form of all engines. `state` is the device's state after the step, and `count` the number of triangles.

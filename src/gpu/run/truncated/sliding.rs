@@ -5,30 +5,16 @@ use glam::DVec2;
 
 use super::buffers::PAIR;
 use super::list::Prepared;
-use super::{Truncated, begin, gain_of, taken};
+use super::{OnDevice, Truncated, begin, gain_of, taken};
 use crate::error::GpuError;
-use crate::gpu::device::Gpu;
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::readback;
 use crate::gpu::encode::sealed::Target;
 use crate::gpu::kernels::uniforms::{CurvePlace, StepLine, StepOp, StepState, split};
-use crate::gpu::mesh::MeshBuffers;
-use crate::gpu::run::Dispatches;
 use crate::gpu::scope::scoped;
-use crate::layout::Problem;
-use crate::run::SweepParams;
 use crate::run::multilevel::NONE;
 use crate::run::truncated::{NewtonStep, StepRequest};
+use crate::run::{GoesOn, SweepParams};
 use crate::slide::{OnCurves, Params, Tangents};
-
-/// A mesh on a device, with the positions of its fixed vertices.
-pub(crate) struct OnDevice<'d> {
-    pub(crate) gpu: &'d Gpu,
-    pub(crate) problem: &'d Problem,
-    pub(crate) start: &'d [DVec2],
-    pub(crate) mesh: &'d mut MeshBuffers,
-    pub(crate) dispatches: &'d Dispatches,
-    pub(crate) waiting: Waiting,
-}
 
 /// The sliding vertices in a step.
 struct Sliding {
@@ -44,12 +30,13 @@ impl Truncated {
         on: &mut OnDevice<'_>,
         sweep: &SweepParams,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<NewtonStep, GpuError> {
         let mut sliding = self.slides(on, Some(sweep)).await?;
         let is_exact = sliding.tangents.restrict(request.is_exact);
-        let count = on.problem.judged_triangles().len() as f64;
+        let count = on.count();
         let (mut state, solution) =
-            self.solve_with(on, &sliding.tangents, &begin(request, count, true)).await?;
+            self.solve_with(on, &sliding.tangents, &begin(request, count, true), goes_on).await?;
         let mut to = None;
         while state.is_searched == 0 {
             let placed = self.place(on, &sliding, &solution, state.next_length)?;
@@ -77,12 +64,13 @@ impl Truncated {
         &mut self,
         on: &OnDevice<'_>,
         request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<Option<f64>, GpuError> {
         let mut sliding = self.slides(on, None).await?;
         sliding.tangents.restrict(request.is_exact);
-        let count = on.problem.judged_triangles().len() as f64;
+        let count = on.count();
         let begin = begin(request, count, true);
-        let (state, _) = self.solve_with(on, &sliding.tangents, &begin).await?;
+        let (state, _) = self.solve_with(on, &sliding.tangents, &begin, goes_on).await?;
         Ok(gain_of(&state, count))
     }
 
@@ -124,6 +112,7 @@ impl Truncated {
         on: &OnDevice<'_>,
         tangents: &Tangents,
         begin: &StepState,
+        goes_on: &mut GoesOn<'_>,
     ) -> Result<(StepState, Vec<[f32; 2]>), GpuError> {
         let Prepared { lines, slides, step, .. } = &self.prepared;
         let vertices = slides.as_ref().map_or(&[][..], |slides| &slides.vertices);
@@ -132,7 +121,7 @@ impl Truncated {
             on.gpu.queue.write_buffer(lines, 0, bytemuck::cast_slice(&unknowns));
         })?;
         let solution = self.of_boundary(step.vector);
-        self.solve(on.gpu, begin, Some(solution), on.waiting).await
+        self.solve(on, begin, Some(solution), goes_on).await
     }
 
     /// Moves the sliding vertices by a length along the solution, and writes their ways to the device. Returns their parameters.

@@ -16,7 +16,7 @@ use crate::parallel::pace::now;
 use crate::run::corrections::Corrections;
 use crate::run::truncated::fixtures::{hub, lattice, problem, with_targets};
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
-use crate::run::{Engine, Plan, SweepParams};
+use crate::run::{Engine, GoesOn, Plan, SweepParams};
 use crate::slide::{OnCurves, Periodic, Slide, Sliding};
 use crate::topology::Topology;
 
@@ -65,10 +65,19 @@ impl<'a> Engines<'a> {
 
     /// Sweeps and takes a step on both engines. Returns the steps and the positions of the CPU, then of the device.
     fn step(&mut self, request: &StepRequest) -> [(NewtonStep, Vec<DVec2>); 2] {
+        self.step_while(request, &mut || true)
+    }
+
+    /// Sweeps and takes a step as [`step`](Self::step) does, while the run goes on.
+    fn step_while(
+        &mut self,
+        request: &StepRequest,
+        goes_on: &mut GoesOn<'_>,
+    ) -> [(NewtonStep, Vec<DVec2>); 2] {
         let Self { cpu, device, sweep } = self;
-        let step = now(cpu.sweep_and_step(sweep, request)).unwrap().unwrap();
+        let step = now(cpu.sweep_and_step(sweep, request, goes_on)).unwrap().unwrap();
         let of_cpu = (step, now(cpu.positions()).unwrap().into_owned());
-        let step = now(device.sweep_and_step(sweep, request)).unwrap().unwrap();
+        let step = now(device.sweep_and_step(sweep, request, goes_on)).unwrap().unwrap();
         [of_cpu, (step, now(device.positions()).unwrap().into_owned())]
     }
 }
@@ -168,6 +177,40 @@ fn long_steps_take_several_submissions() {
     assert!(device.iterations > super::FIRST_ITERATIONS, "{device:?}");
     assert!((cpu.length - device.length).abs() <= 0.05 * cpu.length, "{cpu:?}\n{device:?}");
     assert!((cpu.excess - device.excess).abs() <= 1e-2 * cpu.excess, "{cpu:?}\n{device:?}");
+}
+
+/// A run that does not go on gives up its step in the middle of the iterations. The sweep before the step counts.
+#[test]
+fn a_step_that_is_given_up_leaves_the_vertices_where_the_sweep_has_moved_them() {
+    let gpu = Gpu::open(None).unwrap();
+    let mesh = hub(40);
+    let problem = problem(&mesh);
+    let request = StepRequest { forcing: 1e-6, least_ritz: 1e-3, ..REQUEST };
+    let curves = || on_curves(&mesh, &Slide::default(), &problem);
+    for (curves, sweeps) in [(None, 0), (Some(curves()), 60)] {
+        let engines = || Engines::on_curves(&gpu, &problem, curves.clone(), Metric::Imr, sweeps);
+        let mut swept = engines();
+        now(swept.cpu.sweep(&swept.sweep)).unwrap();
+        let of_sweep = now(swept.cpu.positions()).unwrap().into_owned();
+        let mut questions = 0;
+        let mut goes_on = || {
+            questions += 1;
+            false
+        };
+        let mut given_up = engines();
+        let steps = given_up.step_while(&request, &mut goes_on);
+        for (step, positions) in steps {
+            assert_eq!((step.length, step.model_gain), (0.0, 0.0), "{step:?}");
+            assert!(step.excess == step.swept && step.bound.is_infinite(), "{step:?}");
+            let far = positions.iter().zip(&of_sweep).map(|(a, b)| a.distance(*b));
+            assert!(far.fold(0.0, f64::max) < 1e-5);
+        }
+        // Neither engine finishes a measurement.
+        let Engines { cpu, device, sweep } = &mut given_up;
+        assert_eq!(now(cpu.remaining(sweep, &request, &mut goes_on)).unwrap(), None);
+        assert_eq!(now(device.remaining(sweep, &request, &mut goes_on)).unwrap(), None);
+        assert_eq!(questions, 4);
+    }
 }
 
 /// The device judges conjugate gradients by the bound of the CPU engine: both follow from the coefficients of the iterations.
