@@ -1,38 +1,396 @@
-//! The mesh of a file, with the vertices that stay by the facts of the file.
+//! A mesh with the vertices that stay, the lines along which vertices slide, and the surface of its coordinates.
 
-use gpu_smooth::Mesh;
-use mesh_io::MeshFile;
+use std::borrow::Cow;
 
-/// The mesh of a file, with the vertices that stay by the facts of the file.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
+use gpu_smooth::interpolate::Chart;
+use gpu_smooth::layers::{Elements, KeepLayers, Layers};
+use gpu_smooth::plane::Plane;
+use gpu_smooth::precision::Precision;
+use gpu_smooth::slide::Periodic;
+use gpu_smooth::{Mesh, MeshError, Slide, Topology};
+use mesh_io::{Affine, Constraints, MeshFile, edges_between_regions};
+
+/// A mesh with the vertices that stay, the lines along which vertices slide, and the surface of its coordinates, from the
+/// facts of a file or of an application. Options of a run then fix further vertices.
+#[derive(Clone, Debug, Default)]
 pub struct Domain {
-    /// Points and triangles of the file. Fixed are the vertices that the file constrains, followed by
-    /// [`interfaces`](Self::interfaces).
-    pub mesh: Mesh,
-    /// Vertices fixed only because they lie between regions, ascending. They are the last entries of the mesh's fixed
-    /// vertices.
-    pub interfaces: Vec<u32>,
+    /// The mesh to smooth. Its fixed vertices are those on constraints and those that options fix, followed by
+    /// `interfaces`; each is listed once.
+    mesh: Mesh,
+    /// Vertices fixed only because they lie between regions, ascending.
+    interfaces: Vec<u32>,
+    /// Edges between regions. Empty after [`free_interfaces`](Self::free_interfaces).
+    interface_edges: Vec<[u32; 2]>,
+    has_free_interfaces: bool,
     /// Vertices that neither move nor slide. In any order, with repeats.
-    pub anchored: Vec<u32>,
+    anchored: Vec<u32>,
+    /// Edges of lines, between which vertices slide.
+    lines: Vec<[u32; 2]>,
+    periodic: Vec<Periodic>,
+    /// Motions of periodic models without pairs.
+    motions: Vec<Affine>,
+    weirs: Vec<Vec<[u32; 2]>>,
+    has_unread_pairs: bool,
+    /// The mesh with continued longitudes; `None` if no triangle crosses the date line or touches a pole.
+    chart: Option<Chart>,
+    /// The plane of the mesh; `None` if all z are equal, or z is data.
+    plane: Option<Plane>,
+}
+
+/// How vertices slide along lines; see [`Domain::slide`].
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SlideBy {
+    /// The smallest turn of a line, in degrees, at a corner. Vertices at corners stay.
+    pub corner_angle: f64,
+    /// Largest distance of lines from those of the mesh before the run, in the unit of the mesh. `None` stands for a tenth of
+    /// the local edge length.
+    pub hausdorff: Option<f64>,
+    /// Pairs of boundary sides, by their vertices, which slide together.
+    pub sides: Vec<[Vec<u32>; 2]>,
+    /// Vertices that stay because groups of the file end there; see [`MeshFile::group_ends`].
+    pub ends: Vec<u32>,
+}
+
+impl Default for SlideBy {
+    fn default() -> Self {
+        let Slide { corner_angle, hausdorff, .. } = Slide::default();
+        Self { corner_angle, hausdorff, sides: Vec::new(), ends: Vec::new() }
+    }
+}
+
+/// The curves along which the vertices of a domain slide.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Curves {
+    /// Lines, held vertices and pairs, for [`Smoother::set_slide`](gpu_smooth::Smoother::set_slide).
+    pub slide: Slide,
+    /// Whether the boundary stays because the model is periodic and no pair of vertices is known.
+    pub has_lost_pairs: bool,
+    /// Index of the first pair in [`SlideBy::sides`] of whose sides no translation or rotation maps one to the other.
+    pub unlike_sides: Option<usize>,
 }
 
 impl Domain {
-    /// Makes the mesh of a file. Constrained vertices and vertices between regions are fixed.
+    /// Makes the domain of a file. Vertices that the file constrains and vertices between regions are fixed.
     pub fn of_file(file: &MeshFile) -> Self {
-        let constraints = file.constraints();
-        let mut fixed = constraints.vertices.clone();
-        let mut interfaces = file.interface_vertices();
-        let mut is_fixed = vec![false; file.points().len()];
-        for &v in &fixed {
-            if let Some(is_fixed) = is_fixed.get_mut(v as usize) {
-                *is_fixed = true;
-            }
-        }
-        interfaces.retain(|&v| !is_fixed[v as usize]);
-        fixed.extend_from_slice(&interfaces);
+        let Constraints {
+            vertices,
+            lines,
+            anchored,
+            periodic,
+            weirs,
+            motions,
+            has_unread_pairs,
+            ..
+        } = file.constraints();
+        let pairs = periodic.iter();
+        let pairs = pairs.map(|p| Periodic { pairs: p.pairs.clone(), motion: p.motion });
         let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
-        let mesh = Mesh { points, triangles, fixed };
-        Self { mesh, interfaces, anchored: constraints.anchored.clone() }
+        Self {
+            anchored: anchored.clone(),
+            lines: lines.clone(),
+            interface_edges: file.interface_edges(),
+            periodic: pairs.collect(),
+            motions: motions.clone(),
+            weirs: weirs.clone(),
+            has_unread_pairs: *has_unread_pairs,
+            ..Self::with(points, triangles, vertices.clone(), file.interface_vertices())
+        }
+    }
+
+    /// Makes the domain of points and triangles. The vertices of `lines` and those between different `regions` of the
+    /// triangles are fixed, and may slide along these edges. Without regions, `regions` is empty.
+    ///
+    /// # Panics
+    /// Panics if a triangle has a vertex that does not exist, and if there are regions.
+    pub fn of_mesh(
+        points: Vec<[f64; 2]>,
+        triangles: Vec<[u32; 3]>,
+        lines: Vec<[u32; 2]>,
+        regions: &[i64],
+    ) -> Self {
+        let interface_edges = edges_between_regions(regions, &triangles, points.len());
+        let mut interfaces = interface_edges.as_flattened().to_vec();
+        interfaces.sort_unstable();
+        interfaces.dedup();
+        let fixed = lines.as_flattened().to_vec();
+        Self { lines, interface_edges, ..Self::with(points, triangles, fixed, interfaces) }
+    }
+
+    fn with(
+        points: Vec<[f64; 2]>,
+        triangles: Vec<[u32; 3]>,
+        mut fixed: Vec<u32>,
+        mut interfaces: Vec<u32>,
+    ) -> Self {
+        fixed.sort_unstable();
+        fixed.dedup();
+        interfaces.retain(|v| fixed.binary_search(v).is_err());
+        fixed.extend_from_slice(&interfaces);
+        Self { mesh: Mesh { points, triangles, fixed }, interfaces, ..Self::default() }
+    }
+
+    /// Adds pairs of vertices that slide together.
+    pub fn pair(&mut self, pairs: Vec<[u32; 2]>) {
+        self.periodic.push(Periodic { pairs, motion: None });
+    }
+
+    /// Returns the mesh to smooth, with the vertices that stay. Copies of vertices, made by the chart, follow the others.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Moves the mesh out of the domain, whose mesh is then empty.
+    pub fn take_mesh(&mut self) -> Mesh {
+        self.interfaces = Vec::new();
+        std::mem::take(&mut self.mesh)
+    }
+
+    /// Replaces the points of the mesh, as untangling does. Returns the points before.
+    pub fn replace_points(&mut self, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        std::mem::replace(&mut self.mesh.points, points)
+    }
+
+    /// Returns the mesh with continued longitudes; `None` if longitudes are not continued.
+    pub fn chart(&self) -> Option<&Chart> {
+        self.chart.as_ref()
+    }
+
+    /// Returns the plane of the mesh; `None` if all z are equal, or z is data.
+    pub fn plane(&self) -> Option<&Plane> {
+        self.plane.as_ref()
+    }
+
+    /// Returns whether the mesh lies in the plane of x and y.
+    pub fn is_in_xy(&self) -> bool {
+        self.plane().is_none_or(Plane::is_of_xy)
+    }
+
+    /// Returns the vertices fixed only because they lie between regions, ascending. After
+    /// [`free_interfaces`](Self::free_interfaces), the list is empty.
+    pub fn interface_vertices(&self) -> &[u32] {
+        &self.interfaces
+    }
+
+    /// Returns the vertices that neither move nor slide.
+    pub fn anchored(&self) -> &[u32] {
+        &self.anchored
+    }
+
+    /// Returns the edges along which vertices inside the mesh may slide: lines, and edges between regions. Edges between
+    /// regions are omitted after [`free_interfaces`](Self::free_interfaces).
+    pub fn lines(&self) -> Vec<[u32; 2]> {
+        [&self.lines[..], &self.interface_edges].concat()
+    }
+
+    /// Lets vertices between regions move, unless they are fixed for another reason.
+    pub fn free_interfaces(&mut self) {
+        self.has_free_interfaces = true;
+        self.interface_edges = Vec::new();
+        let held = std::mem::take(&mut self.interfaces);
+        self.mesh.fixed.truncate(self.mesh.fixed.len() - held.len());
+    }
+
+    /// Returns whether vertices between regions are fixed because they lie there.
+    pub fn holds_interfaces(&self) -> bool {
+        !self.has_free_interfaces
+    }
+
+    /// Lays the mesh out in a plane of space: its points are positions in the plane.
+    pub fn set_plane(&mut self, plane: Option<Plane>) {
+        if let Some(plane) = &plane {
+            self.mesh.points = plane.points().to_vec();
+        }
+        self.plane = plane;
+    }
+
+    /// Interprets coordinates as longitude and latitude in degrees, and continues longitudes across the meridian at which they
+    /// wrap. `stored` is the precision of the coordinates.
+    ///
+    /// # Errors
+    /// The errors of [`Chart::new`]. The mesh is then unchanged.
+    pub fn lay_out_on_sphere(&mut self, stored: Precision) -> Result<(), MeshError> {
+        if self.chart.is_none()
+            && let Some(chart) = Chart::new(&self.mesh, stored)?
+        {
+            self.set_chart(chart);
+        }
+        Ok(())
+    }
+
+    /// Lays the mesh out with continued longitudes. Vertices that the chart holds neither move nor slide.
+    pub fn set_chart(&mut self, chart: Chart) {
+        self.anchored.extend_from_slice(chart.held());
+        self.mesh.points.clone_from(&chart.mesh().points);
+        self.mesh.triangles.clone_from(&chart.mesh().triangles);
+        self.chart = Some(chart);
+    }
+
+    /// Converts points of the mesh to x and y as given, without copies and with longitudes in the given range.
+    pub fn given<'p>(&self, points: &'p [[f64; 2]]) -> Cow<'p, [[f64; 2]]> {
+        if let Some(plane) = self.plane().filter(|plane| !plane.is_of_xy()) {
+            return plane.in_space(points).iter().map(|&[x, y, _]| [x, y]).collect();
+        }
+        match self.chart() {
+            // Writers refuse lists of any other length.
+            Some(chart) if points.len() == self.mesh.points.len() => chart.given(points).into(),
+            _ => points.into(),
+        }
+    }
+
+    /// Fixes `vertices`, so that they neither move nor slide. The list may be unordered and have repeats.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist. The domain is then unchanged.
+    pub fn fix(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let held = self.marked(vertices)?;
+        self.hold(held);
+        Ok(())
+    }
+
+    /// Fixes all vertices except `vertices`. A listed vertex stays fixed if it was fixed before.
+    ///
+    /// # Errors
+    /// [`MeshError::IndexOutOfRange`] if a vertex does not exist. The domain is then unchanged.
+    pub fn fix_all_but(&mut self, vertices: &[u32]) -> Result<(), MeshError> {
+        let mut held = self.marked(vertices)?;
+        held.iter_mut().for_each(|held| *held = !*held);
+        self.hold(held);
+        Ok(())
+    }
+
+    /// Returns a mask of the mesh's vertices, true for each entry of `vertices`.
+    fn marked(&self, vertices: &[u32]) -> Result<Vec<bool>, MeshError> {
+        let count = self.mesh.points.len();
+        let mut marked = vec![false; count];
+        for &vertex in vertices {
+            *marked.get_mut(vertex as usize).ok_or(MeshError::IndexOutOfRange {
+                triangle: None,
+                vertex,
+                vertices: count,
+            })? = true;
+        }
+        Ok(marked)
+    }
+
+    /// Fixes the vertices of the mask `held`, also those between regions.
+    fn hold(&mut self, mut held: Vec<bool>) {
+        let all = (0..).zip(&held).filter(|&(_, &held)| held);
+        self.anchored.extend(all.map(|(vertex, _)| vertex));
+        let fixed = &mut self.mesh.fixed;
+        fixed.truncate(fixed.len() - self.interfaces.len());
+        self.interfaces.retain(|&vertex| !held[vertex as usize]);
+        fixed.iter().for_each(|&vertex| held[vertex as usize] = false);
+        fixed.extend((0..).zip(held).filter(|&(_, held)| held).map(|(vertex, _)| vertex));
+        fixed.extend_from_slice(&self.interfaces);
+    }
+
+    /// Finds the boundary layers that `keep` names. Walls are the boundary, the lines, and edges between regions, or the
+    /// vertices `walls` if given. `faces` are the elements of layers that are no triangles, as lists of vertices.
+    ///
+    /// # Errors
+    /// [`MeshError`] if `walls` has a vertex that does not exist.
+    pub fn layers(
+        &self,
+        topology: &Topology<'_>,
+        keep: KeepLayers,
+        walls: Option<&[u32]>,
+        faces: &[Vec<u32>],
+    ) -> Result<Layers, MeshError> {
+        let (points, lines) = (&self.mesh.points, &self.lines());
+        keep.find(&Elements { topology, points, faces, lines }, walls)
+    }
+
+    /// Returns the curves along which vertices slide, with the vertices at `points`, by the topology of the
+    /// [`mesh`](Self::mesh).
+    pub fn curves(&self, points: &[[f64; 2]], topology: &Topology<'_>, by: &SlideBy) -> Curves {
+        let SlideBy { corner_angle, hausdorff, sides, ends } = by;
+        let mut lines = self.lines();
+        // Vertices on lines of the boundary are fixed, and slide along the boundary.
+        let boundary = topology.boundary_edges();
+        lines.extend_from_slice(&boundary);
+        // Motions of files are motions in x and y.
+        let motion = |motion| if self.is_in_xy() { motion } else { None };
+        let pairs = self.periodic.iter();
+        let pairs = pairs.map(|p| Periodic { pairs: p.pairs.clone(), motion: motion(p.motion) });
+        let mut slide = Slide {
+            corner_angle: *corner_angle,
+            hausdorff: *hausdorff,
+            lines,
+            held: self.anchored.clone(),
+            periodic: pairs.collect(),
+        };
+        slide.pair_banks(topology, points, &self.weirs);
+        for &motion in self.motions.iter().filter(|_| self.is_in_xy()) {
+            slide.pair_by(topology, points, motion);
+        }
+        let mut pairs = |[a, b]: &[Vec<u32>; 2]| slide.pair_sides(topology, points, [a, b]);
+        let unlike_sides = sides.iter().position(|sides| pairs(sides) == 0);
+        let is_periodic = self.has_unread_pairs || !self.motions.is_empty();
+        let has_lost_pairs = is_periodic && slide.periodic.is_empty();
+        if has_lost_pairs {
+            slide.held.extend(boundary.into_iter().flatten());
+        }
+        slide.held.extend_from_slice(ends);
+        Curves { slide, has_lost_pairs, unlike_sides }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square with two regions and a vertex in the middle.
+    fn square() -> Domain {
+        let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]];
+        let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        Domain::of_mesh(points, triangles, vec![[1, 2]], &[1, 1, 2, 2])
+    }
+
+    #[test]
+    fn vertices_that_are_fixed_by_hand_are_not_between_regions() {
+        assert_eq!(
+            (&square().mesh().fixed[..], square().interface_vertices()),
+            (&[1, 2, 0, 4][..], &[0, 4][..])
+        );
+        for free_first in [false, true] {
+            let mut domain = square();
+            if free_first {
+                domain.free_interfaces();
+            }
+            domain.fix(&[4, 0, 4]).unwrap();
+            assert_eq!(domain.mesh().fixed, [1, 2, 0, 4]);
+            assert!(domain.interface_vertices().is_empty());
+            domain.free_interfaces();
+            assert_eq!(domain.mesh().fixed, [1, 2, 0, 4]);
+        }
+        let mut domain = square();
+        domain.fix(&[1]).unwrap();
+        domain.fix_all_but(&[0, 4]).unwrap();
+        assert_eq!(
+            (&domain.mesh().fixed[..], domain.interface_vertices()),
+            (&[1, 2, 3, 0, 4][..], &[0, 4][..])
+        );
+        domain.free_interfaces();
+        assert_eq!(domain.mesh().fixed, [1, 2, 3]);
+        assert!(domain.fix(&[0, 5]).is_err() && domain.fix_all_but(&[5]).is_err());
+        assert_eq!(domain.mesh().fixed, [1, 2, 3]);
+    }
+
+    #[test]
+    fn the_boundary_of_a_periodic_model_without_pairs_stays() {
+        let mut domain = square();
+        domain.has_unread_pairs = true;
+        let mesh = domain.mesh().clone();
+        let topology = Topology::new(&mesh).unwrap();
+        let curves = domain.curves(&mesh.points, &topology, &SlideBy::default());
+        assert!(curves.has_lost_pairs && curves.slide.held.len() == 8);
+        domain.pair(vec![[0, 1], [3, 2]]);
+        let by = SlideBy { ends: vec![3], ..SlideBy::default() };
+        let curves = domain.curves(&mesh.points, &topology, &by);
+        assert!(!curves.has_lost_pairs && curves.slide.held == [3]);
+        let by = SlideBy { sides: vec![[vec![0, 3], vec![1, 2]], [vec![0, 3], vec![4]]], ..by };
+        assert_eq!(domain.curves(&mesh.points, &topology, &by).unlike_sides, Some(1));
     }
 }

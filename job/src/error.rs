@@ -47,6 +47,9 @@ pub enum JobError {
         #[source]
         error: SmoothError,
     },
+    /// The groups of the file cannot be read.
+    #[error(transparent)]
+    Groups(#[from] ReadError),
     /// The smoothed mesh cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

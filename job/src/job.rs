@@ -3,26 +3,29 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use gpu_smooth::layers::{Elements, KeepLayers, Layers};
+use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
+use gpu_smooth::targets::Surface;
 use gpu_smooth::{Backend, Mesh, MeshError, Options, Outcome, SmoothError, Smoother, Topology};
 use mesh_io::MeshFile;
 
-use crate::domain::Domain;
+use crate::domain::{Domain, SlideBy};
 use crate::error::JobError;
 use crate::plane::{plane_of_file, z_field};
 use crate::precision::smoother_precision;
+use crate::run::RunRequest;
+use crate::target::TargetRequest;
 
 /// A mesh file that is prepared for smoothing. Vertices that the file constrains and vertices between regions are fixed,
-/// boundary layers stay ([`Job::keep_layers`]), a mesh in another plane than that of x and y is laid out in its plane, and no triangle is inverted by the digits that
-/// the file has for a coordinate.
+/// boundary layers stay ([`Job::keep_layers`]), a mesh in another plane than that of x and y is laid out in its plane, and no
+/// triangle is inverted by the digits that the file has for a coordinate. The command line does the same with its options.
 pub struct Job<'f> {
     file: &'f MeshFile,
     domain: Domain,
-    /// The plane of the mesh; `None` if the mesh has no third coordinates, or equal ones.
-    plane: Option<Plane>,
     keep_layers: KeepLayers,
+    target: TargetRequest,
+    slide: Option<SlideBy>,
 }
 
 impl<'f> Job<'f> {
@@ -31,11 +34,28 @@ impl<'f> Job<'f> {
     /// # Errors
     /// [`JobError::Plane`] if the vertices have third coordinates and do not lie in one plane.
     pub fn of_file(file: &'f MeshFile) -> Result<Self, JobError> {
-        let (mut domain, plane) = (Domain::of_file(file), plane_of_file(file)?);
-        if let Some(plane) = &plane {
-            domain.mesh.points = plane.points().to_vec();
-        }
-        Ok(Self { file, domain, plane, keep_layers: KeepLayers::Auto })
+        let mut domain = Domain::of_file(file);
+        domain.set_plane(plane_of_file(file)?);
+        Ok(Self::with(file, domain))
+    }
+
+    /// Prepares the mesh of a file whose x and y are longitude and latitude in degrees. Runs move vertices on the sphere, with
+    /// lengths in kilometers on a sphere of the size of the earth. Third coordinates are data.
+    ///
+    /// # Errors
+    /// [`JobError::Smooth`] if a latitude is not from -90 to 90, or if a pole is inside a triangle or on an edge.
+    pub fn on_sphere(file: &'f MeshFile) -> Result<Self, JobError> {
+        let mut job = Self::with(file, Domain::of_file(file));
+        job.target.surface = Surface::Sphere;
+        let stored = smoother_precision(file.precision());
+        let laid_out = job.domain.lay_out_on_sphere(stored);
+        laid_out.map_err(|error| job.error(error))?;
+        Ok(job)
+    }
+
+    fn with(file: &'f MeshFile, domain: Domain) -> Self {
+        let (keep_layers, target) = (KeepLayers::Auto, TargetRequest::default());
+        Self { file, domain, keep_layers, target, slide: None }
     }
 
     /// Chooses the boundary layers whose vertices stay; by default [`KeepLayers::Auto`]. Walls are the boundary, the lines of
@@ -44,57 +64,121 @@ impl<'f> Job<'f> {
         Self { keep_layers, ..self }
     }
 
+    /// Chooses the desired shape and size of elements; by default equilateral, of any size. The surface of the request is
+    /// ignored: the job has one.
+    pub fn target(self, target: TargetRequest) -> Self {
+        let surface = self.target.surface;
+        Self { target: TargetRequest { surface, ..target }, ..self }
+    }
+
+    /// Lets the vertices of the boundary, of lines, and between regions slide along their lines. Ends of the groups of the file
+    /// stay.
+    pub fn slide(self, by: SlideBy) -> Self {
+        Self { slide: Some(by), ..self }
+    }
+
+    /// Lets vertices between regions move, unless they are fixed for another reason.
+    pub fn free_interfaces(mut self) -> Self {
+        self.domain.free_interfaces();
+        self
+    }
+
+    /// Fixes vertices, so that they neither move nor slide.
+    ///
+    /// # Errors
+    /// [`JobError::Smooth`] if a vertex does not exist.
+    pub fn fix(mut self, vertices: &[u32]) -> Result<Self, JobError> {
+        let fixed = self.domain.fix(vertices);
+        fixed.map_err(|error| self.error(error))?;
+        Ok(self)
+    }
+
+    /// Fixes all vertices except `vertices`.
+    ///
+    /// # Errors
+    /// [`JobError::Smooth`] if a vertex does not exist.
+    pub fn fix_all_but(mut self, vertices: &[u32]) -> Result<Self, JobError> {
+        let fixed = self.domain.fix_all_but(vertices);
+        fixed.map_err(|error| self.error(error))?;
+        Ok(self)
+    }
+
     /// Finds the boundary layers whose vertices stay.
     ///
     /// # Errors
     /// [`MeshError`] if the mesh cannot be smoothed; see [`Topology::new`].
     pub fn layers(&self) -> Result<Layers, MeshError> {
         let Self { file, domain, .. } = self;
-        let topology = Topology::new(&domain.mesh)?;
         let faces: Vec<Vec<u32>> = file.other_faces().map(<[u32]>::to_vec).collect();
-        let lines = [file.constraints().lines.clone(), file.interface_edges()].concat();
-        let points = &domain.mesh.points;
-        let elements = Elements { topology: &topology, points, faces: &faces, lines: &lines };
-        self.keep_layers.find(&elements, None)
+        domain.layers(&Topology::new(domain.mesh())?, self.keep_layers, None, &faces)
     }
 
-    /// Returns the mesh to smooth, with the vertices that the file fixes. Points are x and y of the file, or positions in the plane of
-    /// the mesh.
+    /// Returns the mesh to smooth, with the vertices that the file fixes. Points are x and y of the file, or positions in the
+    /// plane of the mesh.
     pub fn mesh(&self) -> &Mesh {
-        &self.domain.mesh
+        self.domain.mesh()
     }
 
     /// Returns the mesh to smooth, as [`mesh`](Self::mesh) does, for an application that keeps only the mesh.
-    pub fn into_mesh(self) -> Mesh {
-        self.domain.mesh
+    pub fn into_mesh(mut self) -> Mesh {
+        self.domain.take_mesh()
     }
 
     /// Returns the precision to which a run must round coordinates ([`Options::stored`]). Coordinates in a tilted plane
     /// are not stored, so a run does not round them.
     pub fn stored(&self) -> Precision {
         let of_file = || smoother_precision(self.file.precision());
-        self.plane.as_ref().map_or_else(of_file, Plane::run_precision)
+        self.domain.plane().map_or_else(of_file, Plane::run_precision)
+    }
+
+    /// Returns the options of a run that leaves out what `request` leaves out. Without a scheme, the metric is that of the
+    /// target: [`TargetKind::default_metric`](crate::TargetKind::default_metric).
+    pub fn options(&self, request: &RunRequest) -> Options {
+        request.options(self.target.kind.default_metric(), self.stored())
     }
 
     /// Smooths the mesh, and blocks until the run ends. The job replaces [`Options::stored`] by the precision of the
     /// file; all other options hold as given.
     ///
     /// # Errors
-    /// [`JobError::Smooth`] if the mesh cannot be smoothed, an option is refused, or the device fails.
-    pub fn smooth(self, options: &Options, backend: &Backend) -> Result<Smoothed<'f>, JobError> {
+    /// [`JobError::Smooth`] if the mesh cannot be smoothed, an option is refused, or the device fails. [`JobError::Groups`] if
+    /// vertices slide and the groups of the file cannot be read.
+    pub fn smooth(
+        mut self,
+        options: &Options,
+        backend: &Backend,
+    ) -> Result<Smoothed<'f>, JobError> {
+        let target = std::mem::take(&mut self.target);
+        let ends = match self.slide {
+            Some(_) => self.file.group_ends()?,
+            None => Vec::new(),
+        };
         let run = || -> Result<_, SmoothError> {
-            let smoother = Smoother::keeping(Cow::Borrowed(self.mesh()), self.layers()?)?;
+            let mut smoother = Smoother::keeping(Cow::Borrowed(self.mesh()), self.layers()?)?;
+            if target.surface == Surface::Sphere {
+                smoother.project_from_sphere()?;
+            }
+            target.set(&mut smoother, self.domain.chart(), options.scheme.base())?;
+            if let Some(by) = &self.slide {
+                let by = SlideBy { ends: [&by.ends[..], &ends].concat(), ..by.clone() };
+                let curves = self.domain.curves(&self.mesh().points, smoother.topology(), &by);
+                smoother.set_slide(Some(&curves.slide))?;
+            }
             let options = Options { stored: self.stored(), ..options.clone() };
             let mut outcome = smoother.run(&options).on(backend).block()?;
-            if let Some(plane) = &self.plane {
+            if let Some(plane) = self.domain.plane() {
                 let before = &self.mesh().points;
                 plane.certify_as_stored(smoother.topology(), before, &mut outcome.points)?;
             }
             Ok(outcome)
         };
-        let path = || self.file.path().to_path_buf();
-        let outcome = run().map_err(|error| JobError::Smooth { path: path(), error })?;
+        let outcome = run().map_err(|error| self.error(error))?;
         Ok(Smoothed { job: self, outcome })
+    }
+
+    /// Returns an error of the smoother with the path of the file.
+    fn error(&self, error: impl Into<SmoothError>) -> JobError {
+        JobError::Smooth { path: self.file.path().to_path_buf(), error: error.into() }
     }
 }
 
@@ -123,12 +207,11 @@ impl<'f> Smoothed<'f> {
     /// [`JobError::Write`] if the file cannot be written, or [`JobError::Plane`] if the third coordinates cannot be read
     /// again.
     pub fn write(&self, path: &Path) -> Result<(), JobError> {
-        let (Job { file, plane, .. }, points) = (&self.job, &self.outcome.points);
-        let Some(plane) = plane.as_ref().filter(|plane| !plane.is_of_xy()) else {
-            return Ok(file.write(path, points)?);
+        let (Job { file, domain, .. }, points) = (&self.job, &self.outcome.points);
+        let z = match domain.plane() {
+            Some(plane) => z_field(plane, file, points)?,
+            None => None,
         };
-        let xy: Vec<_> = plane.in_space(points).iter().map(|&[x, y, _]| [x, y]).collect();
-        let z: Vec<_> = z_field(plane, file, points)?.into_iter().collect();
-        Ok(file.write_with_fields(path, &xy, &z)?)
+        Ok(file.write_with_fields(path, &domain.given(points), z.as_slice())?)
     }
 }

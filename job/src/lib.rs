@@ -1,7 +1,24 @@
 //! Smooths mesh files. A [`Job`] takes the facts that matter for a run from the file: vertices that the file fixes,
 //! vertices between regions, the plane of the mesh, and the precision in which the file stores coordinates.
 //!
-//! The crate joins `gpu-smooth`, which reads no files, and `mesh-io`, which knows no smoother.
+//! The crate joins `gpu-smooth`, which reads no files, and `mesh-io`, which knows no smoother. It is the set-up of a run that the
+//! command line, the Python package and Rust programs share: a [`Domain`] has the vertices that stay or slide, a
+//! [`TargetRequest`] the desired elements, and a [`RunRequest`] the options of a run as users give them. With equal options, a
+//! job writes the bytes that the command line writes:
+//!
+//! ```no_run
+//! # use std::path::Path;
+//! # use gpu_smooth::Backend;
+//! # use gpu_smooth_job::{Job, RunRequest, SlideBy, TargetKind, TargetRequest};
+//! # use mesh_io::MeshFile;
+//! // gpu-smooth in.msh out.msh --engine cpu --slide --target keep-size --max-sweeps 50
+//! let file = MeshFile::read(Path::new("in.msh"))?;
+//! let target = TargetRequest { kind: TargetKind::KeepSize, ..TargetRequest::default() };
+//! let job = Job::of_file(&file)?.slide(SlideBy::default()).target(target);
+//! let options = job.options(&RunRequest { max_sweeps: Some(50), ..RunRequest::default() });
+//! job.smooth(&options, &Backend::Cpu)?.write(Path::new("out.msh"))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -16,14 +33,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod checkpoint;
 mod domain;
 mod error;
 mod job;
 mod plane;
 mod precision;
+mod run;
+mod target;
 
-pub use domain::Domain;
+pub use checkpoint::{CheckpointFile, CheckpointWriter, is_checkpoint};
+pub use domain::{Curves, Domain, SlideBy};
 pub use error::{JobError, PlaneError};
 pub use job::{Job, Smoothed};
 pub use plane::{plane_of_file, points_in_space, z_field};
 pub use precision::smoother_precision;
+pub use run::{EngineRequest, MethodName, RunRequest};
+pub use target::{TargetFacts, TargetKind, TargetRequest, TargetSource};

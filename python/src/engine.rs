@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use gpu_smooth::choice::BackendChooser;
 use gpu_smooth::options::Options;
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize};
+use gpu_smooth_job::EngineRequest;
 use pyo3::prelude::*;
 
 use crate::error;
-use crate::run_options::EngineChoice;
 use crate::threads;
 
 // A process that was forked after drivers were started uses neither of these, as another thread may have held the lock.
@@ -43,14 +43,14 @@ pub(crate) fn start_drivers(py: Python<'_>) -> PyResult<()> {
 /// Returns the engine of a run on a mesh of a given size.
 pub(crate) fn open(
     py: Python<'_>,
-    choice: &EngineChoice,
+    choice: &EngineRequest,
     size: MeshSize,
     options: &Options,
 ) -> PyResult<Backend> {
     match choice {
-        EngineChoice::Cpu => Ok(Backend::Cpu),
-        EngineChoice::Auto if check_fork(py).is_err() => Ok(Backend::Cpu),
-        EngineChoice::Auto => {
+        EngineRequest::Cpu => Ok(Backend::Cpu),
+        EngineRequest::Auto if check_fork(py).is_err() => Ok(Backend::Cpu),
+        EngineRequest::Auto => {
             let lock = || CHOOSER.lock().unwrap_or_else(PoisonError::into_inner);
             let chooser = Arc::clone(lock().get_or_insert_default());
             let raised = Mutex::new(None);
@@ -60,7 +60,7 @@ pub(crate) fn open(
             ended(raised).inspect_err(|_| *lock() = None)?;
             Ok(backend)
         }
-        EngineChoice::Gpu(name) => {
+        EngineRequest::Gpu { adapter: name } => {
             start_drivers(py)?;
             let gpu = threads::detached(py, || opened(name.as_deref()))?;
             gpu.map(Backend::Gpu).map_err(|error| error::of_gpu(py, &error))

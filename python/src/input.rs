@@ -3,21 +3,18 @@
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 
-use gpu_smooth::interpolate::Chart;
 use gpu_smooth::layers::Layers;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::untangle::{Untangled, Untangling};
-use gpu_smooth::{
-    Mesh, MeshError, SmoothError, Smoother, TargetField, Targets, Topology, untangle,
-};
+use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, untangle};
+use gpu_smooth_job::Domain;
 
 use pyo3::prelude::*;
 
-use crate::arrays::PerVertex;
 use crate::error;
-use crate::mesh_options::{MeshOptions, Target};
-use crate::movement::{self, Constraints, LayersEffect};
+use crate::mesh_options::MeshOptions;
+use crate::movement::{self, LayersEffect};
 use crate::observer::RunObserver;
 
 /// The reason for which a mesh cannot be smoothed.
@@ -54,39 +51,31 @@ impl From<SmoothError> for Failure {
 
 /// The mesh of a call.
 pub(crate) struct Input {
-    /// The mesh with continued longitudes on a sphere, after untangling.
-    pub(crate) mesh: Mesh,
-    /// The boundary layers that stay.
     layers: Layers,
     pub(crate) layout: Layout,
 }
 
-/// Points of a mesh before untangling, the chart of its longitudes, and its fixed vertices.
+/// The domain of a call, with its mesh after untangling, and the points of the mesh before untangling.
 pub(crate) struct Layout {
     /// Points of the mesh before untangling; `None` if the mesh was not tangled.
     pub(crate) tangled: Option<Vec<[f64; 2]>>,
-    pub(crate) chart: Option<Chart>,
-    constraints: Constraints,
+    pub(crate) domain: Domain,
 }
 
 impl Input {
     /// Fixes vertices, lays the mesh out on its surface, and untangles it if the options ask for it.
     pub(crate) fn new(
-        mut mesh: Mesh,
+        mesh: Mesh,
         options: &MeshOptions,
         stored: Precision,
         observer: &RunObserver<'_>,
     ) -> Result<Self, Failure> {
-        let mut constraints = movement::fix(&mut mesh, options)?;
-        let chart = match options.surface {
-            Surface::Plane => None,
-            Surface::Sphere => Chart::new(&mesh, stored)?,
-        };
-        if let Some(chart) = &chart {
-            constraints.held.extend_from_slice(chart.held());
-            mesh = chart.mesh().clone();
+        let mut domain = movement::domain(mesh, options)?;
+        if options.surface == Surface::Sphere {
+            domain.lay_out_on_sphere(stored)?;
         }
-        let (layers, effect) = movement::keep_layers(&mut mesh, options, &constraints)?;
+        movement::fix_far_from_bad(&mut domain, options)?;
+        let (layers, effect) = movement::keep_layers(&mut domain, options)?;
         match effect {
             LayersEffect::Fixed => {}
             LayersEffect::AllKept => observer.warn(
@@ -99,18 +88,18 @@ impl Input {
             ),
         }
         let mut tangled = None;
-        if options.untangles {
-            let done = untangled(&mesh, stored, observer)?;
-            if let Some(points) = done {
-                tangled = Some(std::mem::replace(&mut mesh.points, points));
-            }
+        if options.untangles
+            && let Some(points) = untangled(domain.mesh(), stored, observer)?
+        {
+            tangled = Some(domain.replace_points(points));
         }
-        Ok(Self { mesh, layers, layout: Layout { tangled, chart, constraints } })
+        Ok(Self { layers, layout: Layout { tangled, domain } })
     }
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.
     pub(crate) fn smoother(&self, options: &MeshOptions) -> Result<Smoother<'_>, Failure> {
-        let mut smoother = Smoother::keeping(Cow::Borrowed(&self.mesh), self.layers.clone())?;
+        let mesh = Cow::Borrowed(self.layout.domain.mesh());
+        let mut smoother = Smoother::keeping(mesh, self.layers.clone())?;
         self.layout.set_up(options, &mut smoother)?;
         Ok(smoother)
     }
@@ -120,92 +109,27 @@ impl Input {
         self,
         options: &MeshOptions,
     ) -> Result<(Smoother<'static>, Layout), Failure> {
-        let Self { mesh, layers, layout } = self;
-        let mut smoother = Smoother::keeping(Cow::Owned(mesh), layers)?;
+        let Self { layers, mut layout } = self;
+        let mesh = Cow::Owned(layout.domain.take_mesh());
+        let mut smoother = Smoother::keeping(mesh, layers)?;
         layout.set_up(options, &mut smoother)?;
         Ok((smoother, layout))
     }
 }
 
-/// Targets of a mesh.
-enum Chosen {
-    OfVertices(Targets),
-    OfPlaces(Box<TargetField>),
-}
-
 impl Layout {
     /// Sets the projection, the targets and the sliding vertices of a smoother.
     fn set_up(&self, options: &MeshOptions, smoother: &mut Smoother<'_>) -> Result<(), Failure> {
-        let targets = self.targets(options, smoother)?;
+        let targets = options.targets()?;
         if options.surface == Surface::Sphere {
             smoother.project_from_sphere()?;
         }
-        match targets {
-            None => {}
-            Some(Chosen::OfVertices(targets)) => smoother.set_targets(&targets)?,
-            Some(Chosen::OfPlaces(field)) => {
-                smoother.set_target_field(*field)?;
-            }
-        }
+        let metric = options.target_kind().default_metric();
+        targets.set(smoother, self.domain.chart(), metric)?;
         if options.slides {
-            let slide = movement::slide(options, smoother.topology(), &self.constraints);
-            smoother.set_slide(Some(&slide))?;
+            movement::slide(options, &self.domain, smoother)?;
         }
         Ok(())
-    }
-
-    /// Returns the targets of a mesh; `None` for equilateral targets in the plane.
-    fn targets(
-        &self,
-        options: &MeshOptions,
-        smoother: &Smoother<'_>,
-    ) -> Result<Option<Chosen>, MeshError> {
-        let (points, topology, surface) =
-            (&smoother.mesh().points, smoother.topology(), options.surface);
-        let rings = options.target_rings();
-        // Shapes are kept as they appear in coordinates, also on the sphere.
-        let mut measured_on = surface;
-        let targets = match &options.target {
-            Target::Equilateral if surface == Surface::Plane => return Ok(None),
-            Target::Equilateral => Targets::equilateral(points.len()),
-            Target::KeepSize => Targets::keep_size(topology, points, surface, rings)?,
-            Target::KeepShape => {
-                measured_on = Surface::Plane;
-                Targets::keep_shape(topology, points, rings)?
-            }
-            Target::Given(values) => match &self.chart {
-                Some(chart) => of_numbers(&chart.extended(&values.numbers, values.each), values)?,
-                None => of_numbers(&values.numbers, values)?,
-            },
-            Target::Background { points: background, triangles, values } => {
-                let mesh = Mesh {
-                    points: background.xy.clone(),
-                    triangles: triangles.clone(),
-                    fixed: vec![],
-                };
-                let field = TargetField::new(&mesh, &of_numbers(&values.numbers, values)?)?;
-                let field = field.seen_on(surface);
-                return Ok(Some(match options.is_of_places() {
-                    true => Chosen::OfPlaces(field.into()),
-                    false => Chosen::OfVertices(field.at(points)?.0),
-                }));
-            }
-        };
-        if options.is_of_places() {
-            let triangles = topology.triangles().to_vec();
-            let mesh = Mesh { points: points.clone(), triangles, fixed: vec![] };
-            let field = TargetField::new(&mesh, &targets)?.seen_on(measured_on);
-            return Ok(Some(Chosen::OfPlaces(field.into())));
-        }
-        let targets = targets.seen_on(measured_on, points, topology.triangles())?;
-        Ok(Some(Chosen::OfVertices(targets)))
-    }
-}
-
-fn of_numbers(numbers: &[f64], values: &PerVertex) -> Result<Targets, MeshError> {
-    match values.each {
-        1 => Targets::sizes(numbers),
-        _ => Targets::tensors(numbers.as_chunks().0),
     }
 }
 

@@ -1,9 +1,10 @@
 //! The options that belong to a mesh: vertices that may move, targets and the surface of coordinates.
 
-use gpu_smooth::Metric;
 use gpu_smooth::layers::KeepLayers;
 use gpu_smooth::options::OptionRange;
 use gpu_smooth::targets::Surface;
+use gpu_smooth::{Mesh, MeshError};
+use gpu_smooth_job::{TargetKind, TargetRequest, TargetSource};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
@@ -156,7 +157,6 @@ impl MeshOptions {
     fn check(&self, py: Python<'_>) -> PyResult<()> {
         let has_slide_option =
             self.corner_angle.is_some() || self.hausdorff.is_some() || !self.periodic.is_empty();
-        let is_kept = matches!(self.target, Target::KeepSize | Target::KeepShape);
         let refusals = [
             (
                 has_slide_option && !self.slides,
@@ -167,7 +167,7 @@ impl MeshOptions {
                 "rings needs only_bad. Drop it, or pass it",
             ),
             (
-                self.target_rings.is_some() && !is_kept,
+                self.target_rings.is_some() && !self.target_kind().keeps(),
                 "target_rings needs target=\"keep-size\" or \"keep-shape\". Drop it, or pass one of them",
             ),
             (
@@ -181,27 +181,34 @@ impl MeshOptions {
         }
     }
 
-    /// Returns the metric of a run without a scheme. A metric of shapes alone would ignore targets of sizes.
-    pub(crate) fn default_metric(&self) -> Metric {
+    /// Returns the kind of the target.
+    pub(crate) fn target_kind(&self) -> TargetKind {
         match &self.target {
-            Target::KeepSize => Metric::Tmop94,
-            Target::Given(values) | Target::Background { values, .. } if values.each == 1 => {
-                Metric::SoftSize
-            }
-            _ => Metric::Imr,
+            Target::Equilateral => TargetKind::Equilateral,
+            Target::KeepSize => TargetKind::KeepSize,
+            Target::KeepShape => TargetKind::KeepShape,
+            Target::Given(values) | Target::Background { values, .. } => match values.each {
+                1 => TargetKind::Sizes,
+                _ => TargetKind::Tensors,
+            },
         }
     }
 
-    /// Returns the number of rings over which sizes or shapes are averaged.
-    pub(crate) fn target_rings(&self) -> u32 {
-        let default = if matches!(self.target, Target::KeepSize) { 0 } else { 1 };
-        self.target_rings.unwrap_or(default)
-    }
-
-    /// Returns whether targets belong to places. By default, targets of another mesh do.
-    pub(crate) fn is_of_places(&self) -> bool {
-        let is_background = matches!(self.target, Target::Background { .. });
-        !matches!(self.target, Target::Equilateral) && self.of_places.unwrap_or(is_background)
+    /// Returns the targets of a run.
+    pub(crate) fn targets(&self) -> Result<TargetRequest, MeshError> {
+        let (kind, surface) = (self.target_kind(), self.surface);
+        let source = match &self.target {
+            Target::Equilateral | Target::KeepSize | Target::KeepShape => TargetSource::Mesh,
+            Target::Given(values) => TargetSource::Vertices(values.numbers.clone()),
+            Target::Background { points, triangles, values } => {
+                let (points, triangles) = (points.xy.clone(), triangles.clone());
+                let mesh = Mesh { points, triangles, fixed: vec![] };
+                let field = kind.field(&mesh, &values.numbers, surface)?;
+                TargetSource::Background(Box::new(field))
+            }
+        };
+        let (rings, of_places) = (self.target_rings, self.of_places);
+        Ok(TargetRequest { kind, source, rings, of_places, surface })
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use gpu_smooth::plane::Plane;
 use gpu_smooth::{Backend, Metric, Options, Outcome as RunOutcome, Quality as MeshQuality};
+use gpu_smooth_job::TargetKind;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,7 +12,6 @@ use pyo3::types::PyDict;
 use crate::arrays;
 use crate::error;
 use crate::measures::Quality;
-use crate::mesh_options::Target;
 use crate::prepared::Prepared;
 use crate::threads;
 
@@ -116,7 +116,7 @@ impl Outcome {
     /// Whether f of the history is measured relative to targets.
     #[getter]
     fn has_target(&self) -> bool {
-        !matches!(self.prepared.options.target, Target::Equilateral)
+        self.prepared.options.target_kind() != TargetKind::Equilateral
     }
 
     /// `"cpu"`, or the name of the adapter.

@@ -27,7 +27,7 @@ impl Prepared {
 
     /// Returns the number of vertices that were passed.
     pub(crate) fn vertices(&self) -> usize {
-        let chart = self.layout.chart.as_ref();
+        let chart = self.layout.domain.chart();
         let mesh = self.smoother.mesh();
         chart.map_or(mesh.points.len(), |chart| chart.original().points.len())
     }
@@ -35,7 +35,7 @@ impl Prepared {
 
 /// Returns points of a mesh as points of the call.
 pub(crate) fn given(layout: &Layout, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    match &layout.chart {
+    match layout.domain.chart() {
         Some(chart) => chart.given(&points),
         None => points,
     }

@@ -1,17 +1,14 @@
 //! Recovery of runs: checkpoints in a file, and the change to the CPU if a device fails.
 
 use std::fs;
-use std::io::Read;
 use std::path::Path;
-use std::time::Instant;
 
-use gpu_smooth::{Checkpoint, CheckpointPolicy, GpuError, Stop};
-use mesh_io::atomic;
+use gpu_smooth::{Checkpoint, CheckpointPolicy, GpuError};
+use gpu_smooth_job::{CheckpointFile, CheckpointWriter, is_checkpoint};
 use pyo3::prelude::*;
 
 use crate::error;
 use crate::observer::RunObserver;
-use crate::run_options::CheckpointPlan;
 
 /// Reads the checkpoint from which a run continues.
 pub(crate) fn resumed(py: Python<'_>, path: &Path) -> PyResult<Checkpoint> {
@@ -31,7 +28,7 @@ pub(crate) fn resumed(py: Python<'_>, path: &Path) -> PyResult<Checkpoint> {
 /// Refuses to replace an existing file by checkpoints, unless the run continues from this file.
 pub(crate) fn check(
     py: Python<'_>,
-    plan: &CheckpointPlan,
+    plan: &CheckpointFile,
     continued: Option<&Path>,
 ) -> PyResult<()> {
     let file = &plan.file;
@@ -54,58 +51,35 @@ fn is_same(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-fn is_checkpoint(path: &Path) -> bool {
-    let mut head = [0; Checkpoint::MAGIC.len()];
-    fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok()
-        && head == *Checkpoint::MAGIC
-}
-
 /// Saves the checkpoints of a run, and decides whether the run leaves a device that fails.
 pub(crate) struct Recovery<'a> {
-    plan: Option<&'a CheckpointPlan>,
-    /// Time of the next checkpoint.
-    due: Option<Instant>,
+    writer: CheckpointWriter<'a>,
     falls_back: bool,
     observer: &'a RunObserver<'a>,
 }
 
 impl<'a> Recovery<'a> {
     pub(crate) fn new(
-        plan: Option<&'a CheckpointPlan>,
+        file: Option<&'a CheckpointFile>,
         falls_back: bool,
         observer: &'a RunObserver<'a>,
     ) -> Self {
-        let due = plan.and_then(|plan| Instant::now().checked_add(plan.every));
-        Self { plan, due, falls_back, observer }
+        Self { writer: CheckpointWriter::new(file), falls_back, observer }
     }
 }
 
 impl CheckpointPolicy for Recovery<'_> {
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
-        self.plan.is_some() && (is_ending || self.due.is_some_and(|due| Instant::now() >= due))
+        self.writer.is_due(is_ending)
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) {
-        let Some(plan) = self.plan else { return };
-        if let Err(error) = atomic::write(&plan.file, &checkpoint.to_bytes()) {
-            let text = format!("no checkpoint was saved: {error}. The run goes on");
-            self.observer.warn(&text);
+        if let Err(error) = self.writer.save(&checkpoint) {
+            self.observer.warn(&format!("no checkpoint was saved: {error}. The run goes on"));
         }
-        self.due = Instant::now().checked_add(plan.every);
     }
 
     fn falls_back_to_cpu(&mut self, _: &GpuError, _: u32) -> bool {
         self.falls_back
-    }
-}
-
-/// Removes the checkpoint of a completed run.
-pub(crate) fn clear(plan: Option<&CheckpointPlan>, stop: Stop) {
-    if let Some(CheckpointPlan { file, .. }) = plan
-        && stop != Stop::Canceled
-        && is_checkpoint(file)
-    {
-        // A checkpoint that cannot be removed does no harm.
-        let _ = fs::remove_file(file);
     }
 }

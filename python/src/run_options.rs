@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use gpu_smooth::options::{
-    Derivatives, OptionRange, Options, PNormExponent, Paper, Relaxed, WorstBy,
-};
+use gpu_smooth::options::{Derivatives, OptionRange, Options, Paper, WorstBy};
 use gpu_smooth::precision::Precision;
-use gpu_smooth::{Goal, Guard, Method, Metric, Scheme, Stopping};
+use gpu_smooth::{Guard, Metric, Scheme};
+use gpu_smooth_job::{CheckpointFile, EngineRequest, MethodName, RunRequest};
 use pyo3::prelude::*;
 
 use crate::error;
@@ -39,53 +38,13 @@ pub(crate) const NAMES: &[&str] = &[
     "resume",
 ];
 
-/// The file of a run's checkpoints, and the time between two checkpoints.
-pub(crate) struct CheckpointPlan {
-    pub(crate) file: PathBuf,
-    pub(crate) every: Duration,
-}
-
-/// The processor on which a run computes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum EngineChoice {
-    /// The CPU or a GPU, whichever is estimated to end the run sooner.
-    Auto,
-    Cpu,
-    /// The best GPU adapter with the text in its name; `None` for any name.
-    Gpu(Option<String>),
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum MethodChoice {
-    Auto,
-    Multilevel,
-    Relaxed,
-    Paper,
-}
-
 /// The options of a run; `None` for options that the caller left out.
 #[derive(Default)]
 pub(crate) struct RunOptions {
-    scheme: Option<Scheme>,
-    engine: Option<EngineChoice>,
+    request: RunRequest,
+    engine: Option<EngineRequest>,
     adapter: Option<String>,
-    max_sweeps: Option<u32>,
-    tolerance: Option<f64>,
-    fraction: Option<f64>,
-    /// The desired f; `Some(None)` to search for it.
-    desired: Option<Option<f64>>,
     time_limit: Option<Duration>,
-    method: Option<MethodChoice>,
-    omega: Option<f64>,
-    inner: Option<u32>,
-    derivatives: Option<Derivatives>,
-    /// Whether the exponent of edge's p-norm doubles.
-    edge_norm: Option<bool>,
-    guard: Option<Guard>,
-    improve_worst: Option<WorstBy>,
-    max_move: Option<f64>,
-    keep_altitude: bool,
-    tracks_all: bool,
     on_sweep: Option<Py<PyAny>>,
     checkpoint: Option<PathBuf>,
     checkpoint_every: Option<Duration>,
@@ -95,53 +54,54 @@ pub(crate) struct RunOptions {
 impl RunOptions {
     /// Sets an option. Returns false if no option of a run has the name.
     pub(crate) fn set(&mut self, given: Given<'_, '_>) -> PyResult<bool> {
+        let to = &mut self.request;
         match given.name {
-            "scheme" => self.scheme = Some(scheme(given)?),
+            "scheme" => to.scheme = Some(scheme(given)?),
             "engine" => {
                 let engines = [
-                    ("auto", EngineChoice::Auto),
-                    ("gpu", EngineChoice::Gpu(None)),
-                    ("cpu", EngineChoice::Cpu),
+                    ("auto", EngineRequest::Auto),
+                    ("gpu", EngineRequest::Gpu { adapter: None }),
+                    ("cpu", EngineRequest::Cpu),
                 ];
                 self.engine = Some(given.word(&engines)?);
             }
             "adapter" => self.adapter = Some(given.text()?),
-            "max_sweeps" => self.max_sweeps = Some(given.count(0, u32::MAX)?),
-            "tolerance" => self.tolerance = Some(given.number(OptionRange::TOLERANCE)?),
-            "fraction" => self.fraction = Some(given.number(OptionRange::FRACTION)?),
+            "max_sweeps" => to.max_sweeps = Some(given.count(0, u32::MAX)?),
+            "tolerance" => to.tolerance = Some(given.number(OptionRange::TOLERANCE)?),
+            "fraction" => to.fraction = Some(given.number(OptionRange::FRACTION)?),
             "desired" => {
                 let is_searched = given.value.extract::<&str>().is_ok_and(|word| word == "auto");
                 let number = || given.number_in("a finite number or \"auto\"", f64::is_finite);
-                self.desired = Some(if is_searched { None } else { Some(number()?) });
+                to.desired = Some(if is_searched { None } else { Some(number()?) });
             }
             "time_limit" => self.time_limit = Some(given.seconds()?),
             "method" => {
-                self.method = Some(given.word(&[
-                    ("auto", MethodChoice::Auto),
-                    ("multilevel", MethodChoice::Multilevel),
-                    ("relaxed", MethodChoice::Relaxed),
-                    ("paper", MethodChoice::Paper),
-                ])?);
+                to.method = given.word(&[
+                    ("auto", MethodName::Auto),
+                    ("multilevel", MethodName::Multilevel),
+                    ("relaxed", MethodName::Relaxed),
+                    ("paper", MethodName::Paper),
+                ])?;
             }
-            "omega" => self.omega = Some(given.number(OptionRange::OMEGA)?),
-            "inner" => self.inner = Some(given.count(1, Paper::MAX_NEWTON_STEPS)?),
+            "omega" => to.omega = Some(given.number(OptionRange::OMEGA)?),
+            "inner" => to.newton_steps = Some(given.count(1, Paper::MAX_NEWTON_STEPS)?),
             "derivatives" => {
-                self.derivatives = Some(given.word(&[
+                to.derivatives = Some(given.word(&[
                     ("analytic", Derivatives::Analytic),
                     ("finite-difference", Derivatives::FiniteDifference),
                 ])?);
             }
             "edge_norm" => {
-                self.edge_norm = Some(given.word(&[("fixed", false), ("continued", true)])?);
+                to.doubles_exponent = Some(given.word(&[("fixed", false), ("continued", true)])?);
             }
             "guard" => {
                 let guards = [Guard::ByMetric, Guard::Worst].map(|guard| (guard.name(), guard));
-                self.guard = Some(given.word(&guards)?);
+                to.guard = given.word(&guards)?;
             }
-            "improve_worst" => self.improve_worst = worst_by(given)?,
-            "max_move" => self.max_move = Some(given.number(OptionRange::MAX_MOVE)?),
-            "keep_altitude" => self.keep_altitude = given.flag()?,
-            "history" => self.tracks_all = given.word(&[("base", false), ("all", true)])?,
+            "improve_worst" => to.improve_worst = worst_by(given)?,
+            "max_move" => to.max_move = Some(given.number(OptionRange::MAX_MOVE)?),
+            "keep_altitude" => to.keep_altitude = given.flag()?,
+            "history" => to.track_all = given.word(&[("base", false), ("all", true)])?,
             "on_sweep" => {
                 if !given.value.is_callable() {
                     return Err(given.refused("a function of one argument"));
@@ -176,33 +136,33 @@ impl RunOptions {
 
     /// Checks for options that exclude each other, apart from the pairs that the library refuses.
     pub(crate) fn check(&self, py: Python<'_>) -> PyResult<()> {
-        let method = self.method.unwrap_or(MethodChoice::Auto);
-        let is_auto_or = |own| [MethodChoice::Auto, own].contains(&method);
-        let has_paper = self.inner.is_some() || self.derivatives.is_some();
-        let has_goal = self.fraction.is_some() || self.desired.is_some();
+        let RunRequest { method, omega, newton_steps, derivatives, tolerance, .. } = &self.request;
+        let is_auto_or = |own| [MethodName::Auto, own].contains(method);
+        let has_paper = newton_steps.is_some() || derivatives.is_some();
+        let has_goal = self.request.has_goal();
         let refusals = [
             (
-                self.omega.is_some() && !is_auto_or(MethodChoice::Relaxed),
+                omega.is_some() && !is_auto_or(MethodName::Relaxed),
                 "omega belongs to method=\"relaxed\". Drop it, or pass this method",
             ),
             (
-                has_paper && !is_auto_or(MethodChoice::Paper),
+                has_paper && !is_auto_or(MethodName::Paper),
                 "inner and derivatives belong to method=\"paper\". Drop them, or pass this method",
             ),
             (
-                has_paper && self.omega.is_some(),
+                has_paper && omega.is_some(),
                 "omega does not go with inner and derivatives: each selects another method. Drop one of them",
             ),
             (
-                has_goal && self.tolerance.is_some(),
+                has_goal && tolerance.is_some(),
                 "tolerance does not go with fraction and desired: a run has one criterion to end. Drop one of them",
             ),
             (
-                self.adapter.is_some() && self.engine == Some(EngineChoice::Cpu),
+                self.adapter.is_some() && self.engine == Some(EngineRequest::Cpu),
                 "adapter does not go with engine=\"cpu\": it names a GPU. Drop one of them",
             ),
             (
-                self.checkpoint_every.is_some() && self.checkpoint_plan().is_none(),
+                self.checkpoint_every.is_some() && self.checkpoint_file().is_none(),
                 "checkpoint_every needs checkpoint or resume. Pass the file of the checkpoints, or drop checkpoint_every",
             ),
         ];
@@ -214,60 +174,12 @@ impl RunOptions {
 
     /// Returns the options of the library for points of a precision. `default` is the metric of a run without a scheme.
     pub(crate) fn library(&self, stored: Precision, default: Metric) -> Options {
-        let goal =
-            Goal { fraction: self.fraction.unwrap_or(0.95), desired: self.desired.flatten() };
-        let has_goal = self.fraction.is_some() || self.desired.is_some();
-        let usual = Options::default();
-        let options = Options {
-            scheme: self.scheme.clone().unwrap_or_else(|| default.into()),
-            method: self.method(),
-            stopping: match (has_goal, self.tolerance) {
-                (true, _) => Stopping::Goal(goal),
-                (false, Some(tolerance)) => Stopping::Tolerance(tolerance),
-                (false, None) => usual.stopping,
-            },
-            max_sweeps: self.max_sweeps.unwrap_or(usual.max_sweeps),
-            guard: self.guard.unwrap_or_default(),
-            max_move: self.max_move,
-            keep_altitude: self.keep_altitude,
-            improve_worst: self.improve_worst,
-            stored,
-            track_all: self.tracks_all,
-            ..usual
-        };
-        let doubles_anyway = options.is_multilevel() && options.scheme.base() == Metric::Edge;
-        let edge_norm = match self.edge_norm {
-            Some(false) => Some(PNormExponent::FIXED),
-            Some(true) if !doubles_anyway => Some(PNormExponent::CONTINUED),
-            _ => None,
-        };
-        Options { edge_norm, ..options }
-    }
-
-    /// Returns the method. A setting that only one method has selects that method.
-    fn method(&self) -> Method {
-        let paper = Paper {
-            newton_steps: self.inner.unwrap_or(1),
-            derivatives: self.derivatives.unwrap_or_default(),
-        };
-        let relaxed = Relaxed { omega: self.omega, ..Relaxed::default() };
-        match self.method.unwrap_or(MethodChoice::Auto) {
-            MethodChoice::Multilevel => Method::Multilevel,
-            MethodChoice::Relaxed => Method::Relaxed(relaxed),
-            MethodChoice::Paper => Method::Paper(paper),
-            MethodChoice::Auto if relaxed != Relaxed::default() => Method::Relaxed(relaxed),
-            MethodChoice::Auto if paper != Paper::default() => Method::Paper(paper),
-            MethodChoice::Auto => Method::Auto,
-        }
+        self.request.options(default, stored)
     }
 
     /// Returns the engine. The name of an adapter selects the GPU.
-    pub(crate) fn engine(&self) -> EngineChoice {
-        match (self.engine.clone().unwrap_or(EngineChoice::Auto), &self.adapter) {
-            (EngineChoice::Cpu, _) => EngineChoice::Cpu,
-            (EngineChoice::Auto, None) => EngineChoice::Auto,
-            (_, adapter) => EngineChoice::Gpu(adapter.clone()),
-        }
+    pub(crate) fn engine(&self) -> EngineRequest {
+        self.engine.clone().unwrap_or_default().with_adapter(self.adapter.clone())
     }
 
     /// Returns the time after which the run ends.
@@ -275,12 +187,9 @@ impl RunOptions {
         self.time_limit
     }
 
-    /// Returns the file of the run's checkpoints. A continued run saves its checkpoints to the file that it continues
-    /// from, unless another file is named.
-    pub(crate) fn checkpoint_plan(&self) -> Option<CheckpointPlan> {
-        const USUAL: Duration = Duration::from_secs(300);
-        let file = self.checkpoint.as_ref().or(self.resume.as_ref())?.clone();
-        Some(CheckpointPlan { file, every: self.checkpoint_every.unwrap_or(USUAL) })
+    /// Returns the file of the run's checkpoints.
+    pub(crate) fn checkpoint_file(&self) -> Option<CheckpointFile> {
+        CheckpointFile::of(self.checkpoint.clone(), self.resume.clone(), self.checkpoint_every)
     }
 
     /// Returns the file of the checkpoint from which the run continues.

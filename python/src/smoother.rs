@@ -5,6 +5,7 @@ use std::sync::Arc;
 use gpu_smooth::options::Feature;
 use gpu_smooth::plane::Plane;
 use gpu_smooth::{Backend, Checkpoint, Mesh, Options, Smoother as PreparedMesh};
+use gpu_smooth_job::{CheckpointFile, EngineRequest};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -18,7 +19,7 @@ use crate::outcome::Outcome;
 use crate::plane;
 use crate::prepared::{Prepared, given};
 use crate::recovery::{self, Recovery};
-use crate::run_options::{CheckpointPlan, EngineChoice, RunOptions};
+use crate::run_options::RunOptions;
 use crate::threads;
 
 /// A mesh prepared once for any number of runs.
@@ -113,7 +114,7 @@ struct RunPlan<'a> {
     backend: Backend,
     /// Whether the run continues on the CPU if the device fails. True only with `engine="auto"`.
     falls_back: bool,
-    checkpoints: Option<CheckpointPlan>,
+    checkpoints: Option<CheckpointFile>,
     resumed: Option<Checkpoint>,
     /// The plane in which the points are moved; `None` for the plane of x and y.
     plane: Option<&'a Plane>,
@@ -127,20 +128,20 @@ impl<'a> RunPlan<'a> {
         form: &'a PointsForm,
         smoother: &PreparedMesh<'_>,
     ) -> PyResult<Self> {
-        let options = run.library(form.precision(), mesh.default_metric());
+        let options = run.library(form.precision(), mesh.target_kind().default_metric());
         let untangle = if mesh.untangles { &[Feature::Untangle][..] } else { &[] };
         options.check_with(untangle).map_err(|error| error::of_option(py, &error))?;
-        let checkpoints = run.checkpoint_plan();
+        let checkpoints = run.checkpoint_file();
         let resumed = run.resume().map(|path| recovery::resumed(py, path)).transpose()?;
         if let Some(plan) = &checkpoints {
             recovery::check(py, plan, run.resume())?;
         }
         let engine = run.engine();
         let backend = match (&resumed, &engine) {
-            (Some(checkpoint), EngineChoice::Auto) => engine::of_checkpoint(py, checkpoint)?,
+            (Some(checkpoint), EngineRequest::Auto) => engine::of_checkpoint(py, checkpoint)?,
             _ => engine::open(py, &engine, smoother.size(), &options)?,
         };
-        let falls_back = engine == EngineChoice::Auto;
+        let falls_back = engine == EngineRequest::Auto;
         Ok(Self { options, backend, falls_back, checkpoints, resumed, plane: form.plane() })
     }
 
@@ -157,7 +158,9 @@ impl<'a> RunPlan<'a> {
             let before = &smoother.mesh().points;
             plane.certify_as_stored(smoother.topology(), before, &mut outcome.points)?;
         }
-        recovery::clear(self.checkpoints.as_ref(), outcome.stop);
+        if let Some(file) = &self.checkpoints {
+            file.clear(outcome.stop);
+        }
         Ok(outcome)
     }
 }

@@ -32,7 +32,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     let after = after;
     let choice = movable.apply(&mut before, slide.as_ref())?;
     if choice.nothing_to_do.is_some() {
-        before.fix_all_but(&[])?;
+        before.domain.fix_all_but(&[])?;
     }
     for note in laid_out.iter().chain(&choice.notes).chain(&choice.nothing_to_do) {
         tell::note(show.quiet, note);

@@ -230,7 +230,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             "{path}: {}: all are on the boundary, on constraint lines, between regions or of other elements",
             nothing_free(file)
         ))
-        .with_remedy(match file.interface_vertices() {
+        .with_remedy(match file.domain.interface_vertices() {
             [] => {
                 "There is nothing to smooth, unless --slide lets some of them move along the boundary"
             }

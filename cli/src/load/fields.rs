@@ -159,7 +159,8 @@ impl InterpolatedFields {
             self.fields.extend(z_field(plane, &file.source, points)?);
         }
         if file.source.has_parameters() {
-            let new = if file.plane().is_some() { points.into() } else { file.given(points) };
+            let new =
+                if file.plane().is_some() { points.into() } else { file.domain.given(points) };
             let (fields, others) = file.source.plane_parameters(file.positions(), &new)?;
             self.fields.extend(fields);
             let surfaces = if others == 1 { "1 surface" } else { &format!("{others} surfaces") };
@@ -170,7 +171,7 @@ impl InterpolatedFields {
             }
         }
         if file.source.has_centers() {
-            let (fields, others) = file.source.centers(&file.given(points))?;
+            let (fields, others) = file.source.centers(&file.domain.given(points))?;
             self.fields.extend(fields);
             if !others.is_empty() {
                 let names = listed(others.iter().map(String::as_str));

@@ -57,7 +57,7 @@ impl FixedBy {
         give(Self::Boundary, &mut topology.boundary_edges().into_iter().flatten());
         give(Self::Constraint, &mut file.source.constraints().vertices.iter().copied());
         let between = file.source.interface_vertices();
-        let is_held = file.interfaces_are_held();
+        let is_held = file.domain.holds_interfaces();
         give(Self::Interface, &mut between.into_iter().filter(|_| is_held));
         give(Self::Option, &mut file.mesh().fixed.iter().copied());
         give(Self::Connectivity, &mut all.clone());

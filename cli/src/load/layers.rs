@@ -1,7 +1,7 @@
 //! Boundary layers of a mesh that stay.
 
 use gpu_smooth::Topology;
-use gpu_smooth::layers::{Elements, KeepLayers, Layers};
+use gpu_smooth::layers::{KeepLayers, Layers};
 use mesh_io::Group;
 
 use crate::error::CliError;
@@ -48,7 +48,7 @@ pub(super) fn keep_layers(
         return Ok(effect);
     }
     drop(topology);
-    file.fix(&layers.vertices)?;
+    file.domain.fix(&layers.vertices)?;
     Ok(effect)
 }
 
@@ -64,12 +64,8 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
         }
     };
     let faces: Vec<Vec<u32>> = file.source.other_faces().map(<[u32]>::to_vec).collect();
-    let elements =
-        Elements { topology, points: &file.mesh().points, faces: &faces, lines: &file.lines() };
-    let layers = kept
-        .keep
-        .find(&elements, walls.as_deref())
-        .map_err(|error| explain::mesh_error(file, &error))?;
+    let layers = file.domain.layers(topology, kept.keep, walls.as_deref(), &faces);
+    let layers = layers.map_err(|error| explain::mesh_error(file, &error))?;
     let is_asked = kept.groups.is_some() || kept.keep != KeepLayers::Auto;
     match layers.vertices.is_empty() && is_asked {
         true => {

@@ -23,5 +23,4 @@ pub(crate) use movable::MovableSelection;
 pub(crate) use plane::axes_legend;
 pub(crate) use slide::{SlidingVertices, stay_as_ends};
 pub(crate) use surface::{as_in_file, lay_out};
-pub(crate) use targets::TargetFacts;
 pub(crate) use walls::{wall_edges, walls};

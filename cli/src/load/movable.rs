@@ -42,7 +42,7 @@ impl MovableRequest {
         slide: Option<&SlideRequest>,
     ) -> Result<MovableSelection, CliError> {
         if self.free_interfaces {
-            file.free_interfaces();
+            file.domain.free_interfaces();
         }
         let mut choice = MovableSelection::default();
         choice.notes.extend(self.free_interfaces.then(|| held_interfaces(file)).flatten());
@@ -68,9 +68,9 @@ impl MovableRequest {
         choice.free_without = resolver.topology.free_count();
         let fixed = resolver.fixed(self, choice)?;
         let movers = resolver.movers(self, choice)?;
-        file.fix(&fixed)?;
+        file.domain.fix(&fixed)?;
         for movers in movers {
-            file.fix_all_but(&movers)?;
+            file.domain.fix_all_but(&movers)?;
         }
         Ok(())
     }

@@ -17,7 +17,7 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
     // The effect of degrees depends on `--surface`.
     let told = file.source.remarks().iter().filter(|remark| **remark != Remark::Degrees);
     let mut remarks: Vec<String> = told.map(with_effect).collect();
-    match file.interface_vertices().len() {
+    match file.domain.interface_vertices().len() {
         0 => {}
         _ if slides => {}
         1 => remarks.push(

@@ -3,83 +3,62 @@
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::{Slide, Smoother, Topology};
-use mesh_io::Constraints;
+use gpu_smooth_job::{Curves, SlideBy};
 
 use crate::load::explain;
 use crate::request::SlideRequest;
 
 impl SlideRequest {
-    /// Returns the lines, held vertices and periodic pairs of a mesh for sliding. Ends of groups are held.
+    /// Returns the curves along which the vertices of a mesh slide. Ends of groups are held.
     pub(crate) fn slide(&self, file: &LoadedMesh) -> Result<Slide, CliError> {
-        let mut slide = self.without_ends(file)?;
-        slide.held.extend(file.source.group_ends()?);
-        Ok(slide)
+        Ok(self.curves(file, file.source.group_ends()?)?.slide)
     }
 
-    /// Returns the result of [`slide`](Self::slide) without the ends of groups.
-    fn without_ends(&self, file: &LoadedMesh) -> Result<Slide, CliError> {
-        let Self { corner_angle, hausdorff, .. } = *self;
-        let (held, periodic) = (file.held_vertices().to_vec(), file.periodic().to_vec());
+    /// Returns the curves along which vertices slide, with the vertices `ends` held.
+    fn curves(&self, file: &LoadedMesh, ends: Vec<u32>) -> Result<Curves, CliError> {
         let topology =
             Topology::new(file.mesh()).map_err(|error| explain::mesh_error(file, &error))?;
-        let mut lines = file.lines();
-        // Files list the vertices of line elements on the boundary, which are fixed but slide along the boundary.
-        lines.extend(topology.boundary_edges());
-        let mut slide = Slide { corner_angle, hausdorff, lines, held, periodic };
-        let Constraints { motions, weirs, .. } = file.source.constraints();
-        slide.pair_banks(&topology, &file.mesh().points, weirs);
-        if self.periodic.is_empty()
-            && motions.is_empty()
-            && !file.source.constraints().has_unread_pairs
-        {
-            return Ok(slide);
+        let mut by = SlideBy::default();
+        (by.corner_angle, by.hausdorff) = (self.corner_angle, self.hausdorff);
+        (by.sides, by.ends) = (self.sides(file)?, ends);
+        let curves = file.domain.curves(&file.mesh().points, &topology, &by);
+        match curves.unlike_sides {
+            None => Ok(curves),
+            Some(pair) => Err(self.refusal(
+                file,
+                pair,
+                "no translation or rotation maps the vertices of one side to the vertices of the other side: name two \
+                 sides of the boundary that match vertex by vertex",
+            )),
         }
-        let points = &file.mesh().points;
-        for &motion in motions {
-            // Motions are motions in x and y.
-            if file.is_in_xy() {
-                slide.pair_by(&topology, points, motion);
-            }
-        }
-        self.pair(file, &topology, &mut slide)?;
-        if has_lost_pairs(file, &slide) {
-            slide.held.extend(topology.boundary_edges().into_iter().flatten());
-        }
-        Ok(slide)
     }
 
-    /// Adds the pairs of vertices on the boundary sides that `--periodic` names.
-    fn pair(
-        &self,
-        file: &LoadedMesh,
-        topology: &Topology<'_>,
-        slide: &mut Slide,
-    ) -> Result<(), CliError> {
+    /// Returns the vertices of the boundary sides that `--periodic` names.
+    fn sides(&self, file: &LoadedMesh) -> Result<Vec<[Vec<u32>; 2]>, CliError> {
         if self.periodic.is_empty() {
-            return Ok(());
+            return Ok(Vec::new());
         }
         let groups = file.source.groups()?;
-        for names @ [a, b] in &self.periodic {
-            let refusal = |problem: &str| {
-                CliError::input(format!(
-                    "{}: --periodic {}: {problem}",
-                    file.source.path().display(),
-                    names.join(",")
-                ))
+        let mut sides = Vec::new();
+        for (pair, [a, b]) in self.periodic.iter().enumerate() {
+            let find = |name: &str| match groups.find(name) {
+                Ok(group) => Ok(group.vertices().to_vec()),
+                Err(error) => Err(self
+                    .refusal(file, pair, &error.to_string())
+                    .with_remedy("`gpu-smooth groups` lists what can be named")),
             };
-            let find = |name: &str| {
-                let list = "`gpu-smooth groups` lists what can be named";
-                groups.find(name).map_err(|error| refusal(&error.to_string()).with_remedy(list))
-            };
-            let sides = [find(a)?.vertices(), find(b)?.vertices()];
-            if slide.pair_sides(topology, &file.mesh().points, sides) == 0 {
-                return Err(refusal(
-                    "no translation or rotation maps the vertices of one side to the vertices of the other side: \
-                     name two sides of the boundary that match vertex by vertex",
-                ));
-            }
+            sides.push([find(a)?, find(b)?]);
         }
-        Ok(())
+        Ok(sides)
+    }
+
+    /// Returns the error of a pair of names of `--periodic`.
+    fn refusal(&self, file: &LoadedMesh, pair: usize, problem: &str) -> CliError {
+        CliError::input(format!(
+            "{}: --periodic {}: {problem}",
+            file.source.path().display(),
+            self.periodic[pair].join(",")
+        ))
     }
 
     /// Sets the sliding vertices of a smoother.
@@ -88,7 +67,7 @@ impl SlideRequest {
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
     ) -> Result<SlidingVertices, CliError> {
-        let mut slide = self.without_ends(file)?;
+        let Curves { mut slide, has_lost_pairs, .. } = self.curves(file, Vec::new())?;
         let mut count = smoother.set_slide(Some(&slide))?;
         let all = count;
         let ends = file.source.group_ends()?;
@@ -133,7 +112,7 @@ impl SlideRequest {
         if let Some(clause) = stay_as_ends(ends) {
             text += &format!("; {clause}");
         }
-        if has_lost_pairs(file, &slide) {
+        if has_lost_pairs {
             text += "; the boundary stays fixed, as the model is periodic and the pairs of vertices are unknown: \
                      --periodic MARKER,MARKER names them";
         }
@@ -209,11 +188,4 @@ pub(crate) struct SlidingVertices {
     pub(crate) has_weirs: bool,
     /// A sentence with the numbers of sliding vertices and periodic pairs.
     pub(crate) remark: String,
-}
-
-/// Returns whether the file declares its model periodic, but no pair of vertices is known.
-fn has_lost_pairs(file: &LoadedMesh, slide: &Slide) -> bool {
-    let has_some =
-        file.source.constraints().has_unread_pairs || !file.source.constraints().motions.is_empty();
-    has_some && slide.periodic.is_empty()
 }

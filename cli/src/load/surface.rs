@@ -20,7 +20,7 @@ pub(crate) fn lay_out(
             ThirdCoordinate::Data => Ok(Vec::new()),
         };
     }
-    match file.lay_out_on_sphere() {
+    match file.domain.lay_out_on_sphere(file.precision()) {
         Ok(()) => Ok(file.chart().map(remarks).unwrap_or_default()),
         Err(error) => Err(explain::mesh_error(file, &error)),
     }

@@ -5,160 +5,78 @@ use crate::load::LoadedMesh;
 use std::path::Path;
 
 use gpu_smooth::{
-    Mesh, MeshError, Metric, Smoother, TargetField, Targets,
+    Mesh, MeshError, Metric, Smoother, TargetField,
     interpolate::Chart,
     precision::Precision,
     targets::{OutsideReport, Surface},
 };
+use gpu_smooth_job::{TargetFacts, TargetKind, TargetSource as Numbers};
 use mesh_io::{GmshView, MeditSolution, MeshFile, ReadError};
 
 use crate::load::{explain, lay_out};
-use crate::request::{
-    ElementProperty, TargetNumbers, TargetRequest, TargetSource, ThirdCoordinate,
-};
+use crate::request::{GivenTargets, TargetRequest, TargetSource, ThirdCoordinate};
 use crate::terminal::numbers::sig6;
 
-/// Facts about the targets of a smoother that users are told.
-#[derive(Default)]
-pub(crate) struct TargetFacts {
-    /// A remark on vertices outside of the background, or on the weight of sizes.
-    pub(crate) remark: Option<String>,
-    /// Factor of the term of size in the base metric; `None` for targets other than `keep-size`, and for metrics without
-    /// this factor.
-    pub(crate) size_weight: Option<f64>,
-}
-
 impl TargetRequest {
-    /// Sets the targets of a smoother, for vertices at `points` on a surface and a run with the base metric `metric`.
+    /// Sets the targets of a smoother for a run on a surface with the base metric `metric`. Returns the facts about the
+    /// targets, and a remark on vertices outside of the background or on the weight of sizes.
     pub(crate) fn set(
         &self,
         file: &LoadedMesh,
         smoother: &mut Smoother<'_>,
-        points: &[[f64; 2]],
         surface: Surface,
         metric: Metric,
-    ) -> Result<TargetFacts, CliError> {
-        let explained = |error: MeshError| explain::mesh_error(file, &error);
-        if let Some((path, field)) = self.field(file, surface)? {
-            let outside = match self.is_of_places() {
-                true => smoother.set_target_field(field).map_err(explained)?,
-                false => {
-                    let (targets, outside) = field.at(points).map_err(explained)?;
-                    smoother.set_targets(&targets).map_err(explained)?;
-                    outside
-                }
-            };
-            return Ok(TargetFacts { remark: remark(path, outside), size_weight: None });
-        }
-        let Some(given) = self.targets(file, smoother, points, surface)? else {
-            return Ok(TargetFacts::default());
-        };
-        let MeshTargets { targets, surface } = given;
-        let facts = self.facts(&targets, metric);
-        if !self.is_of_places() {
-            let seen = targets.seen_on(surface, points, &file.mesh().triangles);
-            let set = seen.and_then(|targets| smoother.set_targets(&targets));
-            return set.map(|()| facts).map_err(explained);
-        }
-        let triangles = smoother.topology().triangles().to_vec();
-        let mesh = Mesh { points: points.to_vec(), triangles, fixed: Vec::new() };
-        let field = TargetField::new(&mesh, &targets).map_err(explained)?.seen_on(surface);
-        smoother.set_target_field(field).map(|_| facts).map_err(explained)
+    ) -> Result<(TargetFacts, Option<String>), CliError> {
+        let (source, path) = self.read(file, surface)?;
+        let &Self { kind, rings, of_places, .. } = self;
+        let targets = gpu_smooth_job::TargetRequest { kind, source, rings, of_places, surface };
+        let facts = targets
+            .set(smoother, file.chart(), metric)
+            .map_err(|error| explain::mesh_error(file, &error))?;
+        let outside = facts.outside.zip(path);
+        let outside = outside.and_then(|(outside, path)| outside_of(path, outside));
+        Ok((facts, outside.or_else(|| stretched(facts.size_weight?))))
     }
 
-    /// Returns the facts about targets made from the mesh itself or from numbers for its vertices.
-    fn facts(&self, targets: &Targets, metric: Metric) -> TargetFacts {
-        let keeps_sizes = matches!(self, Self::Keep { what: ElementProperty::Size, .. });
-        if !keeps_sizes || !metric.has_size_weight() {
-            return TargetFacts::default();
-        }
-        let size_weight = targets.size_weight();
-        let remark = (size_weight > 1.0).then(|| {
-            format!(
-                "--target keep-size: the triangles are stretched, so the metric's term of size has a weight of {size_weight:.2}, \
-                 which keeps the sizes; --target keep-shape keeps the stretching too"
-            )
-        });
-        TargetFacts { remark, size_weight: Some(size_weight) }
-    }
-
-    /// Reads the target field on a background mesh or view. Returns the field and the path of its file; `None` for
-    /// other targets.
-    fn field(
+    /// Reads the numbers of the targets. Returns the path of the background too, if there is any.
+    fn read(
         &self,
         file: &LoadedMesh,
         surface: Surface,
-    ) -> Result<Option<(&Path, TargetField)>, CliError> {
-        let Self::Given { what, source, .. } = self else { return Ok(None) };
-        match source {
-            TargetSource::OfMesh(_) => Ok(None),
-            TargetSource::Background { mesh, data } => {
-                Ok(Some((mesh, field_of_mesh(file, mesh, data, *what, surface)?)))
+    ) -> Result<(Numbers, Option<&Path>), CliError> {
+        let Some(GivenTargets { text, source }) = &self.given else {
+            return Ok((Numbers::Mesh, None));
+        };
+        let (field, path) = match source {
+            TargetSource::OfMesh(_) => {
+                let numbers = given(file, text, self.kind.components())?;
+                return Ok((Numbers::Vertices(numbers), None));
             }
-            TargetSource::View(path) if !file.is_in_xy() => {
+            TargetSource::Background { mesh, data } => {
+                (field_of_mesh(file, mesh, data, self.kind, surface)?, mesh)
+            }
+            TargetSource::View(path) if !file.domain.is_in_xy() => {
                 let text = format!(
                     "{}: a view has positions in x and y, but the mesh lies in another plane",
                     path.display()
                 );
-                Err(CliError::input(text)
-                    .with_remedy("Take the targets from data of a mesh in this plane"))
+                return Err(CliError::input(text)
+                    .with_remedy("Take the targets from data of a mesh in this plane"));
             }
-            TargetSource::View(path) => Ok(Some((path, field_of_view(path, surface)?))),
-        }
-    }
-
-    /// Returns the targets of the vertices; `None` for equilateral targets in the plane.
-    fn targets(
-        &self,
-        file: &LoadedMesh,
-        smoother: &Smoother<'_>,
-        points: &[[f64; 2]],
-        surface: Surface,
-    ) -> Result<Option<MeshTargets>, CliError> {
-        let topology = smoother.topology();
-        let targets = match self {
-            Self::Equilateral if surface == Surface::Plane => return Ok(None),
-            Self::Equilateral => Ok(Targets::equilateral(points.len())),
-            Self::Keep { what: ElementProperty::Size, rings, .. } => {
-                Targets::keep_size(topology, points, surface, *rings)
-            }
-            Self::Keep { what: ElementProperty::Shape, rings, .. } => {
-                Targets::keep_shape(topology, points, *rings)
-            }
-            Self::Given { what, text, .. } => {
-                of_numbers(*what, &given(file, text, components(*what))?)
-            }
+            TargetSource::View(path) => (field_of_view(path, surface)?, path),
         };
-        let surface = match self {
-            // Shapes are kept as they appear in coordinates, also on the sphere.
-            Self::Keep { what: ElementProperty::Shape, .. } => Surface::Plane,
-            _ => surface,
-        };
-        let targets = targets.map_err(|error| explain::mesh_error(file, &error))?;
-        Ok(Some(MeshTargets { targets, surface }))
+        Ok((Numbers::Background(Box::new(field)), Some(path)))
     }
 }
 
-/// Targets of the vertices of a mesh, with lengths measured on `surface`.
-struct MeshTargets {
-    targets: Targets,
-    surface: Surface,
-}
-
-/// Returns the count of numbers per vertex in a source of targets.
-fn components(what: TargetNumbers) -> usize {
-    match what {
-        TargetNumbers::Sizes => 1,
-        TargetNumbers::Tensors => 3,
-    }
-}
-
-/// Makes targets from the numbers of a source, in the order of the vertices.
-fn of_numbers(what: TargetNumbers, numbers: &[f64]) -> Result<Targets, MeshError> {
-    match what {
-        TargetNumbers::Sizes => Targets::sizes(numbers),
-        TargetNumbers::Tensors => Targets::tensors(numbers.as_chunks().0),
-    }
+/// Returns the remark on the weight of the term of size in the metric; `None` for a weight of 1.
+fn stretched(size_weight: f64) -> Option<String> {
+    (size_weight > 1.0).then(|| {
+        format!(
+            "--target keep-size: the triangles are stretched, so the metric's term of size has a weight of {size_weight:.2}, \
+             which keeps the sizes; --target keep-shape keeps the stretching too"
+        )
+    })
 }
 
 /// Reads the target field on a background mesh, in the plane of the mesh `file`.
@@ -166,7 +84,7 @@ fn field_of_mesh(
     file: &LoadedMesh,
     path: &Path,
     data: &str,
-    what: TargetNumbers,
+    kind: TargetKind,
     surface: Surface,
 ) -> Result<TargetField, CliError> {
     let read = MeshFile::read(path).map_err(|error| match error {
@@ -181,10 +99,8 @@ fn field_of_mesh(
     if file.plane().is_some() {
         file.lay_out_likewise(&mut background)?;
     }
-    let numbers = given(&background, data, components(what))?;
-    of_numbers(what, &numbers)
-        .and_then(|targets| TargetField::new(background.mesh(), &targets))
-        .map(|field| field.seen_on(surface))
+    let numbers = extended(background.chart(), given(&background, data, kind.components())?, kind);
+    kind.field(background.mesh(), &numbers, surface)
         .map_err(|error| explain::mesh_error(&background, &error))
 }
 
@@ -202,18 +118,21 @@ fn field_of_view(path: &Path, surface: Surface) -> Result<TargetField, CliError>
         Surface::Plane => None,
         Surface::Sphere => Chart::new(&mesh, Precision::Double).map_err(told_of)?,
     };
-    let (mesh, values) = match &chart {
-        Some(chart) => (chart.mesh(), chart.extended(view.values(), 1)),
-        None => (&mesh, view.values().to_vec()),
-    };
-    Targets::sizes(&values)
-        .and_then(|targets| TargetField::new(mesh, &targets))
-        .map(|field| field.seen_on(surface))
-        .map_err(told_of)
+    let values = extended(chart.as_ref(), view.values().to_vec(), TargetKind::Sizes);
+    let mesh = chart.as_ref().map_or(&mesh, Chart::mesh);
+    TargetKind::Sizes.field(mesh, &values, surface).map_err(told_of)
+}
+
+/// Returns numbers for the vertices of a chart, given those of the original vertices.
+fn extended(chart: Option<&Chart>, numbers: Vec<f64>, kind: TargetKind) -> Vec<f64> {
+    match chart {
+        Some(chart) => chart.extended(&numbers, kind.components()),
+        None => numbers,
+    }
 }
 
 /// Returns the remark on vertices outside of a background; `None` if all vertices are inside.
-fn remark(background: &Path, outside: OutsideReport) -> Option<String> {
+fn outside_of(background: &Path, outside: OutsideReport) -> Option<String> {
     let OutsideReport { count, most } = outside;
     let vertices = match count {
         0 => return None,
@@ -261,8 +180,5 @@ fn given(file: &LoadedMesh, source: &str, components: usize) -> Result<Vec<f64>,
             file.source.path().display()
         )));
     }
-    Ok(match file.chart() {
-        Some(chart) => chart.extended(&values, components),
-        None => values,
-    })
+    Ok(values)
 }

@@ -16,7 +16,7 @@ pub(crate) struct Wall {
 
 /// Returns the edges of the boundary, of lines and between regions.
 pub(crate) fn wall_edges(file: &LoadedMesh, topology: &Topology<'_>) -> Vec<[u32; 2]> {
-    let all = topology.boundary_edges().into_iter().chain(file.lines());
+    let all = topology.boundary_edges().into_iter().chain(file.domain.lines());
     let mut edges: Vec<_> = all.map(|[a, b]| [a.min(b), a.max(b)]).collect();
     edges.sort_unstable();
     edges.dedup();

@@ -1,6 +1,7 @@
 //! The report on the targets of elements.
 
 use gpu_smooth::targets::Surface;
+use gpu_smooth_job::TargetKind;
 use serde::Serialize;
 
 use crate::error::CliError;
@@ -37,7 +38,7 @@ impl TargetRequest {
         before: f64,
         after: impl FnOnce() -> Result<f64, CliError>,
     ) -> Result<Option<TargetReport>, CliError> {
-        if matches!(self, Self::Equilateral) && surface == Surface::Plane {
+        if self.kind == TargetKind::Equilateral && surface == Surface::Plane {
             return Ok(None);
         }
         let kind = self.name();
@@ -47,10 +48,6 @@ impl TargetRequest {
             Surface::Sphere => "sphere",
         };
         let of = if self.is_of_places() { "place" } else { "vertex" };
-        let rings = match self {
-            Self::Keep { rings, .. } => Some(*rings),
-            Self::Equilateral | Self::Given { .. } => None,
-        };
-        Ok(Some(TargetReport { kind, of, surface, rings, size_weight, f }))
+        Ok(Some(TargetReport { kind, of, surface, rings: self.rings(), size_weight, f }))
     }
 }

@@ -10,9 +10,11 @@ use gpu_smooth::{
     targets::Surface,
 };
 
+use gpu_smooth_job::TargetKind;
+
 use crate::args::Cli;
+use crate::request::SmoothRequest;
 use crate::request::command_line::checked;
-use crate::request::{SmoothRequest, TargetRequest};
 
 /// A source of choices: random numbers, or bytes of the fuzzer.
 pub(crate) trait Choices {
@@ -138,7 +140,7 @@ impl Checker {
             smoother.set_slide(Some(&Slide::default())).unwrap();
         }
         let targets = Targets::equilateral(self.mesh.points.len());
-        let is_plain = matches!(request.target, TargetRequest::Equilateral);
+        let is_plain = request.target.kind == TargetKind::Equilateral;
         if request.target.is_of_places() {
             let field = TargetField::new(&self.mesh, &targets).unwrap();
             smoother.set_target_field(field).unwrap();

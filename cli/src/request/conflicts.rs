@@ -3,6 +3,8 @@
 use gpu_smooth::{Metric, OptionError, options::Feature};
 use mesh_io::Format;
 
+use gpu_smooth_job::TargetKind;
+
 use crate::args::names;
 use crate::args::{
     BenchArgs, CompareArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, MoveArgs,
@@ -38,10 +40,10 @@ pub(super) fn first<A>(table: &[Conflict<A>], args: &A) -> Option<String> {
 /// Conflicts between options of a run, in the order of the search.
 pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
     row(["--target", "--scheme"], sizes_unseen, |a| {
-        a.target.is_of_sizes() && !a.scheme().metrics().iter().any(sees_sizes)
+        a.target.kind().is_of_sizes() && !a.scheme().metrics().iter().any(sees_sizes)
     }),
     row(["--target metric=VIEW", "a view of gmsh"], sizes_alone, |a| {
-        matches!(a.target.target, Target::Metric { .. }) && a.target.has_view()
+        a.target.kind() == TargetKind::Tensors && a.target.has_view()
     }),
     row(["--method multilevel", "--derivatives finite-difference"], of_paper, |a| {
         is_multilevel(a) && has_finite_differences(a)
@@ -61,7 +63,7 @@ pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
         a.edge_norm.is_some() && !a.scheme().metrics().contains(&Metric::Edge)
     }),
     row(["--target-rings", "--target keep-size or keep-shape"], without, |a| {
-        a.target.target_rings.is_some() && !a.target.keeps()
+        a.target.target_rings.is_some() && !a.target.kind().keeps()
     }),
     row(["--target-of", "another --target"], without, |a| {
         a.target.target_of.is_some() && a.target.target == Target::Equilateral
@@ -115,7 +117,7 @@ pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
     let more = Feature::present([
         (Feature::Slide, args.sliding.slide),
         (Feature::Targets, targets),
-        (Feature::TargetField, args.target.is_of_places()),
+        (Feature::TargetField, TargetRequest::from(&args.target).is_of_places()),
         (Feature::Untangle, args.untangle),
     ]);
     match options(args).check_with(&more) {

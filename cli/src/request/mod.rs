@@ -17,11 +17,9 @@ mod trial;
 
 pub(crate) use command_line::command_line;
 pub(crate) use movable::{FieldsRequest, MovableRequest, NearBad, SlideRequest};
-pub(crate) use outputs::{CheckpointPlan, MeshOutput, Outputs, is_checkpoint};
+pub(crate) use outputs::{MeshOutput, Outputs};
 pub(crate) use picture::{PictureFormat, PictureRequest};
 pub(crate) use read::ReadRequest;
-pub(crate) use smooth::{Batch, EngineRequest, Meshes, RunExtent, SmoothRequest, TableForm};
-pub(crate) use target::{
-    ElementProperty, TargetNumbers, TargetRequest, TargetSource, ThirdCoordinate,
-};
+pub(crate) use smooth::{Batch, Meshes, RunExtent, SmoothRequest, TableForm};
+pub(crate) use target::{GivenTargets, TargetRequest, TargetSource, ThirdCoordinate};
 pub(crate) use trial::TrialRun;

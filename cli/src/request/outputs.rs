@@ -3,21 +3,15 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use gpu_smooth::Checkpoint;
+use gpu_smooth_job::CheckpointFile;
 use mesh_io::{Format, atomic};
 
 use crate::args::{PictureArgs, SmoothArgs};
 use crate::error::{CliError, ErrorKind};
 use crate::request::picture::PictureRequest;
 use crate::request::target::TargetRequest;
-
-/// Path of the checkpoint file, and the interval between two checkpoints.
-pub(crate) struct CheckpointPlan {
-    pub(crate) file: PathBuf,
-    pub(crate) every: Duration,
-}
 
 /// How a command writes its mesh, which decides what the mesh may replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +44,7 @@ pub(crate) struct Outputs {
     pub(crate) picture: Option<PictureRequest>,
     /// The page for a browser.
     pub(crate) page: Option<PathBuf>,
-    pub(crate) checkpoint: Option<CheckpointPlan>,
+    pub(crate) checkpoint: Option<CheckpointFile>,
     /// Files that are read besides meshes, such as lists of vertices and sources of targets. No output may replace
     /// them.
     inputs: Vec<PathBuf>,
@@ -78,7 +72,7 @@ impl Outputs {
     /// # Errors
     /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`.
     pub(crate) fn of_run(args: &SmoothArgs) -> Result<Self, CliError> {
-        let checkpoint = args.checkpoint.as_ref().or(args.continued.as_ref());
+        let (checkpoint, continued) = (args.checkpoint.clone(), args.continued.clone());
         let mut inputs = args.moving.fix_vertices.clone();
         inputs.extend(TargetRequest::from(&args.target).files());
         Ok(Self {
@@ -91,8 +85,7 @@ impl Outputs {
             report: args.report.clone(),
             picture: PictureRequest::of(&args.picture)?,
             page: args.html.clone(),
-            checkpoint: checkpoint
-                .map(|file| CheckpointPlan { file: file.clone(), every: args.checkpoint_every }),
+            checkpoint: CheckpointFile::of(checkpoint, continued, Some(args.checkpoint_every)),
             inputs,
             continued: args.continued.clone(),
         })
@@ -364,9 +357,4 @@ fn head(path: &Path) -> Option<Vec<u8>> {
     let mut head = Vec::new();
     File::open(path).ok()?.take(LENGTH).read_to_end(&mut head).ok()?;
     Some(head)
-}
-
-/// Returns whether a file is a checkpoint of any run.
-pub(crate) fn is_checkpoint(path: &Path) -> bool {
-    head(path).is_some_and(|head| head.starts_with(Checkpoint::MAGIC))
 }

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use gpu_smooth::{
-    Goal, Guard, Method, Metric, Options, Scheme, Stopping,
-    options::{Derivatives, PNormExponent, Paper, Relaxed, WorstBy},
+    Guard, Options, Scheme, Stopping,
+    options::{Derivatives, WorstBy},
     precision::Precision,
     targets::Surface,
 };
+use gpu_smooth_job::{EngineRequest, MethodName, RunRequest};
 
 use crate::args::{
     DerivativesChoice, Desired, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice,
@@ -83,28 +84,6 @@ pub(crate) enum TableForm {
     Json,
 }
 
-/// The processor on which a run computes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum EngineRequest {
-    /// The CPU or a GPU, whichever is estimated to end the run sooner.
-    Auto,
-    Cpu,
-    /// The first GPU adapter with the text `adapter` in its name, or the best adapter if that is `None`.
-    Gpu {
-        adapter: Option<String>,
-    },
-}
-
-impl EngineRequest {
-    fn of(engine: EngineChoice, adapter: Option<String>) -> Self {
-        match (engine, adapter) {
-            (EngineChoice::Cpu, _) => Self::Cpu,
-            (EngineChoice::Auto, None) => Self::Auto,
-            (EngineChoice::Auto | EngineChoice::Gpu, adapter) => Self::Gpu { adapter },
-        }
-    }
-}
-
 /// Options of untangling a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct UntangleRequest {
@@ -144,7 +123,12 @@ impl SmoothRequest {
             movable: MovableRequest::from(args.moving).keeping_layers(),
             slide: SlideRequest::of(args.sliding),
             fields: args.fields.into(),
-            engine: EngineRequest::of(args.engine, args.adapter),
+            engine: match args.engine {
+                EngineChoice::Auto => EngineRequest::Auto,
+                EngineChoice::Cpu => EngineRequest::Cpu,
+                EngineChoice::Gpu => EngineRequest::Gpu { adapter: None },
+            }
+            .with_adapter(args.adapter),
             run,
             time_limit: args.time_limit,
             untangle: args.untangle.then_some(UntangleRequest { keeps_going: args.keep_going }),
@@ -201,66 +185,46 @@ impl SmoothRequest {
 impl SmoothArgs {
     /// Returns the scheme: the metrics of the sweeps.
     pub(super) fn scheme(&self) -> Scheme {
-        self.scheme.clone().unwrap_or_else(|| self.target.default_metric().into())
+        self.scheme.clone().unwrap_or_else(|| self.target.kind().default_metric().into())
     }
 }
 
 /// Returns the options of a run, for coordinates in double precision.
 pub(super) fn options(args: &SmoothArgs) -> Options {
-    let has_goal = args.fraction.is_some() || args.desired.is_some();
-    let goal = Goal {
-        fraction: args.fraction.unwrap_or(0.95),
-        desired: args.desired.and_then(Desired::value),
-    };
-    let options = Options {
-        scheme: args.scheme(),
-        method: method(args),
-        stopping: match has_goal {
-            true => Stopping::Goal(goal),
-            false => Stopping::Tolerance(args.tolerance),
-        },
-        max_sweeps: args.max_sweeps,
-        guard: match args.guard {
-            GuardChoice::ByMetric => Guard::ByMetric,
-            GuardChoice::Worst => Guard::Worst,
-        },
-        max_move: args.max_move,
-        keep_altitude: args.keep_altitude,
-        improve_worst: worst_by(&args.improving),
-        track_all: args.history == History::All,
-        ..Options::default()
-    };
-    let edge_norm = match args.edge_norm {
-        None => None,
-        Some(EdgeNorm::Fixed) => Some(PNormExponent::FIXED),
-        // By default, the exponent of multilevel runs doubles as far as the tolerance requires.
-        Some(EdgeNorm::Continued) if doubles_anyway(&options) => None,
-        Some(EdgeNorm::Continued) => Some(PNormExponent::CONTINUED),
-    };
-    Options { edge_norm, ..options }
+    RunRequest::from(args).options(args.target.kind().default_metric(), Precision::Double)
 }
 
-/// Returns the method of a run. With `--method auto`, a setting that only one method has selects that method.
-fn method(args: &SmoothArgs) -> Method {
-    let derivatives = match args.derivatives {
-        DerivativesChoice::Analytic => Derivatives::Analytic,
-        DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
-    };
-    let paper = Paper { newton_steps: args.inner, derivatives };
-    let relaxed = Relaxed { omega: args.omega, ..Relaxed::default() };
-    match args.method {
-        MethodChoice::Multilevel => Method::Multilevel,
-        MethodChoice::Relaxed => Method::Relaxed(relaxed),
-        MethodChoice::Paper => Method::Paper(paper),
-        MethodChoice::Auto if relaxed != Relaxed::default() => Method::Relaxed(relaxed),
-        MethodChoice::Auto if paper != Paper::default() => Method::Paper(paper),
-        MethodChoice::Auto => Method::Auto,
+impl From<&SmoothArgs> for RunRequest {
+    fn from(args: &SmoothArgs) -> Self {
+        Self {
+            scheme: args.scheme.clone(),
+            method: match args.method {
+                MethodChoice::Auto => MethodName::Auto,
+                MethodChoice::Multilevel => MethodName::Multilevel,
+                MethodChoice::Relaxed => MethodName::Relaxed,
+                MethodChoice::Paper => MethodName::Paper,
+            },
+            omega: args.omega,
+            newton_steps: Some(args.inner),
+            derivatives: Some(match args.derivatives {
+                DerivativesChoice::Analytic => Derivatives::Analytic,
+                DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
+            }),
+            doubles_exponent: args.edge_norm.map(|norm| norm == EdgeNorm::Continued),
+            tolerance: Some(args.tolerance),
+            fraction: args.fraction,
+            desired: args.desired.map(Desired::value),
+            max_sweeps: Some(args.max_sweeps),
+            guard: match args.guard {
+                GuardChoice::ByMetric => Guard::ByMetric,
+                GuardChoice::Worst => Guard::Worst,
+            },
+            max_move: args.max_move,
+            keep_altitude: args.keep_altitude,
+            improve_worst: worst_by(&args.improving),
+            track_all: args.history == History::All,
+        }
     }
-}
-
-/// Returns whether the exponent of edge's p-norm doubles without `--edge-norm`.
-fn doubles_anyway(options: &Options) -> bool {
-    options.is_multilevel() && options.scheme.base() == Metric::Edge
 }
 
 /// Returns the measure of `--improve-worst`; `None` without the option.
@@ -344,10 +308,8 @@ mod tests {
             );
             assert_eq!(target.files().len(), 1, "{text}");
         }
-        let TargetRequest::Given { source, .. } = target(format!("{}:h", path("back.msh"))) else {
-            panic!()
-        };
-        let TargetSource::Background { mesh, data } = source else { panic!() };
+        let given = target(format!("{}:h", path("back.msh"))).given.unwrap();
+        let TargetSource::Background { mesh, data } = given.source else { panic!() };
         assert_eq!((mesh, data.as_str()), (folder.path().join("back.msh"), "h"));
     }
 }

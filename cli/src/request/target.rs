@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::{Metric, targets::Surface};
+use gpu_smooth::targets::Surface;
+use gpu_smooth_job::TargetKind;
 
 use crate::args::{Owner, SurfaceArg, SurfaceArgs, Target, TargetArgs, ZArg};
 
@@ -37,39 +38,21 @@ impl ThirdCoordinate {
 }
 
 /// The desired shape and size of elements.
-pub(crate) enum TargetRequest {
-    Equilateral,
-    /// The present sizes, or sizes and shapes, of the elements of the mesh.
-    Keep {
-        what: ElementProperty,
-        /// The number of rings of neighbors over which sizes and shapes are averaged.
-        rings: u32,
-        is_of_places: bool,
-    },
-    /// Sizes or tensors of a file or of point data.
-    Given {
-        what: TargetNumbers,
-        /// The text after `size=` or `metric=` on the command line.
-        text: String,
-        source: TargetSource,
-        is_of_places: bool,
-    },
+pub(crate) struct TargetRequest {
+    pub(crate) kind: TargetKind,
+    /// The number of rings of neighbors over which kept sizes and shapes are averaged; `None` for the usual number.
+    pub(crate) rings: Option<u32>,
+    /// Whether targets belong to places; `None` for the usual owner.
+    pub(crate) of_places: Option<bool>,
+    /// The source of sizes or tensors; `None` for other targets.
+    pub(crate) given: Option<GivenTargets>,
 }
 
-/// A property of the elements of a mesh that a target keeps.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ElementProperty {
-    Size,
-    Shape,
-}
-
-/// The quantity given for each vertex by the source of a target.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum TargetNumbers {
-    /// One length for each vertex.
-    Sizes,
-    /// A symmetric tensor for each vertex: xx, xy, yy.
-    Tensors,
+/// The source of given sizes or tensors.
+pub(crate) struct GivenTargets {
+    /// The text after `size=` or `metric=` on the command line.
+    pub(crate) text: String,
+    pub(crate) source: TargetSource,
 }
 
 /// The location of the numbers of targets.
@@ -84,45 +67,39 @@ pub(crate) enum TargetSource {
 
 impl From<&TargetArgs> for TargetRequest {
     fn from(args: &TargetArgs) -> Self {
-        let is_of_places = args.is_of_places();
-        let keep = |what| Self::Keep { what, rings: args.rings_of(what), is_of_places };
-        let given = |what, text: &String| {
-            let (text, source) = (text.clone(), TargetSource::of(text));
-            Self::Given { what, text, source, is_of_places }
-        };
-        match &args.target {
-            Target::Equilateral => Self::Equilateral,
-            Target::KeepSize => keep(ElementProperty::Size),
-            Target::KeepShape => keep(ElementProperty::Shape),
-            Target::Size { source } => given(TargetNumbers::Sizes, source),
-            Target::Metric { source } => given(TargetNumbers::Tensors, source),
-        }
+        let given = args.source();
+        let given = given
+            .map(|text| GivenTargets { text: text.to_owned(), source: TargetSource::of(text) });
+        let of_places = args.target_of.map(|owner| owner == Owner::Place);
+        Self { kind: args.kind(), rings: args.target_rings, of_places, given }
     }
 }
 
 impl TargetRequest {
-    /// Returns whether targets belong to places, and are evaluated again at the new positions of vertices.
+    /// Returns whether targets belong to places, and are evaluated again at the new positions of vertices. By default, targets
+    /// on a background mesh or view do.
     pub(crate) fn is_of_places(&self) -> bool {
-        match self {
-            Self::Equilateral => false,
-            Self::Keep { is_of_places, .. } | Self::Given { is_of_places, .. } => *is_of_places,
-        }
+        let is_of_mesh = |given: &GivenTargets| matches!(given.source, TargetSource::OfMesh(_));
+        let is_on_background = self.given.as_ref().is_some_and(|given| !is_of_mesh(given));
+        self.kind != TargetKind::Equilateral && self.of_places.unwrap_or(is_on_background)
+    }
+
+    /// Returns the number of rings of neighbors over which sizes or shapes are averaged; `None` if the target keeps neither.
+    pub(crate) fn rings(&self) -> Option<u32> {
+        self.kind.keeps().then(|| self.rings.unwrap_or(self.kind.default_rings()))
     }
 
     /// Returns the value of `--target` on the command line.
     pub(crate) fn name(&self) -> String {
-        match self {
-            Self::Equilateral => "equilateral".to_owned(),
-            Self::Keep { what: ElementProperty::Size, .. } => "keep-size".to_owned(),
-            Self::Keep { what: ElementProperty::Shape, .. } => "keep-shape".to_owned(),
-            Self::Given { what: TargetNumbers::Sizes, text, .. } => format!("size={text}"),
-            Self::Given { what: TargetNumbers::Tensors, text, .. } => format!("metric={text}"),
+        match &self.given {
+            Some(GivenTargets { text, .. }) => format!("{}={text}", self.kind.name()),
+            None => self.kind.name().to_owned(),
         }
     }
 
     /// Returns the existing files from which targets are read.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
-        let Self::Given { source, .. } = self else { return Vec::new() };
+        let Some(GivenTargets { source, .. }) = &self.given else { return Vec::new() };
         let files = match source {
             TargetSource::OfMesh(name) => vec![PathBuf::from(name)],
             TargetSource::Background { mesh, data } => vec![mesh.clone(), PathBuf::from(data)],
@@ -156,27 +133,15 @@ fn is_view(path: &Path) -> bool {
 }
 
 impl TargetArgs {
-    /// Returns the metric of a run without `--scheme`.
-    pub(crate) fn default_metric(&self) -> Metric {
+    /// Returns the kind of the target.
+    pub(crate) fn kind(&self) -> TargetKind {
         match self.target {
-            Target::KeepSize => Metric::Tmop94,
-            Target::Size { .. } => Metric::SoftSize,
-            Target::Equilateral | Target::KeepShape | Target::Metric { .. } => Metric::Imr,
+            Target::Equilateral => TargetKind::Equilateral,
+            Target::KeepSize => TargetKind::KeepSize,
+            Target::KeepShape => TargetKind::KeepShape,
+            Target::Size { .. } => TargetKind::Sizes,
+            Target::Metric { .. } => TargetKind::Tensors,
         }
-    }
-
-    /// Returns the number of rings of neighbors over which a kept property is averaged.
-    fn rings_of(&self, what: ElementProperty) -> u32 {
-        self.target_rings.unwrap_or(match what {
-            ElementProperty::Size => 0,
-            ElementProperty::Shape => 1,
-        })
-    }
-
-    /// Returns whether the target has sizes but no shapes. A metric that sees no sizes would ignore such a
-    /// target.
-    pub(crate) fn is_of_sizes(&self) -> bool {
-        matches!(self.target, Target::KeepSize | Target::Size { .. })
     }
 
     /// Returns the text after `size=` or `metric=`; `None` for other targets.
@@ -190,20 +155,5 @@ impl TargetArgs {
     /// Returns whether the source is an existing view of gmsh.
     pub(crate) fn has_view(&self) -> bool {
         self.source().is_some_and(|source| is_view(Path::new(source)))
-    }
-
-    /// Returns whether targets belong to places instead of vertices. By default, targets on a background
-    /// mesh or view do.
-    pub(crate) fn is_of_places(&self) -> bool {
-        let is_on_background = self
-            .source()
-            .is_some_and(|source| !matches!(TargetSource::of(source), TargetSource::OfMesh(_)));
-        let default = if is_on_background { Owner::Place } else { Owner::Vertex };
-        self.target != Target::Equilateral && self.target_of.unwrap_or(default) == Owner::Place
-    }
-
-    /// Returns whether the target keeps sizes or shapes of the mesh itself.
-    pub(crate) fn keeps(&self) -> bool {
-        matches!(self.target, Target::KeepSize | Target::KeepShape)
     }
 }

@@ -1,17 +1,14 @@
 //! Recovery of long runs: checkpoints, and the change of engine if a device fails.
 
-use std::cell::Cell;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
 
-use gpu_smooth::{Checkpoint, CheckpointError, CheckpointPolicy, GpuError, Stop};
-use mesh_io::atomic;
+use gpu_smooth::{Checkpoint, CheckpointError, CheckpointPolicy, GpuError};
+use gpu_smooth_job::{CheckpointFile, CheckpointWriter};
 
 use crate::error::CliError;
-use crate::request::{CheckpointPlan, is_checkpoint};
 use crate::run::engine;
 use crate::run::observer::PipelineObserver;
 
@@ -41,23 +38,17 @@ pub(crate) fn resumed(continue_from: Option<&Path>) -> Result<Option<Checkpoint>
 
 /// Saver of the checkpoints of a run, as `--checkpoint` and `--checkpoint-every` request.
 pub(crate) struct CheckpointSaver<'a, 'f> {
-    /// File and interval of checkpoints; `None` if none are saved.
-    plan: Option<&'a CheckpointPlan>,
+    writer: CheckpointWriter<'a>,
     follow: &'a Mutex<&'f mut dyn PipelineObserver>,
-    /// Time of the next checkpoint; `None` if no checkpoint will be saved.
-    due: Option<Instant>,
-    /// Whether the file holds a checkpoint of this run.
-    saved: Cell<bool>,
     told_of_fault: bool,
 }
 
 impl<'a, 'f> CheckpointSaver<'a, 'f> {
     pub(crate) fn new(
-        plan: Option<&'a CheckpointPlan>,
+        plan: Option<&'a CheckpointFile>,
         follow: &'a Mutex<&'f mut dyn PipelineObserver>,
     ) -> Self {
-        let due = plan.and_then(|plan| Instant::now().checked_add(plan.every));
-        Self { plan, follow, due, saved: Cell::new(false), told_of_fault: false }
+        Self { writer: CheckpointWriter::new(plan), follow, told_of_fault: false }
     }
 
     /// Passes a remark on to the user.
@@ -67,29 +58,21 @@ impl<'a, 'f> CheckpointSaver<'a, 'f> {
 
     /// Tells the user how to continue a canceled run, if a checkpoint was saved.
     pub(crate) fn left(&self) {
-        if let (true, Some(plan)) = (self.saved.get(), self.plan) {
-            let path = plan.file.display();
-            let text = format!("to continue the run, add --continue {path}");
-            self.remark(&text);
+        if let Some(path) = self.writer.saved() {
+            self.remark(&format!("to continue the run, add --continue {}", path.display()));
         }
     }
 }
 
 impl CheckpointPolicy for CheckpointSaver<'_, '_> {
     fn wants_checkpoint(&mut self, is_ending: bool) -> bool {
-        self.plan.is_some() && (is_ending || self.due.is_some_and(|due| Instant::now() >= due))
+        self.writer.is_due(is_ending)
     }
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) {
-        let Some(plan) = self.plan else { return };
-        match atomic::write(&plan.file, &checkpoint.to_bytes()) {
-            Ok(()) => self.saved.set(true),
-            Err(error) => {
-                let text = format!("no checkpoint was saved: {error}. The run goes on");
-                self.remark(&text);
-            }
+        if let Err(error) = self.writer.save(&checkpoint) {
+            self.remark(&format!("no checkpoint was saved: {error}. The run goes on"));
         }
-        self.due = Instant::now().checked_add(plan.every);
     }
 
     fn falls_back_to_cpu(&mut self, error: &GpuError, from: u32) -> bool {
@@ -104,15 +87,6 @@ impl CheckpointPolicy for CheckpointSaver<'_, '_> {
             self.remark(&text);
         }
         true
-    }
-}
-
-/// Removes the checkpoint of a run after its mesh is written, unless the run was canceled.
-pub(crate) fn clear(plan: Option<&CheckpointPlan>, stop: Stop) {
-    let Some(CheckpointPlan { file, .. }) = plan else { return };
-    if stop != Stop::Canceled && is_checkpoint(file) {
-        // A checkpoint that cannot be removed does no harm.
-        let _ = fs::remove_file(file);
     }
 }
 

@@ -5,9 +5,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use gpu_smooth::choice::{BackendChooser, Reason};
 use gpu_smooth::precision::Precision;
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, SmoothError};
+use gpu_smooth_job::EngineRequest;
 
 use crate::error::CliError;
-use crate::request::{EngineRequest, SmoothRequest};
+use crate::request::SmoothRequest;
 use crate::run::driver_probe::{self, Trial};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \

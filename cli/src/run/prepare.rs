@@ -6,12 +6,13 @@ use std::time::Instant;
 use gpu_smooth::layers::Layers;
 use gpu_smooth::targets::{Adaptation, Surface};
 use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
+use gpu_smooth_job::{TargetFacts, TargetKind};
 
 use crate::error::CliError;
-use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, SlidingVertices, TargetFacts};
+use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, SlidingVertices};
 use crate::load::{explain, remarks};
 use crate::report::Failure;
-use crate::request::{SmoothRequest, TargetRequest};
+use crate::request::SmoothRequest;
 use crate::run::engine::{self, OpenEngine};
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
@@ -121,14 +122,15 @@ pub(super) fn set_up<'a>(
     if let Some(remark) = explain::hanging(file, &hanging) {
         follow.remark(&remark);
     }
-    let TargetFacts { remark, size_weight } =
-        request.target.set(file, &mut smoother, points, surface, request.scheme().base())?;
+    let base = request.scheme().base();
+    let (TargetFacts { size_weight, .. }, remark) =
+        request.target.set(file, &mut smoother, surface, base)?;
     if let Some(remark) = remark {
         follow.remark(&remark);
     }
     // A metric of sizes is chosen to make sizes even.
     let is_of_shapes = request.scheme().base().is_scale_invariant();
-    let has_target = !matches!(request.target, TargetRequest::Equilateral);
+    let has_target = request.target.kind != TargetKind::Equilateral;
     if is_of_shapes && !has_target && mended.is_none() && request.max_sweeps() > 0 {
         let adaptation = Adaptation::of(smoother.topology(), points, surface)?;
         if let Some(remark) = remarks::adapted(adaptation) {
@@ -184,7 +186,7 @@ pub(super) fn refusal(
     }
     let refused = match error {
         MeshError::NothingFree { .. }
-            if request.slide.is_some() && file.interface_vertices().is_empty() =>
+            if request.slide.is_some() && file.domain.interface_vertices().is_empty() =>
         {
             let (path, error) = (file.source.path().display(), explain::nothing_free(file));
             CliError::input(format!(

@@ -7,7 +7,6 @@ use gpu_smooth::{Quality, measure::Change};
 use crate::error::CliError;
 use crate::load::{InterpolatedFields, streams};
 use crate::report::{Certificate, FileHash, SpacingReport, TargetReport};
-use crate::run::checkpoint;
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
 use crate::run::prepare::Ready;
@@ -83,7 +82,9 @@ pub(super) fn write(
         true => Some(certificate(input, ready, fields, hashes)?),
         false => None,
     };
-    checkpoint::clear(request.outputs.checkpoint.as_ref(), ran.outcome.stop);
+    if let Some(checkpoint) = &request.outputs.checkpoint {
+        checkpoint.clear(ran.outcome.stop);
+    }
     Ok(Written { certificate, at: Instant::now() })
 }
 

@@ -8,10 +8,11 @@ use std::time::Instant;
 use gpu_smooth::{
     Backend, Options, Outcome, Phase, Progress, SmoothError, Stop, Stopping, precision::Precision,
 };
+use gpu_smooth_job::EngineRequest;
 
 use crate::error::CliError;
 use crate::load::{LoadedMesh, MovableSelection, explain};
-use crate::request::{EngineRequest, SmoothRequest};
+use crate::request::SmoothRequest;
 use crate::run::checkpoint::CheckpointSaver;
 use crate::run::engine::{self, OpenEngine};
 use crate::run::input::Input;

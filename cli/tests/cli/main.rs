@@ -19,6 +19,7 @@ mod groups;
 mod html;
 mod interpolate;
 mod interrupt;
+mod jobs;
 mod killed;
 mod layers;
 mod long;

@@ -7,7 +7,7 @@ use std::fs;
 
 const NOTE: &str = "9 vertices between regions stay fixed (--free-interfaces lets them move)";
 
-fn folder(files: &support::regions::Files) -> Folder {
+pub(super) fn folder(files: &support::regions::Files) -> Folder {
     let folder = Folder::new(&[]);
     for (name, bytes) in files {
         fs::write(folder.path(name), bytes).unwrap();
@@ -16,7 +16,7 @@ fn folder(files: &support::regions::Files) -> Folder {
 }
 
 /// Returns the region of each triangle of the small mesh: `below` or `above` its middle row.
-fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
+pub(super) fn halves(mesh: &Mesh, [below, above]: [[i32; 2]; 2]) -> Vec<[i32; 2]> {
     let half = mesh.triangles.len() / 2;
     (0..mesh.triangles.len()).map(|t| if t < half { below } else { above }).collect()
 }
