@@ -3,7 +3,7 @@
 //! After a change, `UPDATE_DOCS=1 cargo test -p mesh-io --lib doc_tests` rewrites the tables.
 
 use super::tables;
-use super::targets::TARGETS;
+use super::targets::{TARGETS, Target, WriteFunction};
 use crate::compress::file::Compression;
 use crate::format::Format;
 use crate::registry::{FormatEntry, REGISTRY};
@@ -396,6 +396,46 @@ fn the_readme_names_every_format_that_meshes_are_converted_to() {
             [target.name, format.split(' ').next().unwrap()].map(|name| paragraph.contains(name));
         let name = target.name;
         assert!(has.contains(&true), "the paragraph **Conversion.** of README.md must name {name}");
+    }
+}
+
+/// Returns whether a row of a table is about a format, by the first word of the format's name and a file ending.
+fn is_about(row: &[&str], format: Format) -> bool {
+    let name = format.to_string();
+    let mut words = row[0].split(|c: char| !c.is_alphanumeric());
+    let has_ending = |ending: &&str| row[1].contains(&format!("`{ending}`"));
+    words.any(|word| name.split(' ').next() == Some(word))
+        && FormatEntry::of(format).extensions.iter().any(has_ending)
+}
+
+/// Returns the targets with the registry entry of a format.
+fn targets_of(format: Format) -> impl Iterator<Item = &'static Target> {
+    let name = FormatEntry::of(format).name;
+    TARGETS.iter().filter(move |target| FormatEntry::of(target.format).name == name)
+}
+
+#[test]
+fn the_tables_of_both_readme_files_state_which_formats_are_converted_to() {
+    for (name, mark) in [("README.md", "| **Formats.**"), ("mesh-io/README.md", "| format |")] {
+        let text = document(name);
+        let cells = |row| str::trim_matches(row, '|').split('|').map(str::trim).collect();
+        let rows: Vec<Vec<&str>> = part(&text, mark, "\n\n").lines().skip(2).map(cells).collect();
+        for format in Format::ALL {
+            let count = rows.iter().filter(|row| is_about(row, format)).count();
+            assert_eq!(count, 1, "the table of {name} needs one row for {format}");
+        }
+        for row in &rows {
+            let formats = || Format::ALL.into_iter().filter(|&format| is_about(row, format));
+            let is_target = |format| targets_of(format).next().is_some();
+            let has_binary = formats().flat_map(targets_of).any(|target| {
+                matches!(target.write, WriteFunction::Encoded { .. } | WriteFunction::Binary(_))
+            });
+            let column = *row.last().unwrap();
+            let place = format!("{name}, row {}: {column}", row[0]);
+            assert_eq!(column == "no", !formats().any(is_target), "{place}");
+            assert!(column != "yes" || formats().all(is_target), "{place}");
+            assert!(!column.contains("text") || column.contains("binary") == has_binary, "{place}");
+        }
     }
 }
 
