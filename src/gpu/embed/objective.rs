@@ -184,8 +184,35 @@ impl BoundObjective {
 mod tests {
     use std::mem::offset_of;
 
+    use wgpu::naga;
+
     use super::*;
     use crate::gpu::kernels::uniforms::{INVERTED, SLOTS, WORST};
+
+    /// Applications copy the WGSL struct in the comment of [`ObjectiveValues`] into their shaders.
+    #[test]
+    fn the_wgsl_struct_in_the_comment_of_objective_values_has_the_layout_of_the_struct() {
+        let comment = include_str!("objective.rs").split("/// ```").nth(1).unwrap();
+        let comment = comment.strip_prefix("wgsl\n").unwrap();
+        let wgsl: String = comment.lines().map(|line| line.trim_start_matches("///")).collect();
+        let module = naga::front::wgsl::parse_str(&wgsl).unwrap();
+        let structs = module.types.iter().filter_map(|(_, ty)| match &ty.inner {
+            naga::TypeInner::Struct { members, span } => Some((members, *span as usize)),
+            _ => None,
+        });
+        let [(members, size)] = structs.collect::<Vec<_>>()[..] else { panic!("{wgsl}") };
+        let named = members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize));
+        let expected = [
+            ("f", offset_of!(ObjectiveValues, f)),
+            ("inverted", offset_of!(ObjectiveValues, inverted)),
+            ("worst_imr", offset_of!(ObjectiveValues, worst_imr)),
+            ("stop", offset_of!(ObjectiveValues, stop)),
+            ("sweeps", offset_of!(ObjectiveValues, sweeps)),
+            ("worst_triangle", offset_of!(ObjectiveValues, worst_triangle)),
+        ];
+        assert_eq!(named.collect::<Vec<_>>(), expected);
+        assert_eq!(size, size_of::<ObjectiveValues>());
+    }
 
     #[test]
     fn objective_values_are_laid_out_as_the_slots_of_the_kernel() {
