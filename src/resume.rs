@@ -47,14 +47,38 @@ pub(crate) fn check(
     if own.mesh != about.mesh || !is_whole || !is_of_stages {
         return Err(foreign());
     }
-    let mut lines = own.options.lines().zip(about.options.lines());
-    match lines.find(|(now, then)| now != then) {
-        None if own.options == about.options => Ok(()),
-        None => Err(foreign()),
-        Some((now, then)) => Err(SmoothError::Checkpoint(format!(
-            "the run of the checkpoint has {then}, and this run has {now}: continue with the same options"
-        ))),
+    match difference(&about.options, &own.options) {
+        None => Ok(()),
+        Some(text) => Err(SmoothError::Checkpoint(text)),
     }
+}
+
+/// Returns the message on the first option in which a checkpoint differs from the run that continues. Both texts have a
+/// line `name = value` for each option. A checkpoint of another version of the library may have other options.
+fn difference(checkpoint: &str, run: &str) -> Option<String> {
+    fn name(line: &str) -> &str {
+        line.split(" = ").next().unwrap_or(line)
+    }
+    for now in run.lines() {
+        match checkpoint.lines().find(|then| name(then) == name(now)) {
+            Some(then) if then == now => {}
+            Some(then) => {
+                return Some(format!(
+                    "the run of the checkpoint has {then}, and this run has {now}: continue with the same options"
+                ));
+            }
+            None => {
+                return Some(format!(
+                    "the checkpoint lacks the option {}: continue with the version of gpu-smooth that wrote the checkpoint",
+                    name(now)
+                ));
+            }
+        }
+    }
+    let unknown = checkpoint.lines().find(|then| run.lines().all(|now| name(now) != name(then)))?;
+    Some(format!(
+        "the run of the checkpoint has {unknown}, an option that this version of gpu-smooth lacks: continue with the version that wrote the checkpoint"
+    ))
 }
 
 /// Returns the error for a checkpoint of another mesh.
@@ -271,6 +295,29 @@ mod tests {
         checkpoint.about.on_cpu_from = Some(checkpoint.saved.sweeps() + 1);
         let error = smoother.run(&options).resume(&checkpoint).block().unwrap_err();
         assert!(matches!(error, SmoothError::Checkpoint(_)), "{error}");
+    }
+
+    /// A checkpoint of another version of the library may have more options, fewer options or other values.
+    #[test]
+    fn the_error_on_other_options_in_a_checkpoint_names_the_option() {
+        let mesh = lattice(6);
+        let smoother = Smoother::new(&mesh).unwrap();
+        let mut kept = Latest::default();
+        let options = Options::default();
+        smoother.run(&options).checkpoints(&mut kept).block().unwrap();
+        let checkpoint = kept.0.unwrap();
+        let own = &checkpoint.about.options;
+        for (changed, part) in [
+            (format!("{own}\nsmoothness = 2"), "has smoothness = 2, an option that this version"),
+            (own.replace("guard = by-metric\n", ""), "lacks the option guard: "),
+            (own.replace("max sweeps = 1000", "max sweeps = 7"), "has max sweeps = 7, and this"),
+        ] {
+            let mut other = checkpoint.clone();
+            other.about.options = changed;
+            let error = smoother.run(&options).resume(&other).block().unwrap_err();
+            let SmoothError::Checkpoint(text) = error else { panic!("{error}") };
+            assert!(text.contains(part), "{part} is not in: {text}");
+        }
     }
 
     /// A policy that keeps the latest checkpoint.
