@@ -238,10 +238,9 @@ pub enum GpuError {
         most_triangles: usize,
     },
     /// The adapter's compiler reorders or drops operations that the kernels rely on, so results would be silently
-    /// wrong. `Gpu::check_arithmetic` detects the failure.
-    #[error(
-        "the adapter {adapter} cannot be used: {operation}. Use another adapter or the CPU (--engine cpu)"
-    )]
+    /// wrong. `Gpu::check_arithmetic` detects the failure. Take another adapter or
+    /// [`Backend::Cpu`](crate::Backend::Cpu).
+    #[error("the adapter {adapter} cannot be used: {operation}")]
     Arithmetic {
         /// The adapter.
         adapter: String,

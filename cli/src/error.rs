@@ -215,7 +215,13 @@ impl From<MeshError> for CliError {
 
 impl From<GpuError> for CliError {
     fn from(error: GpuError) -> Self {
-        Self::device(error.to_string())
+        let told = Self::device(error.to_string());
+        match error {
+            GpuError::Arithmetic { .. } => {
+                told.with_remedy("Use another adapter or the CPU (--engine cpu)")
+            }
+            _ => told,
+        }
     }
 }
 
@@ -255,6 +261,15 @@ mod tests {
         let text = error.to_string();
         let error = CliError::from(error);
         assert_eq!((error.kind, error.to_string()), (ErrorKind::Output, text));
+    }
+
+    #[test]
+    fn an_adapter_that_drops_digits_is_refused_with_the_option_for_the_cpu() {
+        let error = GpuError::Arithmetic { adapter: "Card".into(), operation: "digits are lost" };
+        let line = "the adapter Card cannot be used: digits are lost. Use another adapter or the CPU (--engine cpu)";
+        for error in [CliError::from(error.clone()), SmoothError::Gpu(error).into()] {
+            assert_eq!((error.kind, error.headline().as_str()), (ErrorKind::Device, line));
+        }
     }
 
     #[test]

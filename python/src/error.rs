@@ -70,20 +70,15 @@ pub(crate) fn of_run(py: Python<'_>, error: &SmoothError) -> PyErr {
 
 /// Returns the exception of a device, with advice.
 pub(crate) fn of_gpu(py: Python<'_>, error: &GpuError) -> PyErr {
-    let text = error.to_string();
-    let has_advice = text.contains("--engine cpu");
-    let text = text.replace("--engine cpu", "engine=\"cpu\"");
-    match (error, has_advice) {
-        (_, true) => device(py, &text),
-        (GpuError::NoAdapter { .. }, _) => device(
-            py,
-            &format!(
-                "engine: {text}. Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` brings one \
-                 that needs no graphics card), or pass engine=\"cpu\""
-            ),
-        ),
-        _ => device(py, &format!("engine: {text}. Pass engine=\"cpu\" to compute on the CPU")),
-    }
+    let remedy = match error {
+        GpuError::NoAdapter { .. } => {
+            "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` brings one that needs no \
+             graphics card), or pass engine=\"cpu\""
+        }
+        GpuError::Arithmetic { .. } => "Use another adapter or the CPU (engine=\"cpu\")",
+        _ => "Pass engine=\"cpu\" to compute on the CPU",
+    };
+    device(py, &format!("engine: {error}. {remedy}"))
 }
 
 /// Returns the exception of options that the library refuses, with the names of Python's arguments.

@@ -265,6 +265,23 @@ fn only_the_gpu_modules_name_wgpu() {
     }
 }
 
+/// The command line and Python add advice in their own words: a program in Rust has no options such as `--engine`.
+#[test]
+fn no_message_of_the_library_names_an_option_of_the_command_line() {
+    let mut files = Vec::new();
+    ["src", "job/src"].iter().for_each(|source| rust_files(&root().join(source), &mut files));
+    assert!(files.len() > 100, "only {} files: the test looks in the wrong place", files.len());
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
+            let mut ends = line.split("--").skip(1);
+            let is_option = ends.any(|end| end.starts_with(|c: char| c.is_ascii_lowercase()));
+            assert!(!is_option, "{}: {line}", file.display());
+        }
+    }
+}
+
 /// The clock of the standard library compiles for browsers, but panics there.
 #[test]
 fn only_the_command_asks_the_clock_of_the_standard_library() {
