@@ -73,6 +73,17 @@ mod tests {
     }
 
     #[test]
+    fn the_documentation_of_encoded_sweeps_names_every_option_that_they_refuse() {
+        let text = include_str!("../gpu/embed/sweeps.rs");
+        let comment =
+            text.split("impl Sweeps {").nth(1).unwrap().split("pub fn new(").next().unwrap();
+        for row in CONFLICTS.iter().filter(|row| row.features[0] == Feature::Encoded) {
+            let option = row.features[1];
+            assert!(comment.contains(&format!("{option}`]")), "Sweeps::new refuses {option}");
+        }
+    }
+
+    #[test]
     fn every_feature_but_those_that_go_with_all_is_in_a_row() {
         for feature in Feature::ALL {
             let is_listed = CONFLICTS.iter().any(|row| row.features.contains(&feature));

@@ -49,8 +49,12 @@ struct SelfStopping {
 impl Sweeps {
     /// Binds the scheme, relaxation and derivatives of `options` to a mesh.
     ///
-    /// The stop rule and the goal of `options` have no effect. Metrics without a barrier (RMS, EDGE, AREA) leave no
-    /// triangle with an inverse mean ratio above 30, unless the patch already had a larger ratio.
+    /// The sweeps have no stop rule, so the tolerance and the largest number of sweeps have no effect. Options of whole
+    /// runs alone are refused: [`Stopping::Goal`](crate::Stopping::Goal), [`Guard::Worst`](crate::Guard::Worst),
+    /// [`Options::max_move`], [`Options::keep_altitude`] and [`Options::improve_worst`].
+    ///
+    /// Metrics without a barrier ([`Metric::has_barrier`](crate::Metric::has_barrier)) leave no triangle with an inverse
+    /// mean ratio above 30, unless the patch already had a larger ratio.
     ///
     /// With [`Method::Multilevel`], a correction from coarser levels follows each sweep. A large mesh is near its
     /// optimum after a dozen corrected sweeps instead of hundreds of sweeps alone. A corrected sweep takes as long as
@@ -69,9 +73,10 @@ impl Sweeps {
     /// this function.
     ///
     /// # Errors
-    /// [`SmoothError::Option`] for an option out of range, or a scheme whose corrections cannot be encoded;
-    /// [`GpuError::Limit`] if the levels are too large for the device; [`GpuError::WouldBlock`] for corrected sweeps in
-    /// a browser, where [`new_async`](Self::new_async) makes them; another [`GpuError`] if the device fails.
+    /// [`SmoothError::Option`] for an option out of range, an option of whole runs alone, or a scheme whose corrections
+    /// cannot be encoded; [`GpuError::Limit`] if the levels are too large for the device; [`GpuError::WouldBlock`] for
+    /// corrected sweeps in a browser, where [`new_async`](Self::new_async) makes them; another [`GpuError`] if the device
+    /// fails.
     pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
         blocking(Self::by(mesh, options, Ending::Never, Waiting::Block))
     }
