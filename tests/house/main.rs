@@ -3,6 +3,7 @@
 mod dependencies;
 
 use dependencies::{Uses, by_folder, circles};
+use gpu_smooth::Metric;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,6 +12,18 @@ use std::sync::OnceLock;
 
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
+
+/// Returns the text of a file of the repository.
+fn text_of(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap().replace("\r\n", "\n")
+}
+
+/// Returns the text of a file of the repository as one line, without the marks of comments.
+fn one_line(path: &str) -> String {
+    let text = text_of(path);
+    let words = text.split_whitespace().filter(|word| !["//!", "///", "//", "#"].contains(word));
+    words.collect::<Vec<_>>().join(" ")
 }
 
 fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
@@ -334,4 +347,18 @@ fn no_dependency_needs_a_newer_rust_than_the_package_promises() {
         }
     }
     assert!(told > 20);
+}
+
+/// A list of metrics in a comment lacks each new metric. A property of `Metric` holds for all metrics.
+#[test]
+fn the_documentation_of_a_mesh_on_a_device_lists_no_metrics() {
+    let text = text_of("src/gpu/embed/mesh.rs");
+    let before = text.split("pub struct DeviceMesh").next().unwrap();
+    let comment = before.rsplit("\n\n").next().unwrap();
+    assert!(comment.contains("Metric::is_scale_invariant"), "{comment}");
+    let words: Vec<&str> = comment.split(|c: char| !c.is_alphanumeric() && c != '-').collect();
+    for metric in Metric::ALL {
+        let name = metric.name().to_uppercase();
+        assert!(!words.contains(&name.as_str()), "{name} is in: {comment}");
+    }
 }

@@ -39,8 +39,9 @@ use crate::targets::Targets;
 /// Positions are stored with 48 bits per coordinate. Except in a browser, any thread may call the methods, and objects
 /// that are bound to the mesh may outlive the `DeviceMesh`.
 ///
-/// AREA, RMS and SHAPE-SIZE compare triangles with their mean area at upload. If the application scales the whole mesh,
-/// IMR, AR and EDGE suit better.
+/// Metrics of size compare triangles with their mean area at upload. If the application scales the whole mesh, take a
+/// metric that is independent of size ([`Metric::is_scale_invariant`](crate::Metric::is_scale_invariant)), such as the
+/// default.
 pub struct DeviceMesh {
     pub(crate) gpu: Gpu,
     pub(crate) problem: Problem,
