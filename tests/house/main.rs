@@ -362,3 +362,25 @@ fn the_documentation_of_a_mesh_on_a_device_lists_no_metrics() {
         assert!(!words.contains(&name.as_str()), "{name} is in: {comment}");
     }
 }
+
+/// Returns the dependencies in a manifest, as pairs of name and requirement.
+fn dependencies_in(manifest: &str) -> BTreeMap<String, String> {
+    let text = text_of(manifest);
+    let lines = text.lines().skip_while(|line| *line != "[dependencies]").skip(1);
+    let lines = lines.take_while(|line| !line.starts_with('['));
+    let pairs = lines.filter_map(|line| line.split_once(" = "));
+    pairs.map(|(name, requirement)| (name.to_owned(), requirement.to_owned())).collect()
+}
+
+/// The fuzz target `arguments` is built from the sources of the command line, in a workspace that no other check builds.
+#[test]
+fn the_fuzz_targets_have_the_dependencies_of_the_command_line() {
+    let of_targets = dependencies_in("fuzz/Cargo.toml");
+    let of_program = dependencies_in("cli/Cargo.toml");
+    assert!(of_program.len() > 15, "{of_program:?}");
+    for (name, requirement) in of_program {
+        let found = of_targets.get(&name);
+        let is_equal = requirement.contains("path = ") || found == Some(&requirement);
+        assert!(found.is_some() && is_equal, "fuzz/Cargo.toml needs {name} = {requirement}");
+    }
+}
