@@ -9,9 +9,9 @@ pub enum Method {
     #[default]
     Auto,
     /// Sweeps alone at first. Once sweeps gain little, each sweep is followed by a correction from coarser levels.
-    /// About 15 sweeps bring f within 1e-6 of its limit, for meshes of any size. If the scheme has several metrics,
-    /// only the sweeps alone alternate between them. Sweeps with corrections use the base metric, so that the run ends
-    /// at the optimum of the base metric.
+    /// The number of sweeps until f is within 1e-6 of its limit hardly depends on the size of the mesh; docs/guide.md has
+    /// the numbers. If the scheme has several metrics, only the sweeps alone alternate between them. Sweeps with
+    /// corrections use the base metric, so that the run ends at the optimum of the base metric.
     ///
     /// Needs a base metric that [supports corrections](crate::Metric::supports_multilevel) (all but area). Sweeps that
     /// an application encodes with this method are corrected from the first sweep on; they need a single metric other

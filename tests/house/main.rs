@@ -384,3 +384,18 @@ fn the_fuzz_targets_have_the_dependencies_of_the_command_line() {
         assert!(found.is_some() && is_equal, "fuzz/Cargo.toml needs {name} = {requirement}");
     }
 }
+
+#[test]
+fn the_number_of_sweeps_of_most_meshes_is_the_same_in_the_readme_and_in_the_guide() {
+    let guide = text_of("docs/guide.md");
+    let row = guide.lines().find(|line| line.starts_with("| most meshes, of any size |")).unwrap();
+    let count = row.split('|').nth(2).unwrap().trim();
+    let sentence = format!("within 1e-6 of its limit after {count} sweeps");
+    assert!(one_line("README.md").contains(&sentence), "README.md lacks: {sentence}");
+    // Comments refer to the guide instead.
+    let comments = one_line("src/options/method.rs");
+    let words: Vec<&str> = comments.split(' ').collect();
+    let counts = words.windows(2).filter(|pair| pair[0].parse::<u32>().is_ok());
+    let counts: Vec<_> = counts.filter(|pair| pair[1].starts_with("sweeps")).collect();
+    assert!(counts.is_empty(), "src/options/method.rs counts sweeps: {counts:?}");
+}
