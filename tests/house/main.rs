@@ -399,3 +399,11 @@ fn the_number_of_sweeps_of_most_meshes_is_the_same_in_the_readme_and_in_the_guid
     let counts: Vec<_> = counts.filter(|pair| pair[1].starts_with("sweeps")).collect();
     assert!(counts.is_empty(), "src/options/method.rs counts sweeps: {counts:?}");
 }
+
+#[test]
+fn the_document_on_browsers_says_whether_the_module_reads_files() {
+    let has_readers = dependencies_in("examples/browser/Cargo.toml").contains_key("mesh-io");
+    let text = one_line("docs/embedding.md");
+    assert_eq!(text.contains("The module contains no readers of files"), !has_readers);
+    assert_eq!(text.contains("readers of files included"), has_readers);
+}
