@@ -407,3 +407,15 @@ fn the_document_on_browsers_says_whether_the_module_reads_files() {
     assert_eq!(text.contains("The module contains no readers of files"), !has_readers);
     assert_eq!(text.contains("readers of files included"), has_readers);
 }
+
+/// Elsewhere, executors look at timers and sockets between polls. In a browser, microtasks run before the page draws.
+#[test]
+fn the_document_on_embedding_says_that_the_pauses_of_runs_do_not_free_a_page() {
+    let text = one_line("docs/embedding.md");
+    for part in [
+        "`Backend::Cpu` has the same pauses, which do not help in a [browser]",
+        "block the page. The pauses of an awaited run do not free the page:",
+    ] {
+        assert!(text.contains(part), "docs/embedding.md lacks: {part}");
+    }
+}
