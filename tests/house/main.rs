@@ -419,3 +419,22 @@ fn the_document_on_embedding_says_that_the_pauses_of_runs_do_not_free_a_page() {
         assert!(text.contains(part), "docs/embedding.md lacks: {part}");
     }
 }
+
+#[test]
+fn documents_name_the_files_that_write_several_formats() {
+    let folder = root().join("mesh-io/src/formats");
+    let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
+    let mut shared: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+    shared.retain(|name| name.starts_with("write"));
+    assert!(!shared.is_empty(), "the test looks in the wrong place");
+    let of_medit = fs::read_to_string(folder.join("medit/write.rs")).unwrap();
+    if of_medit.contains("fn write_freefem(") {
+        shared.push("medit/write.rs".to_owned());
+    }
+    for document in ["CONTRIBUTING.md", "docs/design.md"] {
+        let text = text_of(document);
+        for name in &shared {
+            assert!(text.contains(&format!("`{name}`")), "{document} must name {name}");
+        }
+    }
+}
