@@ -1,6 +1,6 @@
-//! Moves the interior vertices of 2D triangle meshes until the elements are as good as they can be,
-//! without ever inverting one. It sweeps over the vertices, one color at a time, with feasible Newton
-//! steps, in wgpu compute shaders or on the CPU.
+//! Moves the interior vertices of 2D triangle meshes so that their triangles get better shapes, and never
+//! inverts a triangle. Sweeps visit the vertices, one color at a time, with feasible Newton steps, in wgpu
+//! compute shaders or on the CPU.
 //!
 //! The method is that of J. Park and S. M. Shontz, *An Alternating Mesh Quality Metric Scheme for
 //! Efficient Mesh Quality Improvement*, Procedia Computer Science 4 (2011) 292-301: the objective

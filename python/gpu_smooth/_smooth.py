@@ -116,7 +116,7 @@ def smooth(points: Array, triangles: Array, **options: Unpack[SmoothOptions]) ->
 @overload
 def smooth(points: Mesh, triangles: None = None, **options: Unpack[SmoothOptions]) -> Mesh: ...
 def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
-    """Move the interior vertices of a mesh until its triangles have the best shapes, and return the new points.
+    """Move the interior vertices of a mesh so that its triangles get better shapes, and return the new points.
 
     No triangle is ever inverted. The boundary stays unless `slide` is set. Arrays are not changed.
 

@@ -438,3 +438,23 @@ fn documents_name_the_files_that_write_several_formats() {
         }
     }
 }
+
+/// A run ends at a local optimum. Descriptions must not promise the best shapes.
+#[test]
+fn every_description_of_the_smoother_promises_better_shapes() {
+    for path in [
+        "README.md",
+        "Cargo.toml",
+        "src/lib.rs",
+        "python/pyproject.toml",
+        "python/README.md",
+        "python/gpu_smooth/__init__.py",
+        "python/gpu_smooth/_smooth.py",
+    ] {
+        let text = one_line(path);
+        let promise = text.split_once("the interior vertices of").map(|(_, rest)| rest);
+        let promise = promise.and_then(|rest| rest.split('.').next());
+        let is_better = promise.is_some_and(|words| words.contains("triangles get better shapes"));
+        assert!(is_better, "{path}: {promise:?}");
+    }
+}
