@@ -1,4 +1,4 @@
-//! The examples run, and show the results that their comments promise.
+//! The examples run, and show the results that their comments promise. The code of README.md compiles.
 
 #[allow(dead_code)]
 #[path = "../examples/embed/main.rs"]
@@ -15,6 +15,83 @@ mod outside;
 use std::path::Path;
 
 use gpu_smooth::Metric;
+
+/// The code of README.md, each part in a function that provides its variables. The code is compiled, and not run.
+#[allow(dead_code)]
+mod readme {
+    use std::path::Path;
+
+    use gpu_smooth::gpu::{DeviceMesh, Sweeps, VertexBuffer};
+    use gpu_smooth::{Backend, Gpu, Mesh, Options, Outcome, Smoother, wgpu};
+    use gpu_smooth_job::Job;
+    use mesh_io::MeshFile;
+
+    type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+    fn smooth_a_file() -> Result<()> {
+        let file = MeshFile::read(Path::new("in.bdf"))?;
+        let smoothed = Job::of_file(&file)?.smooth(&Options::default(), &Backend::Cpu)?;
+        smoothed.write(Path::new("out.bdf"))?;
+
+        Ok(())
+    }
+
+    fn smooth_slices(points: Vec<[f64; 2]>, triangles: Vec<[u32; 3]>) -> Result<Vec<[f64; 2]>> {
+        // 1. One blocking call on plain slices. Backend::auto chooses between CPU and GPU.
+        let points = gpu_smooth::smooth(&points, &triangles, &Options::default(), &Backend::Cpu)?;
+
+        Ok(points)
+    }
+
+    async fn await_a_run(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        mesh: Mesh,
+        options: Options,
+    ) -> Result<Outcome> {
+        // 2. On your own wgpu device, awaited; your application polls the device as it draws.
+        let gpu = Gpu::new(device.clone(), queue.clone())?;
+        let outcome = Smoother::new(&mesh)?.run(&options).on(&Backend::Gpu(gpu)).await?;
+
+        Ok(outcome)
+    }
+
+    fn encode_sweeps(
+        gpu: Gpu,
+        mesh: Mesh,
+        options: Options,
+        vertex_buffer: wgpu::Buffer,
+        mut encoder: wgpu::CommandEncoder,
+    ) -> Result<()> {
+        // 3. Into your own encoder and vertex buffer: nothing is submitted, nothing leaves the GPU.
+        let on_device = DeviceMesh::new(&gpu, &mesh)?;
+        let vertices = on_device.bind_vertices(&VertexBuffer::new(&vertex_buffer, 12))?;
+        let mut sweeps = Sweeps::new(&on_device, &options)?;
+        // and in each frame
+        vertices.encode_import(&mut encoder);
+        sweeps.encode_sweeps(&mut encoder, 5);
+        vertices.encode_export(&mut encoder);
+
+        Ok(())
+    }
+}
+
+#[test]
+fn the_rust_code_of_the_readme_is_compiled() {
+    let trimmed = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join("\n");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
+    let readme = trimmed(&std::fs::read_to_string(path).unwrap());
+    let source = trimmed(include_str!("examples.rs"));
+    let blocks = readme.split("```rust\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    let parts: Vec<&str> = blocks.flat_map(|block| block.trim().split("\n\n")).collect();
+    assert!(parts.len() >= 4, "{parts:?}");
+    for part in parts {
+        assert!(
+            source.contains(part),
+            "tests/examples.rs must have this code of README.md:\n{part}"
+        );
+    }
+}
 
 /// Returns the perceived brightness of a pixel, from 0 to 255.
 fn luminance([red, green, blue, _]: [u8; 4]) -> f64 {
