@@ -458,3 +458,17 @@ fn every_description_of_the_smoother_promises_better_shapes() {
         assert!(is_better, "{path}: {promise:?}");
     }
 }
+
+/// `MeshFile::constraints` lacks the vertices between regions, which a `Job` keeps.
+#[test]
+fn examples_smooth_files_by_a_job() {
+    let mut files = Vec::new();
+    rust_files(&root().join("examples"), &mut files);
+    let reads_files = |text: &String| text.contains("MeshFile::read");
+    let texts = files.iter().map(|file| fs::read_to_string(file).unwrap());
+    let texts: Vec<String> = texts.filter(reads_files).collect();
+    assert!(!texts.is_empty(), "no example reads a file");
+    for text in texts {
+        assert!(text.contains("Job::of_file") && !text.contains(".constraints()"), "{text}");
+    }
+}
