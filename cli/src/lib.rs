@@ -1,5 +1,5 @@
 //! The command line `gpu-smooth` as a function, for the program of this crate and for the Python package, which runs the
-//! command line in its own process.
+//! command line in its own process and draws with the same colors.
 //!
 //! With `--cfg fuzzing` it is a target of cargo-fuzz instead (`fuzz/Cargo.toml`), which tries command lines.
 
@@ -7,6 +7,7 @@
 #![cfg_attr(fuzzing, allow(dead_code))]
 
 mod args;
+mod color_scale;
 mod commands;
 mod error;
 mod kept_layers;
@@ -30,6 +31,12 @@ use terminal::{Verbosity, interrupt, panics, process, tell};
 
 #[cfg(fuzzing)]
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| request::checks::any_line(bytes));
+
+/// The colors of pictures, which the Python package shares.
+pub mod colors {
+    pub use crate::color_scale::ColorScale;
+    pub use crate::render::picture::{BAD, VIRIDIS};
+}
 
 /// Runs the command line `words`, whose first word is the name of the program, and returns the exit code for the process.
 ///

@@ -58,14 +58,23 @@ pub(crate) fn kept_layers(text: &str) -> Result<KeptLayers, String> {
     }
 }
 
+/// Parses finite numbers with commas between them; `None` if the text is not `N` such numbers.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let finite = |x: &str| x.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    text.split(',').map(finite).collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+/// Parses two finite numbers, as in `0.5,1`.
+pub(crate) fn two_numbers(text: &str) -> Result<[f64; 2], String> {
+    numbers(text)
+        .ok_or_else(|| "two numbers with a comma between them are needed, as in 0.5,1".into())
+}
+
 /// Parses two opposite corners of a box, as in `0,0,1,1`. All four numbers must be finite.
 pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 2], String> {
-    let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[x0, y0, x1, y1]) if [x0, y0, x1, y1].iter().all(|x| x.is_finite()) => {
-            Ok([[x0, y0], [x1, y1]])
-        }
-        _ => Err("four numbers with commas between them are needed".into()),
+    match numbers(text) {
+        Some([x0, y0, x1, y1]) => Ok([[x0, y0], [x1, y1]]),
+        None => Err("four numbers with commas between them are needed".into()),
     }
 }
 

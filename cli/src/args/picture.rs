@@ -23,6 +23,17 @@ pub(crate) struct PictureArgs {
         help_heading = "Picture"
     )]
     pub(crate) picture_measure: Measure,
+    /// The values of the measure between which the colors change, on a page too. Values beyond have the color of the nearer
+    /// end. The default depends on the measure, and is 0.5,1 for shape (see docs/quality.md)
+    #[arg(
+        long,
+        value_name = "LOW,HIGH",
+        requires = "drawing",
+        help_heading = "Picture",
+        value_parser = parse::two_numbers,
+        allow_hyphen_values = true
+    )]
+    pub(crate) picture_range: Option<[f64; 2]>,
     /// The width of the picture in pixels
     #[arg(
         long,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use gpu_smooth::measure::{Better, Measure};
 
 use crate::args::PictureArgs;
@@ -13,6 +13,7 @@ use crate::args::names;
 
 // Arrows need a run. The option is accepted here only for the message that says so.
 #[derive(Args)]
+#[command(group = ArgGroup::new("drawing").args(["picture", "html"]).multiple(true))]
 #[command(mut_arg("picture_arrows", |arrows| arrows.hide(true)))]
 pub(crate) struct QualityArgs {
     /// The meshes; several are shown side by side

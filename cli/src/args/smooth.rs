@@ -13,6 +13,7 @@ use crate::args::{
 use crate::args::{names, parse};
 
 #[derive(Args)]
+#[command(group = ArgGroup::new("drawing").args(["picture", "html"]).multiple(true))]
 #[command(group = ArgGroup::new("kept").args(["checkpoint", "continued"]).multiple(true))]
 pub(crate) struct SmoothArgs {
     /// Mesh to read; the format is detected from its content. It may be compressed by gzip or zstd; - reads standard

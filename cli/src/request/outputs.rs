@@ -4,13 +4,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::Checkpoint;
+use gpu_smooth::{Checkpoint, measure::Measure};
 use gpu_smooth_job::CheckpointFile;
 use mesh_io::{Format, atomic};
 
 use crate::args::{PictureArgs, SmoothArgs};
+use crate::color_scale::ColorScale;
 use crate::error::{CliError, ErrorKind};
-use crate::request::picture::PictureRequest;
+use crate::request::picture::{self, PictureRequest};
 use crate::request::target::TargetRequest;
 
 /// How a command writes its mesh, which decides what the mesh may replace.
@@ -44,6 +45,8 @@ pub(crate) struct Outputs {
     pub(crate) picture: Option<PictureRequest>,
     /// The page for a browser.
     pub(crate) page: Option<PathBuf>,
+    /// The scale of colors in the picture, and on the page by the same measure.
+    pub(crate) colors: ColorScale,
     pub(crate) checkpoint: Option<CheckpointFile>,
     /// Files that are read besides meshes, such as lists of vertices and sources of targets. No output may replace
     /// them.
@@ -61,6 +64,7 @@ impl Outputs {
             report: None,
             picture: None,
             page: None,
+            colors: ColorScale::usual(Measure::Shape),
             checkpoint: None,
             inputs: Vec::new(),
             continued: None,
@@ -70,9 +74,11 @@ impl Outputs {
     /// Returns the outputs of a run on one mesh or several meshes.
     ///
     /// # Errors
-    /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`.
+    /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`, or if `--picture-range` is not in
+    /// the range of the measure.
     pub(crate) fn of_run(args: &SmoothArgs) -> Result<Self, CliError> {
         let (checkpoint, continued) = (args.checkpoint.clone(), args.continued.clone());
+        let colors = picture::colors(&args.picture)?;
         let mut inputs = args.moving.fix_vertices.clone();
         inputs.extend(TargetRequest::from(&args.target).files());
         Ok(Self {
@@ -83,8 +89,9 @@ impl Outputs {
             // With `--resume`, files in the directory are results of earlier runs.
             replaces_any: args.force || args.resume,
             report: args.report.clone(),
-            picture: PictureRequest::of(&args.picture)?,
+            picture: PictureRequest::of(&args.picture, colors)?,
             page: args.html.clone(),
+            colors,
             checkpoint: CheckpointFile::of(checkpoint, continued, Some(args.checkpoint_every)),
             inputs,
             continued: args.continued.clone(),
@@ -94,13 +101,15 @@ impl Outputs {
     /// Returns the outputs of a command that draws a picture and writes a page, but no mesh.
     ///
     /// # Errors
-    /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`.
+    /// A usage error if the extension of the picture's path is neither `.png` nor `.svg`, or if `--picture-range` is not in
+    /// the range of the measure.
     pub(crate) fn of_drawings(
         args: &PictureArgs,
         page: Option<&PathBuf>,
     ) -> Result<Self, CliError> {
-        let (picture, page) = (PictureRequest::of(args)?, page.cloned());
-        Ok(Self { picture, page, ..Self::of_mesh(MeshOutput::None) })
+        let colors = picture::colors(args)?;
+        let (picture, page) = (PictureRequest::of(args, colors)?, page.cloned());
+        Ok(Self { picture, page, colors, ..Self::of_mesh(MeshOutput::None) })
     }
 
     /// Returns the paths of the files that a run writes beside its mesh.

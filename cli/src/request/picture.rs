@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::measure::Measure;
-
 use crate::args::PictureArgs;
+use crate::color_scale::ColorScale;
 use crate::error::CliError;
 
 /// The format of a picture.
@@ -18,8 +17,7 @@ pub(crate) enum PictureFormat {
 pub(crate) struct PictureRequest {
     pub(crate) path: PathBuf,
     pub(crate) format: PictureFormat,
-    /// The measure that colors show.
-    pub(crate) measure: Measure,
+    pub(crate) colors: ColorScale,
     /// The width in pixels.
     pub(crate) width: u32,
     /// Opposite corners of the drawn part; `None` for the whole mesh.
@@ -33,12 +31,12 @@ impl PictureRequest {
     ///
     /// # Errors
     /// A usage error if the extension of the path is neither `.png` nor `.svg`.
-    pub(super) fn of(args: &PictureArgs) -> Result<Option<Self>, CliError> {
+    pub(super) fn of(args: &PictureArgs, colors: ColorScale) -> Result<Option<Self>, CliError> {
         let Some(path) = &args.picture else { return Ok(None) };
         Ok(Some(Self {
             path: path.clone(),
             format: format(path)?,
-            measure: args.picture_measure,
+            colors,
             width: args.picture_size,
             part: args.picture_box,
             with_arrows: args.picture_arrows,
@@ -60,6 +58,21 @@ impl PictureRequest {
                 .with_remedy("Give two opposite corners in coordinates of the mesh")),
         }
     }
+}
+
+/// Returns the scale of colors in a picture, and on a page by the same measure.
+///
+/// # Errors
+/// A usage error if `--picture-range` is not in the range of the measure.
+pub(super) fn colors(args: &PictureArgs) -> Result<ColorScale, CliError> {
+    let (measure, usual) = (args.picture_measure, ColorScale::usual(args.picture_measure));
+    let Some(range) = args.picture_range else { return Ok(usual) };
+    ColorScale::new(measure, range).map_err(|problem| {
+        let [low, high] = usual.range();
+        CliError::usage(format!("--picture-range: {problem}")).with_remedy(format!(
+            "Give two values of {measure}, as in --picture-range {low},{high}"
+        ))
+    })
 }
 
 fn format(path: &Path) -> Result<PictureFormat, CliError> {

@@ -13,6 +13,11 @@ pub(crate) fn sig6(x: f64) -> String {
     }
 }
 
+/// Formats a number with the digits of single precision, which hides rounding errors of double precision.
+pub(crate) fn short(number: f64) -> String {
+    (number as f32).to_string()
+}
+
 /// Formats a number with two significant digits or as an integer, without an exponent from 1e-4 to 1e6.
 pub(crate) fn rough(x: f64) -> String {
     match x.abs() {

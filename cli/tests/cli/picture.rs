@@ -161,6 +161,55 @@ fn an_svg_has_every_triangle() {
     assert_holds(&text, &["width=\"800\""]);
 }
 
+#[test]
+fn colors_change_within_a_range_that_pictures_and_pages_state() {
+    let folder = small();
+    let drawn = |options: &str| {
+        let line = "in out --engine cpu -q --force --picture p.svg --html p.html";
+        folder.line(&format!("{line} {options}")).clean();
+        [folder.text("p.svg"), folder.text("p.html")]
+    };
+    let [svg, page] = drawn("");
+    assert_holds(&svg, &[">≤ 0.5</text>", ">1</text>", ">in, before</text>", ">in, after</text>"]);
+    assert_holds(&page, &[r#""ends":[0.5,1.0]"#, r#""ends":[30.0,60.0]"#, "≤ 0.5"]);
+    let [svg, page] = drawn("--picture-range 0.6,0.9");
+    assert_holds(&svg, &[">≤ 0.6</text>", ">≥ 0.9</text>"]);
+    // The range is that of one measure. The page has default ranges of its other measures.
+    assert_holds(&page, &[r#""ends":[0.6,0.9]"#, r#""ends":[30.0,60.0]"#, "≥ 0.9"]);
+    let [svg, page] = drawn("--picture-measure max-angle --picture-range 70,180");
+    assert_holds(&svg, &[">≤ 70°</text>", ">180°</text>"]);
+    assert_holds(&page, &[r#""ends":[0.5,1.0]"#, r#""ends":[180.0,70.0]"#]);
+    // A page alone takes a range, as does a page of several meshes, whose pictures have captions.
+    folder.line("quality in --html p.html --picture-range 0.9,1").clean();
+    assert_holds(&folder.text("p.html"), &[r#""ends":[0.9,1.0]"#]);
+    folder.line("quality in out --html p.html --picture-range 0.9,1").clean();
+    let caption = "Triangles by shape: dark blue is ≤ 0.9, yellow is 1, red is inverted or flat";
+    assert_holds(&folder.text("p.html"), &[caption]);
+}
+
+#[test]
+fn triangles_beyond_the_range_have_the_colors_of_its_ends() {
+    let folder = small();
+    let colors = |range: &str| {
+        folder.line(&format!("quality in --picture p.png --picture-range {range}")).clean();
+        let image = Image::read(&folder, "p.png");
+        let mut places = image.places(is_face);
+        places.retain(|[_, row]| *row < image.height - 150);
+        let [low, high] = [[68, 1, 84, 255], [253, 231, 37, 255]];
+        let share = |color| {
+            let has_color =
+                |place: &&[usize; 2]| image.pixels[place[1] * image.width + place[0]] == color;
+            places.iter().filter(has_color).count() as f64 / places.len() as f64
+        };
+        [share(low), share(high)]
+    };
+    // Shapes of the mesh are between these values.
+    let [low, high] = colors("0,0.01");
+    assert!(low == 0.0 && high > 0.5, "{low} {high}");
+    let [low, high] = colors("0.99999,1");
+    assert!(low > 0.5 && high < 0.01, "{low} {high}");
+}
+
 /// Returns the numbers that follow `key="` in an SVG, in their order.
 fn numbers(svg: &str, key: &str) -> Vec<f64> {
     let key = format!(" {key}=\"");
@@ -256,6 +305,21 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
         .refused(&["the picture cannot be written: ", "none"]);
     for (line, parts) in [
         (
+            "quality in --picture p.png --picture-range 0.5,1.5",
+            [
+                "both values of shape must be from 0 to 1",
+                "Give two values of shape, as in --picture-range 0.5,1",
+            ],
+        ),
+        (
+            "in out --engine cpu --picture p.svg --picture-measure imr --picture-range=-1,2",
+            ["both values of imr must be finite and at least 1", "--picture-range 1,2"],
+        ),
+        (
+            "in out --engine cpu --html p.html --picture-range 1,0.5",
+            ["the first value must be below the second", "--picture-range 0.5,1"],
+        ),
+        (
             "in out --engine cpu --picture p.svg --report p.svg",
             ["p.svg: ", "would replace this file"],
         ),
@@ -269,6 +333,9 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
         ("quality in in --picture p.png", "p.png: --picture draws a single mesh: give only one"),
         ("quality in --picture p.png --picture-arrows", "--picture-arrows needs a run"),
         ("quality in --picture p.png --picture-size 20", "400..=8000"),
+        ("quality in --picture p.png --picture-range 0.5", "two numbers with a comma between them"),
+        ("quality in --picture p.png --picture-range 0.5,nan", "two numbers with a comma"),
+        ("quality in --picture-range 0.5,1", "--picture <FILE>|--html <FILE>"),
         ("quality in --picture p.png --picture-measure round", "no measure is called 'round'"),
     ] {
         let run = finish(folder.command().args(line.split(' ')));

@@ -26,7 +26,7 @@ pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliErr
     let style = Style::of_terminal(args.ascii);
     let (mut qualities, mut errors) = (Vec::new(), Vec::new());
     for path in &args.meshes {
-        match MeshQuality::of(path, args, outputs.picture.as_ref(), &display) {
+        match MeshQuality::of(path, args, &outputs, &display) {
             Ok(quality) => qualities.push(quality),
             // A mesh that cannot be read must not hide the others.
             Err(error) => errors.push(error),

@@ -21,7 +21,7 @@ use crate::load::{as_in_file, lay_out};
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::{Histogram, QualityReport, histogram};
-use crate::request::{PictureRequest, ThirdCoordinate};
+use crate::request::{Outputs, ThirdCoordinate};
 use crate::terminal::progress::{Display, Stage};
 
 /// Measurements of one mesh. The mesh is not stored, so that many meshes can be shown side by side.
@@ -105,7 +105,7 @@ impl MeshQuality {
     pub(crate) fn of(
         path: &Path,
         args: &QualityArgs,
-        picture: Option<&PictureRequest>,
+        outputs: &Outputs,
         display: &Display,
     ) -> Result<Self, CliError> {
         display
@@ -121,6 +121,7 @@ impl MeshQuality {
         let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
         let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
+        let picture = outputs.picture.as_ref();
         if let Some(picture) = picture {
             picture.check_part(&mesh.points)?;
         }
@@ -144,6 +145,7 @@ impl MeshQuality {
                 file: &file,
                 measured: &measured,
                 histograms: args.histograms(),
+                colors: outputs.colors,
                 worst: args.worst,
                 is_alone: args.meshes.len() == 1,
                 sentences: sentences(&file, &topology, bad.len(), &remarks),

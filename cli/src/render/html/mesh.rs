@@ -1,5 +1,6 @@
 //! The mesh data for the page's script: the whole mesh, or a picture and the triangles around the worst ones.
 
+use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::{LoadedMesh, axes_legend};
 use std::collections::HashSet;
@@ -15,9 +16,7 @@ use serde_json::{Value, json};
 
 use crate::render::html::page::ViewerMesh;
 use crate::render::html::worst::WorstTriangle;
-use crate::render::picture::{
-    Extent, FixedFaces, NEUTRAL, Outlines, VIRIDIS, bad_end, goodness, picture_of, ticks,
-};
+use crate::render::picture::{BAD, Extent, FixedFaces, NEUTRAL, Outlines, VIRIDIS, picture_of};
 
 /// The measures by which the page can color the mesh.
 const SHOWN: [Measure; 4] =
@@ -56,11 +55,13 @@ fn caption(triangles: usize, faces: &FixedFaces, is_whole: bool) -> String {
     }
 }
 
-/// Returns what the page shows of a mesh before and after a run, or of one mesh. `states` must not be empty.
+/// Returns what the page shows of a mesh before and after a run, or of one mesh. `states` must not be empty. `colors` is the
+/// scale by one measure; other measures have default scales.
 pub(crate) fn viewer_mesh(
     file: &LoadedMesh,
     states: &[&Measured<'_>],
     spots: &[WorstTriangle],
+    colors: ColorScale,
     bounds: &Bounds,
 ) -> Result<ViewerMesh, CliError> {
     let (first, last) = (states[0], states[states.len() - 1]);
@@ -107,19 +108,20 @@ pub(crate) fn viewer_mesh(
     });
     let face_edges: Vec<u32> = face_edges.collect();
     let measures = SHOWN.map(|measure| {
-        let definition = measure.definition();
+        let scale = colors.or_usual(measure);
         json!({
-            "name": measure.name(), "unit": definition.unit, "ideal": definition.ideal,
-            // Null for logarithmic scales, which have no bad end.
-            "bad": bad_end(measure),
-            "ticks": ticks(measure).into_iter()
-                .map(|(value, name)| json!([goodness(measure, value), name])).collect::<Vec<_>>(),
+            "name": measure.name(), "unit": measure.definition().unit,
+            // The values at the bad and the good end of the scale.
+            "ends": scale.ends(),
+            "ticks": scale.ticks().into_iter()
+                .map(|(value, name)| json!([scale.goodness(value), name])).collect::<Vec<_>>(),
         })
     });
     let mut both = Vec::new();
     for &state in states {
         let draw = |&measure: &Measure| {
-            let png = picture_of(topology, &faces, state, measure, extent, bounds.pixels)?;
+            let scale = colors.or_usual(measure);
+            let png = picture_of(topology, &faces, state, scale, extent, bounds.pixels)?;
             Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)))
         };
         let pictures = if is_whole { &[][..] } else { &SHOWN[..] };
@@ -139,6 +141,7 @@ pub(crate) fn viewer_mesh(
         .collect();
     let data = json!({
         "colors": VIRIDIS,
+        "bad": BAD,
         "neutral": NEUTRAL,
         "measures": measures,
         "extent": [extent.low, extent.high],
@@ -273,7 +276,8 @@ mod tests {
         let spots = worst::spots(&file, [&state; 2]);
         let of = |most| {
             let bounds = Bounds { most, pixels: 300 };
-            viewer_mesh(&file, &[&state; 2], &spots, &bounds).unwrap().data
+            let colors = ColorScale::usual(Measure::Shape);
+            viewer_mesh(&file, &[&state; 2], &spots, colors, &bounds).unwrap().data
         };
         let count = |data: &Value, key: &str| {
             BASE64_STANDARD.decode(data[key].as_str().unwrap()).unwrap().len() / 4

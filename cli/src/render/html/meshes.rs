@@ -8,6 +8,7 @@ use base64::prelude::BASE64_STANDARD;
 use gpu_smooth::measure::{Measure, Measured, Statistics};
 use mesh_io::atomic;
 
+use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::render::html::page::{Page, View, ViewerMesh, escape};
@@ -25,6 +26,8 @@ pub(crate) struct MeshDescription<'a> {
     pub(crate) measured: &'a Measured<'a>,
     /// Measures of the histograms. The first ranks the worst triangles.
     pub(crate) histograms: &'a [Measure],
+    /// The scale of colors by one measure.
+    pub(crate) colors: ColorScale,
     /// Number of listed worst triangles.
     pub(crate) worst: usize,
     /// Whether the page has only this mesh.
@@ -44,28 +47,31 @@ pub(crate) struct MeshPart {
 /// The drawing of a mesh.
 enum MeshView {
     Viewer(ViewerMesh),
-    /// A PNG as a data URL; `None` if all vertices have equal positions.
-    Picture(Option<String>),
+    /// A PNG as a data URL, with a caption; `None` if all vertices have equal positions.
+    Picture(Option<[String; 2]>),
 }
 
 impl MeshPart {
     pub(crate) fn new(description: MeshDescription<'_>) -> Result<Self, CliError> {
-        let MeshDescription { file, measured, histograms, worst, is_alone, sentences } =
+        let MeshDescription { file, measured, histograms, colors, worst, is_alone, sentences } =
             description;
         let by = histograms.first().copied().unwrap_or(Measure::Shape);
         let spots = worst::spots_of_mesh(file, measured, by, worst);
         let topology = measured.topology();
         let view = match is_alone {
-            true => MeshView::Viewer(mesh::viewer_mesh(file, &[measured], &spots, &mesh::BOUNDS)?),
+            true => {
+                let states = &[measured];
+                MeshView::Viewer(mesh::viewer_mesh(file, states, &spots, colors, &mesh::BOUNDS)?)
+            }
             false => {
                 let faces = FixedFaces::of(file, topology);
                 let extent =
                     Extent::of([topology.triangles(), &faces.pieces], &[measured.points()]);
                 let is_drawn = extent.size().into_iter().any(|length| length > 0.0);
-                let draw =
-                    || picture_of(topology, &faces, measured, Measure::Shape, extent, PIXELS);
+                let draw = || picture_of(topology, &faces, measured, colors, extent, PIXELS);
                 let url = |png| format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png));
-                MeshView::Picture(is_drawn.then(draw).transpose()?.map(url))
+                let drawn = is_drawn.then(draw).transpose()?;
+                MeshView::Picture(drawn.map(|png| [url(png), colors.legend()]))
             }
         };
         let chart = |&measure: &Measure| {
@@ -124,12 +130,11 @@ fn section(name: &str, part: &MeshPart) -> String {
     for sentence in &part.sentences {
         let _ = write!(text, "<p>{}</p>", escape(sentence));
     }
-    if let MeshView::Picture(Some(url)) = &part.view {
-        let about = escape(&format!("{name}, colored by shape"));
+    if let MeshView::Picture(Some([url, legend])) = &part.view {
+        let (about, legend) = (escape(&format!("{name}, colored by quality")), escape(legend));
         let _ = write!(
             text,
-            "<figure class=\"picture\"><img src=\"{url}\" alt=\"{about}\"><figcaption>Triangles by shape: yellow is equilateral, \
-             dark blue is flat, red is inverted</figcaption></figure>"
+            "<figure class=\"picture\"><img src=\"{url}\" alt=\"{about}\"><figcaption>{legend}</figcaption></figure>"
         );
     }
     format!("{text}{}{}", part.worst, part.charts)

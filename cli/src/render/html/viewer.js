@@ -42,8 +42,7 @@ for (let code = 1; code <= BEST; code++) {
   const [r, g, b] = data.colors[first].map((from, i) => Math.round(from + (data.colors[first + 1][i] - from) * (place - first)));
   palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
 }
-palette[0] = (255 << 24) | (75 << 16) | (25 << 8) | 230;
-palette[NEUTRAL] = (255 << 24) | (data.neutral[2] << 16) | (data.neutral[1] << 8) | data.neutral[0];
+for (const [code, [r, g, b]] of [[0, data.bad], [NEUTRAL, data.neutral]]) palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
 
 /** The codes of all triangles by the chosen measure. A value that is not a number is that of an inverted or flat triangle. */
 function codesOf(state) {
@@ -51,10 +50,9 @@ function codesOf(state) {
     Number.isNaN(value) ? 0 : 1 + Math.round((BEST - 1) * goodness(data.measures[measure], value))));
 }
 
-/** Rates a value from 0 (bad) to 1 (ideal): on a linear scale, or on a logarithmic one if the measure has no bad end. */
-function goodness({ bad, ideal }, value) {
-  const rate = bad === null ? 1 - Math.log10(1 + Math.abs(value - ideal)) : (value - bad) / (ideal - bad);
-  return Math.min(1, Math.max(0, rate));
+/** Rates a value from 0 (the bad end of the scale, or worse) to 1 (the good end, or better). */
+function goodness({ ends: [bad, good] }, value) {
+  return Math.min(1, Math.max(0, (value - bad) / (good - bad)));
 }
 
 /** The picture of a large mesh by the chosen measure; null while it is decoded, and for meshes without pictures. */

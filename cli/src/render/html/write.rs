@@ -32,7 +32,7 @@ pub(crate) fn write(
 
 fn page(task: &SmoothJob<'_>, done: &Done<'_>, began: Instant) -> Result<String, CliError> {
     let topology = done.smoother.topology();
-    let surface = task.request.surface;
+    let (surface, colors) = (task.request.surface, task.request.outputs.colors);
     let before = Measured::on(surface, &done.file.mesh().points, topology)?;
     let after = Measured::on(surface, &done.outcome.points, topology)?;
     let states = [&before, &after];
@@ -44,7 +44,7 @@ fn page(task: &SmoothJob<'_>, done: &Done<'_>, began: Instant) -> Result<String,
         page.lead(&warning);
     }
     page.section("Summary", &tables::summary(&done.report));
-    page.mesh(&mesh::viewer_mesh(done.file, &states, &spots, &mesh::BOUNDS)?, View::Run);
+    page.mesh(&mesh::viewer_mesh(done.file, &states, &spots, colors, &mesh::BOUNDS)?, View::Run);
     page.section("Worst triangles", &worst::lists(&spots, done.file.axes()));
     page.section("Distribution", &histograms(states));
     page.section("Convergence", &convergence(done));

@@ -1,6 +1,4 @@
-//! Colors by quality.
-
-use gpu_smooth::measure::{Better, Measure};
+//! Colors by quality: the map of [`ColorScale`](crate::color_scale::ColorScale)s.
 
 pub(crate) type Color = [u8; 3];
 
@@ -8,7 +6,7 @@ pub(crate) const BLACK: Color = [0, 0, 0];
 pub(crate) const WHITE: Color = [255, 255, 255];
 /// Color of inverted and flat triangles. The color is not on the scale, and differs in lightness from neighboring
 /// colors.
-pub(crate) const BAD: Color = [230, 25, 75];
+pub const BAD: Color = [230, 25, 75];
 
 /// Color of quadrilaterals and polygons, which no measure judges. The color is not on the scale.
 pub(crate) const NEUTRAL: Color = [196, 198, 201];
@@ -18,7 +16,7 @@ pub(crate) const UNJUDGED: f32 = 2.0;
 
 /// The color map Viridis (Smith & van der Walt, 2015), from bad to good. Its steps appear equal to normal and
 /// color-blind vision, and in gray.
-pub(crate) const VIRIDIS: [Color; 10] = [
+pub const VIRIDIS: [Color; 10] = [
     [68, 1, 84],
     [72, 40, 120],
     [62, 73, 137],
@@ -49,73 +47,9 @@ pub(crate) fn of_goodness(goodness: f32) -> Color {
     [0, 1, 2].map(|i: usize| mix(from[i], to[i]))
 }
 
-/// Distance of a ratio above its ideal at the bad end of the scale.
-const WORST_ABOVE: f64 = 9.0;
-
-/// Rates a value from 0 (bad) to 1 (ideal). The scale depends only on the measure, so that pictures are comparable. A
-/// bounded measure has a linear scale over its range; an unbounded one has a logarithmic scale up to 9 above the
-/// ideal.
-pub(crate) fn goodness(measure: Measure, value: f64) -> f32 {
-    let definition = measure.definition();
-    let share = match bad_end(measure) {
-        Some(bad) => (value - bad) / (definition.ideal - bad),
-        None => 1.0 - (1.0 + (value - definition.ideal).abs()).ln() / (1.0 + WORST_ABOVE).ln(),
-    };
-    // Clamping also maps NaN, which no measure returns, to a defined color.
-    share.clamp(0.0, 1.0) as f32
-}
-
-/// Returns the bad end of a measure's scale; `None` for unbounded measures. The scale of the scaled Jacobian ends at
-/// 0, because lower values belong to inverted triangles.
-pub(crate) fn bad_end(measure: Measure) -> Option<f64> {
-    let definition = measure.definition();
-    let bad = match definition.better {
-        Better::Higher => definition.range[0].max(0.0),
-        Better::Lower => definition.range[1],
-    };
-    bad.is_finite().then_some(bad)
-}
-
-/// Returns the labeled values beside a scale, from bad to good.
-pub(crate) fn ticks(measure: Measure) -> Vec<(f64, String)> {
-    let definition = measure.definition();
-    let Some(bad) = bad_end(measure) else {
-        let above = [WORST_ABOVE, 4.0, 2.0, 1.0, 0.5, 0.0];
-        let name = |value: f64, above: f64| match above == WORST_ABOVE {
-            true => format!("≥ {}", short(value)),
-            false => short(value),
-        };
-        return above.map(|a| (definition.ideal + a, name(definition.ideal + a, a))).to_vec();
-    };
-    let steps = if (definition.ideal - bad).abs() == 60.0 { 6 } else { 4 };
-    let value = |i| bad + (definition.ideal - bad) * f64::from(i) / f64::from(steps);
-    (0..=steps)
-        .map(value)
-        .map(|value| (value, format!("{}{}", short(value), definition.unit)))
-        .collect()
-}
-
-/// Formats a number with the digits of single precision, which hides rounding errors of double precision.
-pub(crate) fn short(number: f64) -> String {
-    (number as f32).to_string()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_scale_goes_from_bad_to_ideal() {
-        for &measure in Measure::ALL {
-            assert_eq!(goodness(measure, measure.definition().ideal), 1.0, "{measure}");
-            let ticks = ticks(measure);
-            let places: Vec<f32> = ticks.iter().map(|tick| goodness(measure, tick.0)).collect();
-            assert!(places.is_sorted() && places[0] < 1e-6 && places[places.len() - 1] == 1.0);
-        }
-        assert_eq!(goodness(Measure::Condition, f64::INFINITY), 0.0);
-        assert!((goodness(Measure::MinAngle, 30.0) - 0.5).abs() < 1e-6);
-        assert_eq!(ticks(Measure::MinAngle)[1].1, "10°");
-    }
 
     /// Each step up the scale must be lighter in gray.
     #[test]

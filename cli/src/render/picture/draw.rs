@@ -1,5 +1,6 @@
 //! The picture of `--picture`: a mesh colored by quality, before and after a run.
 
+use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::{LoadedMesh, axes_legend};
 use crate::render::picture::{color, png, svg};
@@ -11,11 +12,7 @@ use crate::render::picture::layout::{Extent, Frame};
 use crate::render::picture::outlines::Outlines;
 use crate::render::picture::raster::Raster;
 use crate::render::picture::scene::{Panel, Scene};
-use gpu_smooth::{
-    MeshError, Topology,
-    measure::{Measure, Measured},
-    targets::Surface,
-};
+use gpu_smooth::{MeshError, Topology, measure::Measured, targets::Surface};
 use mesh_io::atomic;
 
 use crate::terminal::numbers::fit8;
@@ -48,7 +45,7 @@ pub(crate) fn write(
     let Some(request) = request else { return Ok(()) };
     let failed = |error: CliError| error.within("the picture was not written");
     let part = request.part.map(Extent::between);
-    let panels = states.iter().map(|state| panel(request.measure, part, mesh, state));
+    let panels = states.iter().map(|state| panel(request.colors, part, mesh, state));
     let panels = panels.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
     let (before, after) = match states {
         [first, .., last] => (first.points, last.points),
@@ -56,7 +53,7 @@ pub(crate) fn write(
     };
     let faces = FixedFaces::of(mesh.file, mesh.topology);
     let scene = Scene {
-        measure: request.measure,
+        colors: request.colors,
         part,
         triangles: mesh.topology.triangles(),
         with_arrows: request.with_arrows,
@@ -86,17 +83,17 @@ pub(crate) fn write(
     atomic::write(&request.path, &bytes).map_err(|error| failed(error.into()))
 }
 
-/// Draws only triangles, colored by a measure, and fixed faces, as a PNG with transparent background. The picture covers
+/// Draws only triangles, colored by quality, and fixed faces, as a PNG with transparent background. The picture covers
 /// the extent, and its longer side has `longest` pixels.
 pub(crate) fn picture_of(
     topology: &Topology<'_>,
     faces: &FixedFaces,
     state: &Measured<'_>,
-    measure: Measure,
+    colors: ColorScale,
     extent: Extent,
     longest: u32,
 ) -> Result<Vec<u8>, CliError> {
-    let goodness = goodness_of(topology, state, measure)?;
+    let goodness = goodness_of(topology, state, colors)?;
     let [width, height] = extent.size();
     let scale = f64::from(longest) / width.max(height);
     let corner = [width, height].map(|size| (size * scale).ceil());
@@ -109,14 +106,14 @@ pub(crate) fn picture_of(
     png::encode(&raster)
 }
 
-/// Rates each triangle from 0 (bad) to 1 (ideal); inverted and flat triangles get -1.
+/// Rates each triangle from 0 (bad) to 1 (good) by a scale of colors; inverted and flat triangles get -1.
 fn goodness_of(
     topology: &Topology<'_>,
     state: &Measured<'_>,
-    measure: Measure,
+    colors: ColorScale,
 ) -> Result<Vec<f32>, MeshError> {
-    let values = state.values(measure).into_iter();
-    let mut goodness: Vec<f32> = values.map(|value| color::goodness(measure, value)).collect();
+    let values = state.values(colors.measure()).into_iter();
+    let mut goodness: Vec<f32> = values.map(|value| colors.goodness(value)).collect();
     for bad in topology.bad_triangles(state.points())? {
         goodness[bad.triangle] = -1.0;
     }
@@ -124,13 +121,14 @@ fn goodness_of(
 }
 
 fn panel<'a>(
-    measure: Measure,
+    colors: ColorScale,
     part: Option<Extent>,
     mesh: PictureSubject<'_>,
     state: &MeshState<'a>,
 ) -> Result<Panel<'a>, MeshError> {
     let measured = Measured::on(mesh.surface, state.points, mesh.topology)?;
-    let goodness = goodness_of(mesh.topology, &measured, measure)?;
+    let goodness = goodness_of(mesh.topology, &measured, colors)?;
+    let measure = colors.measure();
     let unit = measure.definition().unit;
     let statistics = measured.statistics(&[measure]);
     let numbers = statistics.first().map_or(String::new(), |s| {

@@ -13,7 +13,8 @@ mod raster;
 mod scene;
 mod svg;
 
-pub(crate) use color::{NEUTRAL, VIRIDIS, bad_end, goodness, ticks};
+pub(crate) use color::NEUTRAL;
+pub use color::{BAD, VIRIDIS};
 pub(crate) use draw::{MeshState, PictureSubject, picture_of, write};
 pub(crate) use faces::FixedFaces;
 pub(crate) use layout::Extent;

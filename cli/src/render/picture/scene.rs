@@ -2,15 +2,14 @@
 
 use std::collections::HashSet;
 
-use gpu_smooth::measure::Measure;
-
+use crate::color_scale::ColorScale;
 use crate::render::picture::arrows;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
 use crate::render::picture::color::{self, BAD, BLACK, NEUTRAL, UNJUDGED, WHITE};
 use crate::render::picture::faces::FixedFaces;
 use crate::render::picture::layout::{Extent, Frame, Layout, Place};
 use crate::render::picture::outlines::{Outlines, inner_edges};
-use crate::terminal::numbers::fit8;
+use crate::terminal::numbers::{fit8, short};
 
 /// A mesh at one set of positions, with the goodness shown by colors.
 pub(crate) struct Panel<'a> {
@@ -25,7 +24,7 @@ pub(crate) struct Panel<'a> {
 
 /// The content of a picture: panels of one mesh, with outlines and legend.
 pub(crate) struct Scene<'a> {
-    pub(crate) measure: Measure,
+    pub(crate) colors: ColorScale,
     pub(crate) triangles: &'a [[u32; 3]],
     /// The drawn part of the plane; `None` for the whole mesh.
     pub(crate) part: Option<Extent>,
@@ -105,7 +104,8 @@ impl Scene<'_> {
                 canvas.clip(None);
                 around(corners, text, canvas);
                 scale_bar(&frame, text, canvas);
-                let (measure, unit) = (self.measure, self.measure.definition().unit);
+                let measure = self.colors.measure();
+                let unit = measure.definition().unit;
                 let name = format!("{}: {measure} {}{unit}", i + 1, fit8(value));
                 canvas.text(
                     [left + 0.5 * text, top + 1.2 * text],
@@ -210,10 +210,10 @@ impl Scene<'_> {
 
     fn draw_legend(&self, layout: &Layout, canvas: &mut dyn Canvas) {
         let (([left, top], width), text) = (layout.legend, layout.text);
-        let definition = self.measure.definition();
+        let definition = self.colors.measure().definition();
         let bar = (0.45 * width).max(20.0 * text).min(width);
         let (high, small) = (text, 0.8 * text);
-        let ideal = format!("{}{}", color::short(definition.ideal), definition.unit);
+        let ideal = format!("{}{}", short(definition.ideal), definition.unit);
         let name = format!("{}, {ideal} is best", definition.name);
         canvas.text([left, top], small, Anchor::Start, &name);
         let upper = top + 0.4 * text;
@@ -225,9 +225,8 @@ impl Scene<'_> {
             let to = if step + 1 < steps { to + 1.0 } else { to };
             canvas.rectangle([[from, upper], [to, upper + high]], color);
         }
-        let ticks = color::ticks(self.measure);
-        for (value, name) in &ticks {
-            let x = left + bar * color::goodness(self.measure, *value);
+        for (value, name) in self.colors.ticks() {
+            let x = left + bar * self.colors.goodness(value);
             let mark = [[x, upper + high], [x, upper + high + 0.25 * text]];
             canvas.lines(&[mark], (text / 16.0).max(0.8), BLACK, 1.0);
             let anchor = match x {
@@ -235,7 +234,7 @@ impl Scene<'_> {
                 x if x >= left + bar => Anchor::End,
                 _ => Anchor::Middle,
             };
-            canvas.text([x, upper + high + 1.15 * text], small, anchor, name);
+            canvas.text([x, upper + high + 1.15 * text], small, anchor, &name);
         }
         self.draw_signs(layout, [left + bar + 2.0 * text, upper], canvas);
     }
@@ -334,7 +333,7 @@ fn round_length(most: f64) -> Option<f64> {
 
 fn length_text(length: f64) -> String {
     match (1e-3..1e5).contains(&length) {
-        true => color::short(length),
+        true => short(length),
         false => format!("{:e}", length as f32),
     }
 }
