@@ -45,7 +45,7 @@ def main() -> None:
     result = gpu_smooth.smooth_gmsh_model(target="keep-shape")
     print(result)
     if picture:
-        figure = result.plot(vmax=4)
+        figure = result.plot(measure="imr", picture_range=(1, 4))
         for axes in figure.axes[:2]:
             axes.set(xlim=(-0.1, 0.4), ylim=(-0.13, 0.15))
         figure.savefig(picture, dpi=110)

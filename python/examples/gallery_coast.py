@@ -52,7 +52,7 @@ def main() -> None:
     result = gpu_smooth.smooth_gmsh_model(target="keep-size")
     print(result)
     if picture:
-        result.plot(measure="min-angle", vmin=20, vmax=60).savefig(picture, dpi=110)
+        result.plot(measure="min-angle", picture_range=(20, 60)).savefig(picture, dpi=110)
     gmsh.finalize()
 
 

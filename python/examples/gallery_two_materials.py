@@ -48,7 +48,7 @@ def main() -> None:
     result = gpu_smooth.smooth_gmsh_model(slide=True)
     print(f"{result}, {result.slid} vertices have slid")
     if picture:
-        figure = result.plot(vmax=1.6)
+        figure = result.plot(measure="imr", picture_range=(1, 1.6))
         for _, curve in gmsh.model.getEntities(1):
             lines = gmsh.model.mesh.getElements(1, curve)[2]
             if not len(lines):

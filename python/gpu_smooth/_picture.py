@@ -12,19 +12,25 @@ if TYPE_CHECKING:
     from gpu_smooth._options import Doubles, Integers
     from gpu_smooth._result import Result
 
-# Colors of shapes from good to bad: matplotlib's viridis_r at equal steps.
-COLORS = ("#fde725", "#a0da39", "#4ac16d", "#1fa187", "#277f8e", "#365c8d", "#46327e", "#440154")
-# Largest inverse mean ratio that has a color of its own; worse triangles have the last color.
-WORST = 3.0
 # Largest number of triangles of which a notebook gets a picture. A picture of more takes megabytes.
 MOST_TRIANGLES = 20_000
 # Width of the picture of a mesh, in pixels.
 WIDTH = 360.0
 
 
-def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, Any]) -> Any:
+def plot(
+    result: Result,
+    which: str,
+    measure: str,
+    ax: Any,
+    picture_range: tuple[float, float] | None,
+    options: dict[str, Any],
+) -> Any:
     """Draw a result by matplotlib; see `Result.plot`."""
     plt = _pyplot()
+    from matplotlib.colors import LinearSegmentedColormap
+
+    scale = _native.color_scale(measure, picture_range)
     states = flat_states(result)
     if which not in ("before", "after", "both"):
         raise _which_error(which)
@@ -48,30 +54,33 @@ def plot(result: Result, which: str, measure: str, ax: Any, options: dict[str, A
     else:
         figure, all_axes = ax.figure, [ax]
         names = names[-1:]
-    values = {
-        name: _native.quality(states[name], result.triangles, measure, "plane", "data") for name in names
-    }
-    finite = np.concatenate([value[np.isfinite(value)] for value in values.values()])
+    values = {name: _judged_values(states[name], result.triangles, measure) for name in names}
     row = next(row for row in _native.measures() if row["name"] == measure.lower().replace("_", "-"))
-    # Bad triangles are dark by every measure. A few very bad triangles would take all colors.
-    is_low_good = row["better"] == "lower"
-    colors, low, high = ("viridis_r", 0.0, 0.99) if is_low_good else ("viridis", 0.01, 1.0)
-    chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2, "cmap": colors}
+    colors = plt.get_cmap(options.get("cmap", LinearSegmentedColormap.from_list("quality", scale["colors"])))
+    chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2}
     # matplotlib refuses limits beside a norm, which has its own.
-    if finite.size and "norm" not in options:
-        chosen |= {"vmin": np.quantile(finite, low), "vmax": np.quantile(finite, high)}
-    chosen |= options
-    drawn = None
+    if "norm" not in options:
+        chosen |= {"vmin": scale["low"], "vmax": scale["high"]}
+    # The color "bad" is that of values that are not numbers.
+    chosen |= options | {"cmap": colors.with_extremes(bad=scale["inverted"])}
+    drawn: Any = None
     for name, axis in zip(names, all_axes):
         points = states[name][used]
         drawn = axis.tripcolor(
-            points[:, 0], points[:, 1], triangles, facecolors=_finite(values[name]), **chosen
+            points[:, 0], points[:, 1], triangles, facecolors=values[name], **chosen
         )
         axis.set_aspect("equal")
         axis.set_title(name)
         if result.axes != ("x", "y"):
             axis.set(xlabel=result.axes[0], ylabel=result.axes[1])
-    figure.colorbar(drawn, ax=all_axes, label=f"{measure} ({row['unit']})" if row["unit"] else measure)
+    every = np.concatenate(list(values.values()))
+    label = f"{measure} ({row['unit']})" if row["unit"] else measure
+    if np.isnan(every).any():
+        label += ", red: inverted or flat"
+    # The ends of the bar are pointed where values lie beyond.
+    is_below, is_above = (every < drawn.norm.vmin).any(), (every > drawn.norm.vmax).any()
+    extend = ("neither", "min", "max", "both")[is_below + 2 * is_above]
+    figure.colorbar(drawn, ax=all_axes, label=label, extend=extend)
     return figure
 
 
@@ -81,9 +90,15 @@ def flat_states(result: Result) -> dict[str, Doubles]:
     return {"before": outcome.flat_points_before(), "after": outcome.flat_points()}
 
 
-def show(result: Result, which: str, measure: str, options: dict[str, Any]) -> None:
+def show(
+    result: Result,
+    which: str,
+    measure: str,
+    picture_range: tuple[float, float] | None,
+    options: dict[str, Any],
+) -> None:
     """Draw a result in a window, and wait until the window is closed; see `Result.show`."""
-    plot(result, which, measure, None, options)
+    plot(result, which, measure, None, picture_range, options)
     _pyplot().show()
 
 
@@ -96,10 +111,11 @@ def _pyplot() -> Any:
     return plt
 
 
-def _finite(values: Doubles) -> Doubles:
-    largest = np.max(values[np.isfinite(values)], initial=0.0)
-    finite: Doubles = np.where(np.isfinite(values), values, largest)
-    return finite
+def _judged_values(flat: Doubles, triangles: Integers, measure: str) -> Doubles:
+    """Return the value of a measure for each triangle: a finite number, or NaN for an inverted or flat triangle."""
+    values: Doubles = np.minimum(_native.quality(flat, triangles, measure, "plane", "data"), 1e300)
+    values[_native.quality(flat, triangles, "shape", "plane", "data") <= 0.0] = np.nan
+    return values
 
 
 def _which_error(which: str) -> Exception:
@@ -118,13 +134,14 @@ def judged(result: Result) -> tuple[str, float, float]:
 
 def html(result: Result) -> str:
     """Return a result as HTML: the mesh before and after the run, colored by shape, and a table."""
-    pictures = ""
+    pictures = legend = ""
     if len(result.triangles) <= MOST_TRIANGLES:
         pictures = "".join(
             f'<figure style="display:inline-block;margin:4px"><figcaption>{name}</figcaption>'
             f"{svg(points, result.triangles)}</figure>"
             for name, points in flat_states(result).items()
         )
+        legend = f"{_native.color_scale('shape', None)['legend']}.<br/>"
     before, after = result.quality_before, result.quality_after
     name, f_before, f_after = judged(result)
     rows = [
@@ -139,22 +156,25 @@ def html(result: Result) -> str:
     )
     return (
         f"<div>{pictures}<table><tr><th></th><th>before</th><th>after</th></tr>{table}</table>"
-        f"<p>{result.stop} after {result.sweeps} sweeps</p></div>"
+        f"<p>{legend}{result.stop} after {result.sweeps} sweeps</p></div>"
     )
 
 
 def svg(flat: Doubles, triangles: Integers) -> str:
-    """Return a mesh with points of shape (n, 2) as an SVG picture, each triangle colored by its inverse mean ratio."""
+    """Return a mesh with points of shape (n, 2) as an SVG picture, each triangle colored by its shape."""
     used = np.unique(triangles)
     low, high = flat[used].min(axis=0), flat[used].max(axis=0)
     size = np.maximum(high - low, np.finfo(float).tiny)
     scale = WIDTH / max(size[0], size[1])
     xy = np.round((flat - low) * [scale, -scale] + [0.0, scale * size[1]], 2)
-    quality = _native.quality(flat, triangles, "imr", "plane", "data")
-    shares = np.nan_to_num((quality - 1.0) / (WORST - 1.0), nan=1.0, posinf=1.0)
-    colors = np.clip(shares * len(COLORS), 0, len(COLORS) - 1).astype(int)
+    chart = _native.color_scale("shape", None)
+    quality = _judged_values(flat, triangles, "shape")
+    shares = (quality - chart["low"]) / (chart["high"] - chart["low"])
+    steps = len(chart["colors"])
+    # Inverted and flat triangles have the number after those of the steps.
+    colors = np.nan_to_num(np.clip(np.floor(shares * steps), 0, steps - 1), nan=steps)
     paths = []
-    for number, color in enumerate(COLORS):
+    for number, color in enumerate([*chart["colors"], chart["inverted"]]):
         corners = xy[triangles[colors == number]].reshape(-1, 6).tolist()
         path = "".join("M%g %gL%g %gL%g %gZ" % tuple(corner) for corner in corners)
         if path:

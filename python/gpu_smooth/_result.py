@@ -188,11 +188,12 @@ class Result:
     def plot(
         self,
         which: Literal["before", "after", "both"] = "both",
-        measure: str = "imr",
+        measure: str = "shape",
         ax: Any = None,
+        picture_range: tuple[float, float] | None = None,
         **options: Any,
     ) -> Any:
-        """Draw the mesh by matplotlib, each triangle colored by a measure.
+        """Draw the mesh by matplotlib, each triangle colored by a measure. Inverted and flat triangles are red.
 
         Parameters
         ----------
@@ -202,6 +203,9 @@ class Result:
             Name of a measure; see `measures`.
         ax : matplotlib.axes.Axes, optional
             Axes to draw in, for "before" or "after".
+        picture_range : (float, float), optional
+            Values of the measure between which colors change, as `--picture-range` of the command line. Further values have
+            the color of the nearer one. By default, colors change where good meshes differ, such as from 0.5 to 1 by shape.
         **options
             Passed to `matplotlib.axes.Axes.tripcolor`, such as `cmap`, `vmin` or `edgecolors`.
 
@@ -214,14 +218,15 @@ class Result:
         ImportError
             matplotlib is not installed.
         OptionError
-            No measure has the name.
+            No measure has the name, or the measure has no such range.
         """
-        return _picture.plot(self, which, measure, ax, options)
+        return _picture.plot(self, which, measure, ax, picture_range, options)
 
     def show(
         self,
         which: Literal["before", "after", "both"] = "both",
-        measure: str = "imr",
+        measure: str = "shape",
+        picture_range: tuple[float, float] | None = None,
         **options: Any,
     ) -> None:
         """Draw the mesh as `plot` does, in a window, and wait until the window is closed.
@@ -234,6 +239,9 @@ class Result:
             The mesh before the run, after the run, or both side by side in equal colors.
         measure : str
             Name of a measure; see `measures`.
+        picture_range : (float, float), optional
+            Values of the measure between which colors change, as `--picture-range` of the command line. Further values have
+            the color of the nearer one. By default, colors change where good meshes differ, such as from 0.5 to 1 by shape.
         **options
             Passed to `matplotlib.axes.Axes.tripcolor`.
 
@@ -242,9 +250,9 @@ class Result:
         ImportError
             matplotlib is not installed.
         OptionError
-            No measure has the name.
+            No measure has the name, or the measure has no such range.
         """
-        _picture.show(self, which, measure, options)
+        _picture.show(self, which, measure, picture_range, options)
 
     def __getstate__(self) -> dict[str, Any]:
         outcome = self._outcome

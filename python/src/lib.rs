@@ -40,7 +40,7 @@ mod _native {
     #[pymodule_export]
     use crate::files::MeshFile;
     #[pymodule_export]
-    use crate::measures::{Quality, quality, restored_quality};
+    use crate::measures::{Quality, color_scale, quality, restored_quality};
     #[pymodule_export]
     use crate::outcome::Outcome;
     #[pymodule_export]

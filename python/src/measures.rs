@@ -1,11 +1,13 @@
 //! Quality of the triangles of a mesh.
 
-use gpu_smooth::measure::{Measure, Measured};
+use gpu_smooth::measure::{Measure, Measured, UnknownMeasure};
 use gpu_smooth::targets::Surface;
 use gpu_smooth::{Mesh, Metric, Quality as MeshQuality, Topology};
+use gpu_smooth_cli::colors::{BAD, ColorScale, VIRIDIS};
 use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::{self, Points, PointsForm};
 use crate::error;
@@ -17,6 +19,48 @@ use crate::values::{Given, ThirdCoordinate};
 pub(crate) fn surface(value: &Bound<'_, PyAny>) -> PyResult<Surface> {
     let given = Given { name: "surface", value };
     given.word(&[("plane", Surface::Plane), ("sphere", Surface::Sphere)])
+}
+
+/// Returns the measure of a name.
+fn measure_of(name: &Bound<'_, PyAny>) -> PyResult<Measure> {
+    let measure = Given { name: "measure", value: name }.text()?;
+    measure
+        .parse()
+        .map_err(|unknown: UnknownMeasure| error::option(name.py(), &format!("measure: {unknown}")))
+}
+
+/// Returns the colors that pictures show by a measure, as a dict: the values `low` and `high` between which colors change,
+/// `colors` at equal steps from `low` to `high`, the color of `inverted` and flat triangles, and a `legend`. The default
+/// values are those of the command line.
+#[pyfunction]
+pub(crate) fn color_scale<'py>(
+    measure: &Bound<'py, PyAny>,
+    picture_range: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let py = measure.py();
+    let measure = measure_of(measure)?;
+    let scale = match picture_range.is_none() {
+        true => ColorScale::usual(measure),
+        false => {
+            let given = Given { name: "picture_range", value: picture_range };
+            let range = picture_range.extract().map_err(|_| given.refused("two numbers"))?;
+            ColorScale::new(measure, range)
+                .map_err(|problem| error::option(py, &format!("picture_range: {problem}")))?
+        }
+    };
+    let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
+    let mut colors = VIRIDIS.map(hex);
+    let [bad, good] = scale.ends();
+    if bad > good {
+        colors.reverse();
+    }
+    let row = PyDict::new(py);
+    row.set_item("low", bad.min(good))?;
+    row.set_item("high", bad.max(good))?;
+    row.set_item("colors", colors.to_vec())?;
+    row.set_item("inverted", hex(BAD))?;
+    row.set_item("legend", scale.legend())?;
+    Ok(row)
 }
 
 /// The name of an argument, and points that the argument has.
@@ -53,11 +97,7 @@ pub(crate) fn quality<'py>(
     let surface = surface(on)?;
     let z = plane::third_coordinate(z)?;
     let (mesh, _) = mesh(Named { name: "points", points }, triangles, z, surface)?;
-    let measure = Given { name: "measure", value: measure }.text()?;
-    let measure: Measure =
-        measure.parse().map_err(|unknown: gpu_smooth::measure::UnknownMeasure| {
-            error::option(py, &format!("measure: {unknown}"))
-        })?;
+    let measure = measure_of(measure)?;
     let values = threads::detached(py, || {
         let topology = Topology::new(&mesh)?;
         Ok(Measured::on(surface, &mesh.points, &topology)?.values(measure))

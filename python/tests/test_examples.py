@@ -15,6 +15,7 @@ import pytest
 from conftest import Points, Triangles
 
 import gpu_smooth
+from gpu_smooth import _native, _picture
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 Mesh = tuple[Points, Triangles]
@@ -87,6 +88,19 @@ def test_a_result_is_plotted(mesh: Mesh) -> None:
         assert mesh_axes.get_title() == "after" and bar.get_ylabel() == label
         dark, light = (colors(k)[:3] for colors in [mesh_axes.collections[0].cmap] for k in (0.0, 1.0))
         assert (sum(dark) < sum(light)) == is_low_dark, measure
+    # By default and by a range, both pictures have the same colors, of which the bar states the ends.
+    ranges: list[tuple[dict[str, Any], float, float]] = [({}, 0.5, 1.0), ({"measure": "imr", "picture_range": (1, 4)}, 1.0, 4.0)]
+    for options, low, high in ranges:
+        before, after, bar = result.plot(**options).axes
+        assert [(axes.collections[0].norm.vmin, axes.collections[0].norm.vmax) for axes in (before, after)] == [(low, high)] * 2
+        assert bar.get_ylim() == (low, high) and bar.get_ylabel() == options.get("measure", "shape")
+    for picture_range, problem in (
+        ((1, 0.5), "picture_range: the first value must be below the second"),
+        ((0.5, 1.5), "picture_range: both values of shape must be from 0 to 1"),
+        ((0.5,), "picture_range: the value is (0.5,), and must be two numbers"),
+    ):
+        with pytest.raises(gpu_smooth.OptionError, match=re.escape(problem)):
+            result.plot(picture_range=picture_range)  # type: ignore[arg-type]
     with pytest.raises(gpu_smooth.OptionError, match="which: the value is 'then'"):
         result.plot("then")  # type: ignore[arg-type]
     pyplot.close("all")
@@ -101,8 +115,9 @@ def test_a_result_is_shown(mesh: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
 
     shown: list[Any] = []
     monkeypatch.setattr(pyplot, "show", lambda: shown.extend(pyplot.gcf().axes))
-    gpu_smooth.run(*mesh).show(measure="min-angle")
+    gpu_smooth.run(*mesh).show(measure="min-angle", picture_range=(20, 60))
     assert [axes.get_title() for axes in shown[:2]] == ["before", "after"]
+    assert shown[0].collections[0].norm.vmin == 20
     pyplot.close("all")
 
 
@@ -140,3 +155,15 @@ def test_a_notebook_shows_the_mesh_before_and_after(mesh: Mesh) -> None:
         numbers = np.array(re.findall(r"[-\d.]+", paths), float)
         assert numbers.min() == 0 and numbers.max() == 360
     assert "converged" in html
+    # The legend states the range, and the colors are those of the command line.
+    assert "Triangles by shape: dark blue is ≤ 0.5, yellow is 1" in html
+    colors = {path.get("fill") for picture in pictures for path in picture}
+    assert "#fde725" in colors and colors <= {*_native.color_scale("shape", None)["colors"]}
+
+
+def test_inverted_triangles_of_a_picture_are_red() -> None:
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.5, 0.5]])
+    triangles = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    assert _picture.svg(points, triangles).count('fill="#e6194b"') == 1
+    points[4] = [0.5, 0.5]
+    assert "#e6194b" not in _picture.svg(points, triangles)
