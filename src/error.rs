@@ -181,10 +181,47 @@ pub enum SmoothError {
     Option(#[from] crate::options::OptionError),
     /// The checkpoint is from another run.
     #[error("the checkpoint cannot be used: {0}")]
-    Checkpoint(String),
+    Checkpoint(#[from] ResumeError),
     /// The GPU engine failed.
     #[error(transparent)]
     Gpu(#[from] crate::error::GpuError),
+}
+
+/// The reason why a run cannot continue from a checkpoint.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ResumeError {
+    /// The mesh, its fixed vertices, curves or targets are others.
+    #[error(
+        "mesh, held vertices, curves or targets of the checkpoint differ from this run: continue with the mesh that the run began with"
+    )]
+    OtherMesh,
+    /// An option of the run has another value than in the run of the checkpoint.
+    #[error(
+        "the run of the checkpoint has {then}, and this run has {now}: continue with the same options"
+    )]
+    OtherOption {
+        /// The option of the checkpoint, as `name = value`.
+        then: String,
+        /// The option of this run, as `name = value`.
+        now: String,
+    },
+    /// Another version of the library wrote the checkpoint, without an option of this version.
+    #[error(
+        "the checkpoint lacks the option {name}: continue with the version of gpu-smooth that wrote the checkpoint"
+    )]
+    MissingOption {
+        /// The name of the option.
+        name: String,
+    },
+    /// Another version of the library wrote the checkpoint, with an option that this version lacks.
+    #[error(
+        "the run of the checkpoint has {then}, an option that this version of gpu-smooth lacks: continue with the version that wrote the checkpoint"
+    )]
+    UnknownOption {
+        /// The option of the checkpoint, as `name = value`.
+        then: String,
+    },
 }
 
 /// Error of the GPU engine: a device cannot be used, or failed during a run.

@@ -89,7 +89,7 @@ mod embedding {}
 #[doc(hidden)]
 pub mod internal;
 
-pub use error::{CheckpointError, GpuError, MeshError, SmoothError};
+pub use error::{CheckpointError, GpuError, MeshError, ResumeError, SmoothError};
 #[cfg(feature = "gpu")]
 pub use gpu::Gpu;
 pub use mesh::{Mesh, MeshSize};

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::error::SmoothError;
+use crate::error::{ResumeError, SmoothError};
 use crate::layout::Problem;
 use crate::mesh::Mesh;
 use crate::options::Options;
@@ -47,15 +47,12 @@ pub(crate) fn check(
     if own.mesh != about.mesh || !is_whole || !is_of_stages {
         return Err(foreign());
     }
-    match difference(&about.options, &own.options) {
-        None => Ok(()),
-        Some(text) => Err(SmoothError::Checkpoint(text)),
-    }
+    difference(&about.options, &own.options).map_or(Ok(()), |error| Err(error.into()))
 }
 
-/// Returns the message on the first option in which a checkpoint differs from the run that continues. Both texts have a
-/// line `name = value` for each option. A checkpoint of another version of the library may have other options.
-fn difference(checkpoint: &str, run: &str) -> Option<String> {
+/// Returns the first option in which a checkpoint differs from the run that continues. Both texts have a line `name = value`
+/// for each option. A checkpoint of another version of the library may have other options.
+fn difference(checkpoint: &str, run: &str) -> Option<ResumeError> {
     fn name(line: &str) -> &str {
         line.split(" = ").next().unwrap_or(line)
     }
@@ -63,29 +60,19 @@ fn difference(checkpoint: &str, run: &str) -> Option<String> {
         match checkpoint.lines().find(|then| name(then) == name(now)) {
             Some(then) if then == now => {}
             Some(then) => {
-                return Some(format!(
-                    "the run of the checkpoint has {then}, and this run has {now}: continue with the same options"
-                ));
+                let (then, now) = (then.to_owned(), now.to_owned());
+                return Some(ResumeError::OtherOption { then, now });
             }
-            None => {
-                return Some(format!(
-                    "the checkpoint lacks the option {}: continue with the version of gpu-smooth that wrote the checkpoint",
-                    name(now)
-                ));
-            }
+            None => return Some(ResumeError::MissingOption { name: name(now).to_owned() }),
         }
     }
     let unknown = checkpoint.lines().find(|then| run.lines().all(|now| name(now) != name(then)))?;
-    Some(format!(
-        "the run of the checkpoint has {unknown}, an option that this version of gpu-smooth lacks: continue with the version that wrote the checkpoint"
-    ))
+    Some(ResumeError::UnknownOption { then: unknown.to_owned() })
 }
 
 /// Returns the error for a checkpoint of another mesh.
 pub(crate) fn foreign() -> SmoothError {
-    SmoothError::Checkpoint(
-        "mesh, held vertices, curves or targets of the checkpoint differ from this run: continue with the mesh that the run began with".to_owned(),
-    )
+    ResumeError::OtherMesh.into()
 }
 
 /// Returns the hash of all data of a mesh that a run depends on: FNV-1a over words of 64 bits.
@@ -315,7 +302,8 @@ mod tests {
             let mut other = checkpoint.clone();
             other.about.options = changed;
             let error = smoother.run(&options).resume(&other).block().unwrap_err();
-            let SmoothError::Checkpoint(text) = error else { panic!("{error}") };
+            let SmoothError::Checkpoint(error) = error else { panic!("{error}") };
+            let text = error.to_string();
             assert!(text.contains(part), "{part} is not in: {text}");
         }
     }

@@ -38,7 +38,8 @@ mod readme {
 
     fn smooth_slices(points: Vec<[f64; 2]>, triangles: Vec<[u32; 3]>) -> Result<Vec<[f64; 2]>> {
         // 1. One blocking call on plain slices. Backend::auto chooses between CPU and GPU.
-        let points = gpu_smooth::smooth(&points, &triangles, &Options::default(), &Backend::Cpu)?;
+        let options = Options::default();
+        let points = gpu_smooth::smooth(&points, &triangles, &[], &options, &Backend::Cpu)?;
 
         Ok(points)
     }

@@ -63,7 +63,7 @@ pub(crate) fn of_run(py: Python<'_>, error: &SmoothError) -> PyErr {
         SmoothError::Mesh(error) => of_mesh(py, error),
         SmoothError::Option(error) => of_option(py, error),
         SmoothError::Gpu(error) => of_gpu(py, error),
-        SmoothError::Checkpoint(text) => option(py, &format!("resume: {text}")),
+        SmoothError::Checkpoint(error) => option(py, &format!("resume: {error}")),
         _ => option(py, &error.to_string()),
     }
 }

@@ -197,7 +197,9 @@ mod tests {
     use crate::run::objectives::Objectives;
 
     fn example() -> Checkpoint {
-        let log = vec![Objectives::of_values([1.5; Metric::ALL.len()]); 3];
+        let mut objectives = Objectives::empty();
+        Metric::ALL.iter().for_each(|metric| objectives.set(*metric, 1.5));
+        let log = vec![objectives; 3];
         let points = vec![DVec2::new(0.25, -1e-300), DVec2::new(-0.0, 7.0)];
         let mut engine = EngineState {
             engine: CPU.to_owned(),

@@ -22,11 +22,6 @@ impl Objectives {
         self.0
     }
 
-    /// Creates objectives from values by each metric, NaN for metrics that were not evaluated.
-    pub(crate) fn of_values(values: [f64; Metric::ALL.len()]) -> Self {
-        Self(values)
-    }
-
     /// Returns the objective by `metric`. `None` if the objective was not evaluated.
     pub fn of(&self, metric: Metric) -> Option<f64> {
         Some(self.0[metric as usize]).filter(|f| !f.is_nan())

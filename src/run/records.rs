@@ -58,6 +58,7 @@ impl Writer {
     }
 
     pub(crate) fn log(&mut self, log: &[Objectives]) {
+        self.list(Metric::ALL, |out, metric| out.text(metric.name()));
         self.list(log, |out, one| one.values().iter().for_each(|f| out.real(*f)));
     }
 }
@@ -142,13 +143,18 @@ impl<'b> Reader<'b> {
         self.list(16, |from| Some(DVec2::new(from.real()?, from.real()?)))
     }
 
+    /// Reads objectives by the metrics that the list names. Metrics of other versions of the library are left out.
     pub(crate) fn log(&mut self) -> Option<Vec<Objectives>> {
-        self.list(8 * Metric::ALL.len(), |from| {
-            let mut values = [0.0; Metric::ALL.len()];
-            for value in &mut values {
-                *value = from.real()?;
+        let metrics = self.list(8, |from| Some(from.text()?.parse::<Metric>().ok()))?;
+        self.list(8 * metrics.len(), |from| {
+            let mut objectives = Objectives::empty();
+            for metric in &metrics {
+                let value = from.real()?;
+                if let Some(metric) = metric {
+                    objectives.set(*metric, value);
+                }
             }
-            Some(Objectives::of_values(values))
+            Some(objectives)
         })
     }
 }
@@ -185,5 +191,26 @@ impl<'b> Records<'b> {
     /// Returns `Some` if every record was read, and `None` otherwise.
     pub(crate) fn end(self) -> Option<()> {
         self.0.is_empty().then_some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A version of the library with other metrics may have written the log.
+    #[test]
+    fn a_log_is_read_by_the_names_of_its_metrics() {
+        let mut out = Writer::default();
+        out.list(&["rms", "tmop-9000", "imr"], |out, name| out.text(name));
+        out.list(&[[2.5, 7.0, 1.5], [2.0, 6.0, 1.25]], |out, row| {
+            row.iter().for_each(|f| out.real(*f));
+        });
+        let log = Reader(&out.0).log().unwrap();
+        let of = |metric| log.iter().map(|now| now.of(metric)).collect::<Vec<_>>();
+        assert_eq!(of(Metric::Rms), [Some(2.5), Some(2.0)]);
+        assert_eq!(of(Metric::Imr), [Some(1.5), Some(1.25)]);
+        assert_eq!(of(Metric::Edge), [None, None]);
+        assert!(Reader(&out.0[..out.0.len() - 8]).log().is_none());
     }
 }

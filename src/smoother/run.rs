@@ -144,17 +144,20 @@ fn unobserved(_: &Progress) -> ControlFlow<()> {
 }
 
 /// Smooths a mesh that is given as slices, in one blocking call, and returns the positions in the order of `points`.
-/// `points` are positions in any unit, `triangles` zero-based vertex triples of either winding. The boundary stays fixed.
+/// `points` are positions in any unit, `triangles` zero-based vertex triples of either winding. The boundary and the vertices
+/// `fixed` stay.
 ///
 /// # Errors
 /// [`SmoothError`] under the conditions that [`Smoother::new`] and [`Run::block`] give.
 pub fn smooth(
     points: &[[f64; 2]],
     triangles: &[[u32; 3]],
+    fixed: &[u32],
     options: &Options,
     backend: &Backend,
 ) -> Result<Vec<[f64; 2]>, SmoothError> {
-    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: Vec::new() };
+    let mesh =
+        Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: fixed.to_vec() };
     let smoother = Smoother::new(&mesh)?;
     Ok(smoother.run(options).on(backend).block()?.points)
 }

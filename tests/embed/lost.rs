@@ -280,7 +280,7 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         let usage = wgpu::BufferUsages::STORAGE;
-        let published = app.buffer(64, usage | wgpu::BufferUsages::COPY_SRC);
+        let published = app.buffer(128, usage | wgpu::BufferUsages::COPY_SRC);
         let bound = vertices.bind(&device_mesh);
         let objective = sweeps.bind_objective(&published, 0).unwrap();
         let mut judged = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();

@@ -47,13 +47,13 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
         let mut sweeps = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         let bound = vertices.bind(&device_mesh);
-        let numbers = app.buffer(64, Usage::STORAGE | Usage::COPY_SRC);
+        let numbers = app.buffer(128, Usage::STORAGE | Usage::COPY_SRC);
         let objective = sweeps.bind_objective(&numbers, 0).unwrap();
         let [x, y] = mesh.points[v as usize].map(|x| 0.5 * x as f32);
         let targets = app.buffer(8, Usage::STORAGE | Usage::COPY_DST);
         app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&[x + 1e-3, y]));
         let place = VertexBuffer::new(&targets, 8);
-        let drag = device_mesh.bind_move(&[v], &place, 8.0, (&numbers, 60)).unwrap();
+        let drag = device_mesh.bind_move(&[v], &place, 8.0, (&numbers, 124)).unwrap();
         let mask = app.buffer(4 * mesh.points.len() as u64, Usage::STORAGE);
         let mask = device_mesh.bind_mask(&mask, 0).unwrap();
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
@@ -93,7 +93,7 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
         });
         let words = app.read(&numbers);
         let at = std::mem::offset_of!(ObjectiveValues, sweeps) / 4;
-        assert_eq!((words[at], words[15]), (3, 1.0f32.to_bits()), "three sweeps, and all the way");
+        assert_eq!((words[at], words[31]), (3, 1.0f32.to_bits()), "three sweeps, and all the way");
         let exported = app.read(&vertices.buffer);
         let at = vertices.word(v);
         let [x, _] = app.points(&device_mesh)[v as usize];

@@ -7,8 +7,8 @@ use crate::gpu::kernels::row::{Composition, Source};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     ALTITUDE_ERROR, AT_DISC, BISECTIONS, CURVE_ERROR, FINISH_WORKGROUP, HELD, HIDDEN, HISTORY,
-    INVERTED, MIN_NORMAL, NO_GUARD, OFF_CURVE, SEARCH_TRIALS, SHARED_STRUCTS, SLOT_VECTORS, SLOTS,
-    STEP_TRIALS, TINY, WORKGROUP, WORST,
+    INVERTED, MIN_NORMAL, MOST_METRICS, NO_GUARD, OFF_CURVE, SEARCH_TRIALS, SHARED_STRUCTS,
+    SLOT_VECTORS, SLOTS, STEP_TRIALS, TINY, WORKGROUP, WORST,
 };
 use crate::layout::MapKind;
 use crate::metric::Metric;
@@ -114,6 +114,7 @@ fn constants() -> String {
         ("FINISH_WORKGROUP", FINISH_WORKGROUP),
         ("HISTORY", HISTORY),
         ("SLOTS", SLOTS as u32),
+        ("MOST_METRICS", MOST_METRICS as u32),
         ("SLOT_VECTORS", SLOT_VECTORS as u32),
         ("INVERTED", INVERTED),
         ("WORST", WORST),

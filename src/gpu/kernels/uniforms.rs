@@ -19,6 +19,8 @@ pub(crate) const FINISH_WORKGROUP: u32 = 256;
 /// Number of values stored for an evaluation: the sum of q² - ideal² for every metric, the number of inverted
 /// triangles, and the largest imr² - 1.
 pub(crate) const SLOTS: usize = Metric::ALL.len() + 2;
+/// Number of metrics for which the objectives that applications read have room.
+pub(crate) const MOST_METRICS: usize = 16;
 /// Number of four-component vectors that hold a value for each slot.
 pub(crate) const SLOT_VECTORS: usize = SLOTS.div_ceil(4);
 /// Slot of the count of inverted and flat triangles.
