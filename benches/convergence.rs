@@ -99,17 +99,13 @@ fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> St
         times.sort();
         times[REPEATS / 2]
     };
-    let options = Options { scheme: metric.into(), method, ..Options::default() };
+    let options = Options::default().scheme(metric.into()).method(method);
     let base = |outcome: &Outcome| -> Vec<f64> {
         outcome.history.iter().map(|o| o.of(metric).unwrap()).collect()
     };
-    let exact = Options {
-        method: Method::Multilevel,
-        stopping: Stopping::Tolerance(1e-10),
-        ..options.clone()
-    };
+    let exact = options.clone().method(Method::Multilevel).stopping(Stopping::Tolerance(1e-10));
     let limit = base(&run(&exact)).into_iter().fold(f64::INFINITY, f64::min);
-    let long = Options { stopping: Stopping::Tolerance(0.0), max_sweeps: 400, ..options.clone() };
+    let long = options.clone().stopping(Stopping::Tolerance(0.0)).max_sweeps(400);
     let long = if method == Method::Multilevel { exact } else { long };
     let history = base(&run(&long));
     let to = |f: f64| history.iter().position(|&reached| reached <= f);
@@ -118,14 +114,9 @@ fn measure(mesh: &Mesh, metric: Metric, method: Method, backend: &Backend) -> St
     let text = |sweeps: Option<usize>| sweeps.map_or("-".to_owned(), |n| n.to_string());
     let counts = [way(0.95), way(0.99), within(1e-4), within(1e-6)].map(text).join(" / ");
     let Some(sweeps) = within(1e-6) else { return format!("{counts}; not reached") };
-    let plain = Options {
-        stopping: Stopping::Tolerance(0.0),
-        max_sweeps: PLAIN,
-        ..Options::paper(metric.into())
-    };
+    let plain = Options::paper(metric.into()).stopping(Stopping::Tolerance(0.0)).max_sweeps(PLAIN);
     let plain = median(&plain).as_secs_f64() / f64::from(PLAIN);
-    let whole =
-        Options { stopping: Stopping::Tolerance(0.0), max_sweeps: sweeps as u32, ..options };
+    let whole = options.stopping(Stopping::Tolerance(0.0)).max_sweeps(sweeps as u32);
     let whole = median(&whole).as_secs_f64();
     format!("{counts}; {:.1} (plain sweep {:.2} ms)", whole / plain, plain * 1e3)
 }

@@ -43,7 +43,7 @@ fn main() {
 
 /// Returns the mesh at its optimum, and f of the optimum.
 fn optimum(mesh: &Mesh) -> (Mesh, f64) {
-    let options = Options { stopping: Stopping::Tolerance(1e-9), ..Options::default() };
+    let options = Options::default().stopping(Stopping::Tolerance(1e-9));
     let run = Smoother::new(mesh).unwrap();
     let run = run.run(&options).on(&Backend::Cpu).block().unwrap();
     let f = run.history.last().and_then(|f| f.of(Metric::Imr)).unwrap();
@@ -52,7 +52,7 @@ fn optimum(mesh: &Mesh) -> (Mesh, f64) {
 
 /// Drags the hole by `far`, and counts the frames until f is near its limit.
 fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
-    let options = &Options { method, ..Options::default() };
+    let options = &Options::default().method(method);
     let buffer = |size: usize, usage| {
         gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: None,

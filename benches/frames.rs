@@ -74,7 +74,7 @@ fn main() {
             bound.encode_export(encoder);
         });
 
-        let options = Options { method: Method::Multilevel, ..Options::default() };
+        let options = Options::default().method(Method::Multilevel);
         let mut corrected_sweeps = Sweeps::new(&device_mesh, &options).unwrap();
         let corrected_objective = corrected_sweeps.bind_objective(&numbers, 0).unwrap();
         let corrected = times(&gpu, |encoder| {

@@ -39,10 +39,10 @@ fn main() {
         let plate = support::triangulate(&outline, vertices).unwrap();
         let mesh = support::perturb_random(&plate, 1.0, 1);
         let flat = with_flat_triangle(&plate);
-        let corrected = Options { method: Method::Multilevel, ..Options::default() };
-        let alone = Options { method: Method::RELAXED, max_sweeps: SWEEPS, ..Options::default() };
-        let edge = Options { scheme: Metric::Edge.into(), max_sweeps: SWEEPS, ..corrected.clone() };
-        let improved = Options { improve_worst: Some(WorstBy::Imr), ..corrected.clone() };
+        let corrected = Options::default().method(Method::Multilevel);
+        let alone = Options::default().method(Method::RELAXED).max_sweeps(SWEEPS);
+        let edge = corrected.clone().scheme(Metric::Edge.into()).max_sweeps(SWEEPS);
+        let improved = corrected.clone().improve_worst(Some(WorstBy::Imr));
         let cases = [
             ("corrected", &mesh, &corrected),
             ("sweeps alone", &mesh, &alone),

@@ -64,12 +64,10 @@ fn cases(engines: &[bool]) -> Vec<Case> {
 impl Case {
     fn engine(&self) -> Option<Box<dyn Stepwise>> {
         let problem = problem(self.size);
-        let options = Options {
-            scheme: self.metric.into(),
-            stopping: Stopping::Tolerance(0.0),
-            max_sweeps: u32::MAX,
-            ..Options::default()
-        };
+        let options = Options::default()
+            .scheme(self.metric.into())
+            .stopping(Stopping::Tolerance(0.0))
+            .max_sweeps(u32::MAX);
         let plan = Plan::new(&options);
         if self.on_gpu {
             let engine = run_on_gpu(gpu()?, problem, problem.positions(), plan);

@@ -45,13 +45,11 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
         return;
     }
     let mut smoother = Smoother::new(mesh).unwrap();
-    let options = Options {
-        guard: if what & 1 != 0 { Guard::Worst } else { Guard::default() },
-        keep_altitude: what & 2 != 0,
-        max_move: (what & 4 != 0).then_some([1e-3, 0.1, 0.5, 2.0][which]),
-        improve_worst: (what & 8 != 0).then_some(WorstBy::ALL[which % 3]),
-        ..options
-    };
+    let options = options
+        .guard(if what & 1 != 0 { Guard::Worst } else { Guard::default() })
+        .keep_altitude(what & 2 != 0)
+        .max_move((what & 4 != 0).then_some([1e-3, 0.1, 0.5, 2.0][which]))
+        .improve_worst((what & 8 != 0).then_some(WorstBy::ALL[which % 3]));
     let rings = which as u32 % 3;
     let targets = match what >> 4 & 3 {
         1 => Targets::keep_size(smoother.topology(), &mesh.points, Surface::Plane, rings),
@@ -123,19 +121,17 @@ fn options(bytes: &mut Bytes<'_>) -> Options {
         _ => metric(first / 3).parse().unwrap(),
     };
     let flags = bytes.byte();
-    let mut options = Options {
-        scheme,
-        max_sweeps: bytes.below(25) as u32,
-        method: if flags & 1 == 0 { Method::Auto } else { Method::RELAXED },
-        stored: match flags & 14 {
+    let mut options = Options::default()
+        .scheme(scheme)
+        .max_sweeps(bytes.below(25) as u32)
+        .method(if flags & 1 == 0 { Method::Auto } else { Method::RELAXED })
+        .stored(match flags & 14 {
             2 => Precision::Single,
             6 => Precision::Custom(digits!(15)),
             10 => Precision::Custom(digits!(11)),
             14 => Precision::Custom(digits!(5)),
             _ => Precision::Double,
-        },
-        ..Options::default()
-    };
+        });
     if flags & 48 == 16 {
         options.method = Method::Paper(Paper { newton_steps: 3, ..Paper::default() });
     }

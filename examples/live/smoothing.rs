@@ -211,7 +211,7 @@ impl Smoothing {
 }
 
 fn options(scheme: &Scheme) -> Options {
-    Options { scheme: scheme.clone(), stopping: Stopping::Tolerance(1e-4), ..Options::default() }
+    Options::default().scheme(scheme.clone()).stopping(Stopping::Tolerance(1e-4))
 }
 
 fn floats(points: &[[f64; 2]]) -> Vec<[f32; 2]> {

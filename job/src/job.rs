@@ -164,7 +164,7 @@ impl<'f> Job<'f> {
                 let curves = self.domain.curves(&self.mesh().points, smoother.topology(), &by);
                 smoother.set_slide(Some(&curves.slide))?;
             }
-            let options = Options { stored: self.stored(), ..options.clone() };
+            let options = options.clone().stored(self.stored());
             let mut outcome = smoother.run(&options).on(backend).block()?;
             if let Some(plane) = self.domain.plane() {
                 let before = &self.mesh().points;

@@ -66,26 +66,26 @@ impl RunRequest {
     /// Returns the options of the library for points of a precision. `default` is the metric of a run without a scheme; see
     /// [`TargetKind::default_metric`](crate::TargetKind::default_metric).
     pub fn options(&self, default: Metric, stored: Precision) -> Options {
-        let usual = Options::default();
         let fraction = self.fraction.unwrap_or(FRACTION);
         let goal = Goal { fraction, desired: self.desired.flatten() };
-        let options = Options {
-            scheme: self.scheme.clone().unwrap_or_else(|| default.into()),
-            method: self.method(),
-            stopping: match (self.has_goal(), self.tolerance) {
-                (true, _) => Stopping::Goal(goal),
-                (false, Some(tolerance)) => Stopping::Tolerance(tolerance),
-                (false, None) => usual.stopping,
-            },
-            max_sweeps: self.max_sweeps.unwrap_or(usual.max_sweeps),
-            guard: self.guard,
-            max_move: self.max_move,
-            keep_altitude: self.keep_altitude,
-            improve_worst: self.improve_worst,
-            stored,
-            track_all: self.track_all,
-            ..usual
+        let usual = Options::default();
+        let stopping = match (self.has_goal(), self.tolerance) {
+            (true, _) => Stopping::Goal(goal),
+            (false, Some(tolerance)) => Stopping::Tolerance(tolerance),
+            (false, None) => usual.stopping,
         };
+        let max_sweeps = self.max_sweeps.unwrap_or(usual.max_sweeps);
+        let options = usual
+            .scheme(self.scheme.clone().unwrap_or_else(|| default.into()))
+            .method(self.method())
+            .stopping(stopping)
+            .max_sweeps(max_sweeps)
+            .guard(self.guard)
+            .max_move(self.max_move)
+            .keep_altitude(self.keep_altitude)
+            .improve_worst(self.improve_worst)
+            .stored(stored)
+            .track_all(self.track_all);
         // By default, the exponent of runs with corrections doubles as far as the tolerance requires.
         let doubles_anyway = options.is_multilevel() && options.scheme.base() == Metric::Edge;
         let edge_norm = match self.doubles_exponent {
@@ -93,7 +93,7 @@ impl RunRequest {
             Some(true) if !doubles_anyway => Some(PNormExponent::CONTINUED),
             _ => None,
         };
-        Options { edge_norm, ..options }
+        options.edge_norm(edge_norm)
     }
 
     /// Returns the method. A setting that only one method has selects that method.

@@ -226,7 +226,7 @@ fn boundary_layers_of_a_file_stay_unless_the_caller_says_otherwise() {
     assert!(layers.vertices.iter().all(|&v| kept[v as usize] == file.points()[v as usize]));
     let fixed = Mesh { fixed: layers.vertices.clone(), ..job().into_mesh() };
     let smoother = Smoother::keeping(Cow::Owned(fixed), Layers::default()).unwrap();
-    let options = Options { stored: job().stored(), ..Options::default() };
+    let options = Options::default().stored(job().stored());
     let outcome = smoother.run(&options).block().unwrap();
     assert_eq!(kept, outcome.points);
     assert_ne!(kept, file.points());

@@ -13,10 +13,19 @@ use crate::options::worst_by::WorstBy;
 use crate::precision::Precision;
 
 /// The options of a run. The mesh, its targets and its sliding vertices are not options: they belong to the
-/// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR, on the CPU with Newton steps of all vertices
-/// and on devices with corrections from coarser levels, until an estimated 1e-6 of f is left to gain, and makes neither the
-/// least angle nor the worst inverse mean ratio worse; see [`Floored`](crate::outcome::Floored).
+/// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR, with Newton steps of all vertices at the end, until at
+/// most 1e-6 of f is left to gain, and makes neither the least angle nor the worst inverse mean ratio worse; see
+/// [`Floored`](crate::outcome::Floored).
+///
+/// Each option has a setter, as versions to come may have more options:
+///
+/// ```
+/// use gpu_smooth::{Metric, Options, Stopping};
+///
+/// let options = Options::default().scheme(Metric::Rms.into()).stopping(Stopping::Tolerance(1e-4));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
     /// The metric, or several metrics that alternate. The first metric judges convergence.
     pub scheme: Scheme,
@@ -67,6 +76,47 @@ impl Default for Options {
             track_all: false,
         }
     }
+}
+
+/// Declares a setter for each option. A setter has the name of its field, which has the description.
+macro_rules! setters {
+    ($($(#[$doc:meta])* $name:ident: $kind:ty,)*) => {
+        impl Options {
+            $(
+                $(#[$doc])*
+                #[must_use]
+                pub fn $name(mut self, $name: $kind) -> Self {
+                    self.$name = $name;
+                    self
+                }
+            )*
+        }
+    };
+}
+
+setters! {
+    /// Sets the metric, or several metrics that alternate.
+    scheme: Scheme,
+    /// Sets the method by which sweeps lower the objective.
+    method: Method,
+    /// Sets the criterion that ends the run.
+    stopping: Stopping,
+    /// Sets the largest number of sweeps.
+    max_sweeps: u32,
+    /// Sets the limit on the inverse mean ratio of triangles after a step.
+    guard: Guard,
+    /// Sets the largest distance that a vertex may move, in lengths of its edges.
+    max_move: Option<f64>,
+    /// Sets whether every triangle must keep the least altitude of the mesh.
+    keep_altitude: bool,
+    /// Sets the measure by which the worst triangles are improved after the last sweep.
+    improve_worst: Option<WorstBy>,
+    /// Sets the precision of the file or buffer that will store the result.
+    stored: Precision,
+    /// Sets the exponent of the p-norm that replaces EDGE in Newton's method.
+    edge_norm: Option<PNormExponent>,
+    /// Sets whether the history holds the objective of every metric.
+    track_all: bool,
 }
 
 impl Options {

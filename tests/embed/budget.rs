@@ -48,7 +48,7 @@ fn the_device_measures_how_many_sweeps_fit() {
 fn sweeps_that_have_ended_are_not_measured() {
     let app = App::with_timestamps();
     let device_mesh = app.mesh(&bad_plate(300));
-    let options = Options { max_sweeps: 3, ..Options::default() };
+    let options = Options::default().max_sweeps(3);
     let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
     let budget = Budget::new(Duration::from_secs(3600));
     let mut budget = budget.timed_by(&app.gpu).unwrap();

@@ -12,13 +12,13 @@ use crate::app::{App, Vertices, bad_plate, interior, plate};
 use support::{distort_smooth, graded, lattice, orientations, perturb_random, read_mesh};
 
 fn corrected(metric: Metric) -> Options {
-    Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
+    Options::default().scheme(metric.into()).method(Method::Multilevel)
 }
 
 /// Returns options without corrections, but with the relaxation of corrected sweeps.
 fn alone() -> Options {
     let relaxed = Relaxed { omega: Some(1.3), unrelaxed_sweeps: 0 };
-    Options { method: Method::Relaxed(relaxed), ..Options::default() }
+    Options::default().method(Method::Relaxed(relaxed))
 }
 
 /// Makes a mesh displaced by long waves, for which uncorrected sweeps converge slowly.
@@ -43,11 +43,7 @@ fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 
 
 /// Returns the smallest f found by a run on the CPU.
 fn limit(mesh: &Mesh, metric: Metric) -> f64 {
-    let options = Options {
-        scheme: metric.into(),
-        stopping: Stopping::Tolerance(1e-8),
-        ..Options::default()
-    };
+    let options = Options::default().scheme(metric.into()).stopping(Stopping::Tolerance(1e-8));
     let run = Smoother::new(mesh).unwrap();
     let run = run.run(&options).on(&Backend::Cpu).block().unwrap();
     run.history.last().and_then(|f| f.of(metric)).unwrap()
@@ -65,7 +61,7 @@ fn corrected_sweeps_are_near_the_limit_after_a_dozen_and_never_raise_f() {
         assert!(f.windows(2).all(|f| f[1] <= f[0] * (1.0 + 2e-7)), "{metric}: {f:?}");
         let end = Mesh { points, ..mesh.clone() };
         assert!(orientations(&end).iter().all(|&sign| sign == 1));
-        let plain = Options { method: Method::RELAXED, ..corrected(metric) };
+        let plain = corrected(metric).method(Method::RELAXED);
         let (f, _) = frames(&mesh, &plain, 15);
         assert!(f[14] / limit - 1.0 > 10.0 * left.max(1e-7), "{metric}: {f:?}");
     }
@@ -165,7 +161,7 @@ fn judged_sweeps_with_corrections_end_sooner_and_then_leave_every_bit() {
     let mut counts = Vec::new();
     for method in [Method::Multilevel, Method::RELAXED] {
         let device_mesh = app.mesh(&mesh);
-        let options = Options { method, stopping: Stopping::Tolerance(1e-5), ..Options::default() };
+        let options = Options::default().method(method).stopping(Stopping::Tolerance(1e-5));
         let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 120));
         let values = app.objective(&sweeps);
@@ -213,7 +209,7 @@ fn a_mesh_with_targets_is_corrected_as_they_show_it() {
     let app = App::new();
     let f = [Method::Multilevel, Method::RELAXED].map(|method| {
         let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
-        let options = Options { method, ..Options::default() };
+        let options = Options::default().method(method);
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
         let counts = if method == Method::Multilevel { [25, 275] } else { [25, 400] };
         counts.map(|count| {
@@ -232,7 +228,7 @@ fn stretched_meshes_and_hubs_are_swept_without_corrections_and_say_why() {
     let mut stretched = perturb_random(&lattice(30, 20), 0.5, 3);
     stretched.points.iter_mut().for_each(|point| point[1] /= 10.0);
     let hub = perturb_random(&support::hub_evenly(300, 6), 0.3, 3);
-    let plain = Options { scheme: Metric::Imr.into(), ..Options::default() };
+    let plain = Options::default().scheme(Metric::Imr.into());
     for (mesh, doubt) in [(&stretched, Doubt::Stretched), (&hub, Doubt::Hub(300))] {
         let app = App::new();
         let made = |options| Sweeps::new(&app.mesh(mesh), options).unwrap().doubt();
@@ -265,10 +261,8 @@ fn meshes_without_coarser_levels_are_swept() {
 fn meshes_and_options_that_cannot_be_corrected_are_refused_with_the_reason() {
     let app = App::new();
     let device_mesh = app.mesh(&plate(102));
-    let multilevel = |scheme: &str| Options {
-        scheme: scheme.parse().unwrap(),
-        method: Method::Multilevel,
-        ..Options::default()
+    let multilevel = |scheme: &str| {
+        Options::default().scheme(scheme.parse().unwrap()).method(Method::Multilevel)
     };
     for (options, reason) in [
         (multilevel("edge"), "encoding corrected sweeps does not go with a scheme of several"),
@@ -356,7 +350,7 @@ fn a_rough_mesh_is_near_the_limit_after_a_dozen_corrected_sweeps() {
             let (f, _) = frames(mesh, options, 60);
             f.iter().position(|f| f / limit - 1.0 < 1e-5).map_or(usize::MAX, |frame| frame + 1)
         };
-        let plain = Options { method: Method::RELAXED, ..corrected(Metric::Imr) };
+        let plain = corrected(Metric::Imr).method(Method::RELAXED);
         let [with, without] = [corrected(Metric::Imr), plain].map(|options| count(&options));
         assert!(with <= 14 && with < without, "{name}: {with} and {without}");
     }

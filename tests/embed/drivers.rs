@@ -55,13 +55,11 @@ fn drivers_of_vulkan_and_of_opengl_agree_with_the_cpu() {
         let scheme: gpu_smooth::Scheme = scheme.parse().unwrap();
         let base = scheme.base();
         let tolerance = 0.0;
-        let options = Options {
-            scheme,
-            method,
-            max_sweeps: 8,
-            stopping: Stopping::Tolerance(tolerance),
-            ..Options::default()
-        };
+        let options = Options::default()
+            .scheme(scheme)
+            .method(method)
+            .max_sweeps(8)
+            .stopping(Stopping::Tolerance(tolerance));
         let [cpu, vulkan, gl] =
             backends.each_ref().map(|backend| smoother.run(&options).on(backend).block().unwrap());
         let f =
@@ -100,8 +98,7 @@ fn a_run_goes_on_on_the_cpu_when_a_device_of_opengl_is_lost() {
     let smoother = Smoother::new(&mesh).unwrap();
     let gpu = open(wgpu::Backends::GL);
     let device = gpu.device().clone();
-    let options =
-        Options { stopping: Stopping::Tolerance(0.0), max_sweeps: 20, ..Options::default() };
+    let options = Options::default().stopping(Stopping::Tolerance(0.0)).max_sweeps(20);
     let observe = |progress: &Progress| {
         if progress.sweep >= 4 {
             device.destroy();

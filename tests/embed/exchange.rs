@@ -227,7 +227,7 @@ fn a_position_that_is_not_finite_is_not_taken() {
     let (v, others) = (interior(&mesh)[100], interior(&mesh));
     for scheme in ["imr", "rms", "area"] {
         let device_mesh = app.mesh(&mesh);
-        let options = Options { scheme: scheme.parse().unwrap(), ..Options::default() };
+        let options = Options::default().scheme(scheme.parse().unwrap());
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
         for wrong in [[f64::NAN; 2], [1.0, f64::INFINITY], [f64::NEG_INFINITY, 1.0]] {
             let vertices = Vertices::usual(&app, &mesh);

@@ -48,16 +48,12 @@ fn assert_same(expected: &Outcome, found: &Outcome) {
 }
 
 fn cases() -> [Options; 3] {
-    let edge = Options {
-        scheme: "edge+imr".parse().unwrap(),
-        method: Method::RELAXED,
-        ..Options::default()
-    };
+    let edge = Options::default().scheme("edge+imr".parse().unwrap()).method(Method::RELAXED);
     let goal = Goal { fraction: 0.95, desired: None };
     [
-        Options { track_all: true, ..Options::default() },
-        Options { max_sweeps: 30, ..edge },
-        Options { stopping: Stopping::Goal(goal), ..Options::default() },
+        Options::default().track_all(true),
+        edge.max_sweeps(30),
+        Options::default().stopping(Stopping::Goal(goal)),
     ]
 }
 
@@ -200,12 +196,10 @@ fn a_canceled_run_returns_the_best_state_so_far() {
     let app = App::new();
     let on_app = Backend::Gpu(app.gpu.clone());
     for scheme in ["imr", "edge+imr"] {
-        let options = Options {
-            scheme: scheme.parse().unwrap(),
-            stopping: Stopping::Tolerance(0.0),
-            max_sweeps: 100_000,
-            ..Options::default()
-        };
+        let options = Options::default()
+            .scheme(scheme.parse().unwrap())
+            .stopping(Stopping::Tolerance(0.0))
+            .max_sweeps(100_000);
         let base = options.scheme.base();
         let mut heard = Vec::new();
         let mut observe = |progress: &Progress| {
@@ -236,8 +230,7 @@ fn a_dropped_run_leaves_the_device_usable() {
     let [options, ..] = cases();
     let (expected, _) = drive(app.device(), smoother.run(&options).on(&on_app));
     let expected = expected.unwrap();
-    let endless =
-        Options { stopping: Stopping::Tolerance(0.0), max_sweeps: u32::MAX, ..Options::default() };
+    let endless = Options::default().stopping(Stopping::Tolerance(0.0)).max_sweeps(u32::MAX);
     // Drops before the first poll, at the first wait, and later.
     for polls in [0, 1, 2, 7] {
         let observe = go_on;

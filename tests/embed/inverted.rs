@@ -81,7 +81,7 @@ fn sweeps_leave_no_nan_invert_nothing_and_improve_the_rest() {
             let app = App::new();
             let device_mesh = app.mesh(&sound);
             let method = Method::Paper(Paper { derivatives, ..Paper::default() });
-            let options = Options { scheme: metric.into(), method, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).method(method);
             let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
             let vertices = Vertices::usual(&app, &broken);
             app.submit(|encoder| {

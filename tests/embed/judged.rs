@@ -50,7 +50,7 @@ impl Frames {
 }
 
 fn options() -> Options {
-    Options { method: Method::RELAXED, stopping: Stopping::Tolerance(1e-3), ..Options::default() }
+    Options::default().method(Method::RELAXED).stopping(Stopping::Tolerance(1e-3))
 }
 
 #[test]
@@ -58,8 +58,8 @@ fn sweeps_end_where_a_run_ends_however_they_are_split() {
     let mesh = plate(300);
     for (options, stop) in [
         (options(), Stop::Converged),
-        (Options { max_sweeps: 5, ..options() }, Stop::MaxSweeps),
-        (Options { scheme: "rms+imr".parse().unwrap(), ..options() }, Stop::Converged),
+        (options().max_sweeps(5), Stop::MaxSweeps),
+        (options().scheme("rms+imr".parse().unwrap()), Stop::Converged),
     ] {
         let app = App::new();
         let backend = Backend::Gpu(app.another_gpu());
@@ -148,7 +148,7 @@ fn two_schemes_on_one_mesh_are_each_judged_and_evaluations_in_between_do_not_cou
 
     let device_mesh = app.mesh(&mesh);
     let mut sweeps = Sweeps::until_converged(&device_mesh, &options()).unwrap();
-    let other = Options { scheme: "rms".parse().unwrap(), ..options() };
+    let other = options().scheme("rms".parse().unwrap());
     let mut other = Sweeps::until_converged(&device_mesh, &other).unwrap();
     let buffer = app.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE);
     let objective = sweeps.bind_objective(&buffer, 0).unwrap();
@@ -170,7 +170,7 @@ fn two_schemes_on_one_mesh_are_each_judged_and_evaluations_in_between_do_not_cou
 fn sweeps_that_are_not_judged_have_no_stop() {
     let app = App::new();
     let device_mesh = app.mesh(&plate(300));
-    let options = Options { max_sweeps: 1, ..options() };
+    let options = options().max_sweeps(1);
     let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 5));
     let values = app.objective(&sweeps);

@@ -52,7 +52,7 @@ fn a_mesh_that_was_never_valid_in_a_frame_goes_back_to_where_it_was_uploaded() {
     let mesh = bad_plate(300);
     let device_mesh = app.mesh(&mesh);
     let start = app.points(&device_mesh);
-    let options = Options { max_sweeps: 1, ..Options::default() };
+    let options = Options::default().max_sweeps(1);
     let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
     let vertices = Vertices::usual(&app, &mesh);
     let bound = vertices.bind(&device_mesh);

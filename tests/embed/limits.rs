@@ -107,7 +107,7 @@ fn a_device_with_exactly_the_required_limits_smooths() {
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
     let app = App::with_limits(least_limits(size)).unwrap();
     let device_mesh = app.mesh(&mesh);
-    let options = Options { track_all: true, ..Options::default() };
+    let options = Options::default().track_all(true);
     let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     let vertices = Vertices::new(&app, &mesh, 0, 8);
     app.submit(|encoder| {

@@ -36,7 +36,7 @@ fn assert_lost(error: &GpuError) {
 }
 
 fn endless() -> Options {
-    Options { stopping: Stopping::Tolerance(0.0), max_sweeps: u32::MAX, ..Options::default() }
+    Options::default().stopping(Stopping::Tolerance(0.0)).max_sweeps(u32::MAX)
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn a_run_goes_on_on_the_cpu_when_the_device_is_lost() {
         for round in 0..rounds {
             let scheme: Scheme = ["imr", "edge+imr", "rms"][round % 3].parse().unwrap();
             let base = scheme.base();
-            let options = Options { scheme, ..Options::default() };
+            let options = Options::default().scheme(scheme);
             let on_cpu = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
             // A fraction of the duration on this machine, because a fast machine would finish before a fixed time.
             let after = time_of_a_run(&smoother, &options).mul_f64(0.8 * random.unit());
@@ -165,7 +165,7 @@ fn a_run_goes_on_from_what_was_kept() {
     within_a_minute(|| {
         let mesh = bad_plate(500);
         let smoother = Smoother::new(&mesh).unwrap();
-        let options = Options { max_sweeps: 60, ..endless() };
+        let options = endless().max_sweeps(60);
         for (interval, from) in [(Duration::ZERO, 6), (Duration::MAX, 0)] {
             let app = App::new();
             let backend = Backend::Gpu(app.another_gpu());
@@ -203,8 +203,8 @@ fn a_run_goes_on_from_what_was_kept() {
 fn a_run_with_bounds_or_a_stage_leaves_a_lost_device_once() {
     within_a_minute(|| {
         let mesh = bad_plate(500);
-        let bounded = Options { max_move: Some(0.3), ..Options::default() };
-        let kept = Options { keep_altitude: true, ..Options::default() };
+        let bounded = Options::default().max_move(Some(0.3));
+        let kept = Options::default().keep_altitude(true);
         let targets = Targets::equilateral(mesh.points.len());
         let field = || TargetField::new(&mesh, &targets).unwrap();
         for (options, has_stage) in [(bounded, false), (kept, false), (Options::default(), true)] {

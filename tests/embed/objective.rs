@@ -18,7 +18,7 @@ fn quality(mesh: &Mesh, points: &[[f64; 2]]) -> Quality {
 }
 
 fn all_tracked() -> Options {
-    Options { scheme: "edge+imr".parse().unwrap(), track_all: true, ..Options::default() }
+    Options::default().scheme("edge+imr".parse().unwrap()).track_all(true)
 }
 
 fn readable(app: &App, floats: usize) -> wgpu::Buffer {
@@ -54,7 +54,7 @@ fn the_worst_triangle_is_known_whatever_the_metric() {
     let device_mesh = app.mesh(&mesh);
     let expected = quality(&mesh, &mesh.points).worst_imr;
     for &metric in Metric::ALL {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         let found = app.objective(&Sweeps::new(&device_mesh, &options).unwrap()).worst_imr;
         let off = f64::from(found) / expected - 1.0;
         assert!(off.abs() < 1e-4, "{metric}: {found} for {expected}");
@@ -93,7 +93,7 @@ fn metrics_not_tracked_are_zero_and_the_rest_of_the_buffer_untouched() {
     let mesh = bad_plate(300);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let options = Options { scheme: Metric::Rms.into(), ..Options::default() };
+    let options = Options::default().scheme(Metric::Rms.into());
     let sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     for first in [0usize, 1, 63, 64, 70] {
         let published = readable(&app, 100);

@@ -53,12 +53,10 @@ fn vertices_slide_to_the_same_places_part_by_part() {
     let mesh = mesh();
     let mut smoother = Smoother::new(&mesh).unwrap();
     assert!(smoother.set_slide(Some(&Slide::default())).unwrap() > 100);
-    let options = Options {
-        method: Method::RELAXED,
-        scheme: "imr+rms".parse().unwrap(),
-        max_sweeps: 20,
-        ..Options::default()
-    };
+    let options = Options::default()
+        .method(Method::RELAXED)
+        .scheme("imr+rms".parse().unwrap())
+        .max_sweeps(20);
     let slid = devices(&mesh).map(|app| {
         let backend = Backend::Gpu(app.another_gpu());
         smoother.run(&options).on(&backend).block().unwrap()
@@ -71,12 +69,12 @@ fn vertices_slide_to_the_same_places_part_by_part() {
 fn a_run_is_the_same_part_by_part() {
     let mesh = mesh();
     let devices = devices(&mesh);
-    let sweeps = |scheme: &str| Options {
-        scheme: scheme.parse().unwrap(),
-        method: Method::RELAXED,
-        max_sweeps: 30,
-        track_all: true,
-        ..Options::default()
+    let sweeps = |scheme: &str| {
+        Options::default()
+            .scheme(scheme.parse().unwrap())
+            .method(Method::RELAXED)
+            .max_sweeps(30)
+            .track_all(true)
     };
     let names = Metric::ALL.iter().map(|metric| metric.name());
     let alone = names.map(sweeps);
@@ -186,7 +184,7 @@ fn a_mesh_that_cannot_be_bound_in_parts_is_refused_before_anything_is_allocated(
     let backend = Backend::Gpu(app.another_gpu());
     let smoother = Smoother::new(&large).unwrap();
     for method in [Method::RELAXED, Method::Auto] {
-        let options = Options { method, ..Options::default() };
+        let options = Options::default().method(method);
         let run = smoother.run(&options).on(&backend).block();
         assert_eq!(gpu_error(run.unwrap_err()).to_string(), text);
     }
@@ -222,7 +220,7 @@ fn corrections_are_the_same_part_by_part() {
     let devices = devices(&mesh);
     for metric in [Metric::Imr, Metric::Rms] {
         let method = Method::Multilevel;
-        let options = Options { scheme: metric.into(), method, ..Options::default() };
+        let options = Options::default().scheme(metric.into()).method(method);
         let [whole, parts] = devices.each_ref().map(|app| run(app, &mesh, &options));
         assert!(whole.corrections > 3, "{metric}");
         assert_eq!(f(&whole, metric), f(&parts, metric));
@@ -237,7 +235,7 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
     let mesh = bad_plate(870);
     let [large, small] = devices(&self::mesh());
     // By this metric, runs do not end by Newton steps.
-    let auto = Options { scheme: Metric::ShapeSize.into(), ..Options::default() };
+    let auto = Options::default().scheme(Metric::ShapeSize.into());
     let [with, without] = [&large, &small].map(|app| run(app, &mesh, &auto));
     assert!(with.corrections > 0 && !with.levels_left_out);
     assert!(without.corrections == 0 && without.levels_left_out);
@@ -246,7 +244,7 @@ fn corrections_are_left_out_where_coarser_levels_do_not_fit() {
         [with, without].map(|outcome| *f(&outcome, Metric::ShapeSize).last().unwrap());
     assert!((without / with - 1.0).abs() < 1e-6, "{without} for {with}");
 
-    let asked = Options { method: Method::Multilevel, ..auto };
+    let asked = auto.method(Method::Multilevel);
     let backend = Backend::Gpu(small.another_gpu());
     let observe = &mut |_: &_| ControlFlow::Continue(());
     let error = Smoother::new(&mesh)
@@ -265,7 +263,7 @@ fn encoded_corrections_are_the_same_part_by_part() {
     let mesh = bad_plate(1500);
     let points = devices(&mesh).each_ref().map(|app| {
         let device_mesh = app.mesh(&mesh);
-        let options = Options { method: Method::Multilevel, ..Options::default() };
+        let options = Options::default().method(Method::Multilevel);
         let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
         app.points(&device_mesh)

@@ -166,7 +166,7 @@ fn a_mask_of_the_application_holds_vertices_beside_pins() {
 #[test]
 fn a_mask_that_changes_nothing_is_no_change_of_the_mesh() {
     let mut held = Held::new(bad_plate(300));
-    let options = Options { max_sweeps: 2, ..Options::default() };
+    let options = Options::default().max_sweeps(2);
     held.sweeps = Sweeps::until_converged(&held.device_mesh, &options).unwrap();
     let buffer = mask(&held, |v| v % 5 == 0);
     let bound = held.device_mesh.bind_mask(&buffer, 12).unwrap();

@@ -247,32 +247,23 @@ fn options_out_of_range_are_refused() {
     let omega = |omega| Method::Relaxed(Relaxed { omega: Some(omega), ..Relaxed::default() });
     let no_steps = Paper { newton_steps: 0, ..Paper::default() };
     for (options, text) in [
-        (Options { method: omega(2.0), ..ok() }, "omega is 2: it must be above 0 and below 2"),
+        (ok().method(omega(2.0)), "omega is 2: it must be above 0 and below 2"),
+        (ok().method(omega(f64::NAN)), "omega is NaN: it must be above 0 and below 2"),
         (
-            Options { method: omega(f64::NAN), ..ok() },
-            "omega is NaN: it must be above 0 and below 2",
-        ),
-        (
-            Options { method: Method::Paper(no_steps), ..ok() },
+            ok().method(Method::Paper(no_steps)),
             "newton steps is 0: it must be a number from 1 to 1000",
         ),
+        (ok().stopping(Stopping::Tolerance(-1.0)), "tolerance is -1: it must be 0 or above"),
         (
-            Options { stopping: Stopping::Tolerance(-1.0), ..ok() },
-            "tolerance is -1: it must be 0 or above",
-        ),
-        (
-            Options { max_move: Some(0.5), ..ok() },
+            ok().max_move(Some(0.5)),
             "encoding sweeps does not go with max_move: only a whole run can do this; drop it, or do a whole run",
         ),
         (
-            Options {
-                stopping: Stopping::Goal(Goal { fraction: 0.9, desired: Some(1.0) }),
-                ..ok()
-            },
+            ok().stopping(Stopping::Goal(Goal { fraction: 0.9, desired: Some(1.0) })),
             "encoding sweeps does not go with Stopping::Goal: only a whole run can do this; drop it, or do a whole run",
         ),
         (
-            Options { guard: Guard::Worst, ..ok() },
+            ok().guard(Guard::Worst),
             "encoding sweeps does not go with Guard::Worst: only a whole run can do this; drop it, or do a whole run",
         ),
     ] {

@@ -102,7 +102,7 @@ fn boundary_vertices_slide_in_frames_as_in_a_run() {
         let smoother = smoother(&sliding.mesh, &sliding.slide);
         let stopping = Stopping::Tolerance(0.0);
         let method = Method::Relaxed(Relaxed::default());
-        let options = Options { method, stopping, max_sweeps: 120, ..Options::default() };
+        let options = Options::default().method(method).stopping(stopping).max_sweeps(120);
         let run = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
         let [f, of_run] = [&points, &run.points].map(|p| smoother.f(Metric::Imr, p).unwrap());
         assert!((f / of_run - 1.0).abs() < 1e-4, "{f} {of_run}");
@@ -118,11 +118,8 @@ fn boundary_vertices_slide_in_frames_as_in_a_run() {
 #[test]
 fn vertices_slide_in_corrected_sweeps_that_end_by_themselves() {
     let sliding = Sliding::new(channel(), Slide::default());
-    let options = |method| Options {
-        method,
-        stopping: Stopping::Tolerance(1e-4),
-        max_sweeps: 400,
-        ..Options::default()
+    let options = |method| {
+        Options::default().method(method).stopping(Stopping::Tolerance(1e-4)).max_sweeps(400)
     };
     let mut ends = Vec::new();
     for method in [Method::Auto, Method::Multilevel] {

@@ -127,7 +127,7 @@ fn fixed_vertices_leave_sweeps_in_the_projection() {
     let fixed = Mesh { fixed: held.clone(), ..mesh.clone() };
     let sizes: Vec<f64> = mesh.points.iter().map(|[_, y]| 1.0 + 0.02 * y).collect();
     let targets = Targets::sizes(&sizes).unwrap();
-    let options = Options { method: Method::RELAXED, ..Options::default() };
+    let options = Options::default().method(Method::RELAXED);
     for with_targets in [false, true] {
         let [pinned, held] = [&mesh, &fixed].map(|given| {
             let mut smoother = on_sphere(given);

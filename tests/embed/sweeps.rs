@@ -12,15 +12,14 @@ use support::{lattice, perturb_random};
 
 fn options(scheme: &str) -> Options {
     let method = Method::RELAXED;
-    Options { scheme: scheme.parse().unwrap(), method, ..Options::default() }
+    Options::default().scheme(scheme.parse().unwrap()).method(method)
 }
 
 /// Runs `sweeps` sweeps on the GPU. Returns the best points, and the number of the sweep that produced them.
 fn run(mesh: &Mesh, options: &Options, sweeps: u32) -> (Vec<[f64; 2]>, u32) {
     let app = App::new();
     let backend = Backend::Gpu(app.another_gpu());
-    let options =
-        Options { max_sweeps: sweeps, stopping: Stopping::Tolerance(0.0), ..options.clone() };
+    let options = options.clone().max_sweeps(sweeps).stopping(Stopping::Tolerance(0.0));
     let outcome = Smoother::new(mesh).unwrap().run(&options).on(&backend).block().unwrap();
     assert_eq!((outcome.sweeps, outcome.returned), (sweeps, 0));
     (outcome.points, outcome.best_sweep)
@@ -56,18 +55,14 @@ fn encoded_sweeps_are_those_of_a_run() {
     let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
     let cases = [
         ("over-relaxed after four", options("imr"), 13),
-        ("over-relaxed after six", Options { method: relaxed(None, 6), ..options("imr") }, 9),
+        ("over-relaxed after six", options("imr").method(relaxed(None, 6)), 9),
         ("as published", Options::paper("imr".parse().unwrap()), 6),
         ("alternating", options("edge+imr"), 7),
-        (
-            "alternating by three",
-            Options { method: relaxed(Some(1.3), 2), ..options("imr+rms+area") },
-            8,
-        ),
-        ("two steps a visit", Options { method: Method::Paper(two_steps), ..options("imr") }, 6),
-        ("sharpened", Options { edge_norm: Some(PNormExponent::CONTINUED), ..options("edge") }, 12),
-        ("by differences", Options { method: Method::Paper(differences), ..options("rms") }, 6),
-        ("all tracked", Options { track_all: true, ..options("area") }, 6),
+        ("alternating by three", options("imr+rms+area").method(relaxed(Some(1.3), 2)), 8),
+        ("two steps a visit", options("imr").method(Method::Paper(two_steps)), 6),
+        ("sharpened", options("edge").edge_norm(Some(PNormExponent::CONTINUED)), 12),
+        ("by differences", options("rms").method(Method::Paper(differences)), 6),
+        ("all tracked", options("area").track_all(true), 6),
     ];
     for (name, options, sweeps) in cases {
         let (expected, sweeps) = run(&mesh, &options, sweeps);
@@ -137,7 +132,7 @@ fn a_restarted_scheme_starts_with_plain_sweeps_again() {
     let app = App::new();
     let options = options("imr+rms");
     let relaxed = Relaxed { omega: Some(1.6), ..Relaxed::default() };
-    let options = Options { method: Method::Relaxed(relaxed), ..options };
+    let options = options.method(Method::Relaxed(relaxed));
     // Seven sweeps, then seven more: after a restart, with new sweeps, or continued.
     let [restarted, anew, on] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);

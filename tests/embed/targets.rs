@@ -34,13 +34,11 @@ fn encoded_sweeps_to_targets_are_those_of_a_run() {
 
 fn assert_encoded_as_run(mesh: &Mesh, targets: &Targets) {
     let app = App::new();
-    let options = Options {
-        scheme: Metric::SoftSize.into(),
-        method: Method::RELAXED,
-        max_sweeps: 9,
-        stopping: Stopping::Tolerance(0.0),
-        ..Options::default()
-    };
+    let options = Options::default()
+        .scheme(Metric::SoftSize.into())
+        .method(Method::RELAXED)
+        .max_sweeps(9)
+        .stopping(Stopping::Tolerance(0.0));
     let mut smoother = Smoother::new(mesh).unwrap();
     smoother.set_targets(targets).unwrap();
     let backend = Backend::Gpu(app.another_gpu());
@@ -79,7 +77,7 @@ fn targets_that_do_not_fit_are_refused() {
     let targets = Targets::equilateral(expected);
     let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
     let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
-    let options = Options { method: Method::Paper(differences), ..Options::default() };
+    let options = Options::default().method(Method::Paper(differences));
     let error = Sweeps::new(&device_mesh, &options).err().unwrap();
     assert!(
         matches!(
@@ -100,7 +98,7 @@ fn a_mesh_from_a_smoother_is_swept_to_the_same_bits() {
     let targets = growing(&mesh);
     let inside = Smoother::new(&mesh).unwrap().topology().free().iter().position(|&free| free);
     let fixed = Mesh { fixed: vec![inside.unwrap() as u32], ..mesh.clone() };
-    let options = Options { method: Method::RELAXED, ..Options::default() };
+    let options = Options::default().method(Method::RELAXED);
     for (mesh, with_targets) in [(&mesh, false), (&mesh, true), (&fixed, false), (&fixed, true)] {
         let mut smoother = Smoother::new(mesh).unwrap();
         let alone = match with_targets {

@@ -19,7 +19,7 @@ use crate::app::{App, Vertices, bad_plate};
 /// Executes a frame of import, sweeps, objective and export with timestamps.
 fn timed_frame(app: &App, mesh: &Mesh, timestamps: &mut Timestamps, count: u32) -> Vec<Span> {
     let device_mesh = app.mesh(mesh);
-    let options = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
+    let options = Options::default().scheme("edge+imr".parse().unwrap());
     let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     let bound = Vertices::usual(app, mesh).bind(&device_mesh);
     let objective = sweeps.bind_objective(&app.buffer(128, Usage::STORAGE), 0).unwrap();

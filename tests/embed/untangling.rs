@@ -212,7 +212,7 @@ fn a_valid_mesh_keeps_every_bit_and_only_vertices_near_inverted_triangles_move()
     assert_eq!(frames.frame(20, 0).inverted, 0);
     assert_eq!(frames.points(), before);
     // Untangling leaves a valid mesh unchanged, so sweeps that have ended do not restart.
-    let options = Options { max_sweeps: 1, ..Options::default() };
+    let options = Options::default().max_sweeps(1);
     let mut judged = Sweeps::until_converged(&frames.device_mesh, &options).unwrap();
     frames.app.submit(|encoder| judged.encode_sweeps(encoder, 1));
     frames.app.submit(|encoder| frames.untangling.encode_untangle(encoder, 5));

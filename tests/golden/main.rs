@@ -158,11 +158,8 @@ const CHANGES: &[(&str, Change)] = &[
 /// Returns runs for each metric, alternating scheme, method, change, and several pairs of changes.
 fn cases() -> Vec<(String, Vec<Change>, Options)> {
     let mut cases = Vec::new();
-    let options = |scheme: &str| Options {
-        scheme: scheme.parse().unwrap(),
-        max_sweeps: 60,
-        track_all: true,
-        ..Options::default()
+    let options = |scheme: &str| {
+        Options::default().scheme(scheme.parse().unwrap()).max_sweeps(60).track_all(true)
     };
     for metric in Metric::ALL {
         cases.push((metric.name().to_owned(), vec![], options(metric.name())));
@@ -170,19 +167,15 @@ fn cases() -> Vec<(String, Vec<Change>, Options)> {
     for scheme in ["edge+imr", "imr+area", "rms+imr+ar"] {
         cases.push((scheme.to_owned(), vec![], options(scheme)));
         let paper = Options::paper(scheme.parse().unwrap());
-        let paper = Options { max_sweeps: 20, track_all: true, ..paper };
+        let paper = paper.max_sweeps(20).track_all(true);
         cases.push((format!("paper:{scheme}"), vec![], paper));
     }
     for scheme in ["imr", "edge"] {
-        let sweeps = Options { method: Method::RELAXED, ..options(scheme) };
+        let sweeps = options(scheme).method(Method::RELAXED);
         cases.push((format!("sweeps:{scheme}"), vec![], sweeps));
     }
     let searched = Goal { fraction: 0.95, desired: None };
-    cases.push((
-        "searched".into(),
-        vec![],
-        Options { stopping: Stopping::Goal(searched), ..options("imr") },
-    ));
+    cases.push(("searched".into(), vec![], options("imr").stopping(Stopping::Goal(searched))));
     for (first, &(name, change)) in CHANGES.iter().enumerate() {
         cases.push((format!("imr,{name}"), vec![change], options("imr")));
         for &(other, also) in &CHANGES[first + 1..] {

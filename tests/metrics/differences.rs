@@ -61,7 +61,7 @@ fn over_relaxed(
 ) -> [f64; 2] {
     let (topology, problem) = prepare(mesh).unwrap();
     // Without corrections, like runs by differences; with corrections, EDGE would end at another minimum.
-    let options = Options { scheme: metric.into(), method: Method::RELAXED, ..Options::default() };
+    let options = Options::default().scheme(metric.into()).method(Method::RELAXED);
     let plan = Plan {
         derivatives: [derivatives; Metric::ALL.len()],
         shape_guard: Quality::of(&mesh.points, &topology).unwrap().worst_movable_imr,
@@ -112,7 +112,7 @@ fn the_paper_method_by_differences_ends_near_the_optimum_on_both_engines() {
     {
         let f = |derivatives, backend| {
             let method = Method::Paper(Paper { derivatives, ..Paper::default() });
-            let options = Options { scheme: metric.into(), method, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).method(method);
             let outcome = smoother.run(&options).on(backend).block().unwrap();
             Quality::of(&outcome.points, smoother.topology()).unwrap().f(metric)
         };
@@ -130,7 +130,7 @@ fn the_best_state_is_returned_though_differences_may_raise_f() {
     let smoother = Smoother::new(&mesh).unwrap();
     let derivatives = Derivatives::FiniteDifference;
     let method = Method::Paper(Paper { derivatives, ..Paper::default() });
-    let options = Options { scheme: Metric::Rms.into(), method, ..Options::default() };
+    let options = Options::default().scheme(Metric::Rms.into()).method(method);
     for backend in [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())] {
         let outcome = smoother.run(&options).on(&backend).block().unwrap();
         let history: Vec<f64> =

@@ -77,7 +77,7 @@ fn size_change(mesh: &Mesh, outcome: &Outcome) -> f64 {
 }
 
 fn by(metric: Metric) -> Options {
-    Options { scheme: metric.into(), ..Options::default() }
+    Options::default().scheme(metric.into())
 }
 
 #[test]

@@ -30,10 +30,10 @@ fn the_least_altitude_does_not_fall_if_it_is_to_be_kept() {
     };
     for (backend, stored) in backends().iter().zip([Precision::Double, Precision::Single]) {
         let label = name(backend);
-        let free = run(&smoother, &Options { stored, ..Options::default() }, backend);
+        let free = run(&smoother, &Options::default().stored(stored), backend);
         let [before, after] = altitudes(&free.points);
         assert!(after < 0.95 * before, "{label}: {before} {after}");
-        let options = Options { stored, keep_altitude: true, ..Options::default() };
+        let options = Options::default().stored(stored).keep_altitude(true);
         let kept = run(&smoother, &options, backend);
         let [before, after] = altitudes(&kept.points);
         assert!(after >= before, "{label}: {before} {after}");
@@ -54,7 +54,7 @@ fn options_that_do_not_go_with_kept_altitudes_are_refused() {
     let mesh = fields(4);
     let mut smoother = Smoother::new(&mesh).unwrap();
     let refused = |smoother: &Smoother, options: Options| {
-        let options = Options { keep_altitude: true, ..options };
+        let options = options.keep_altitude(true);
         let error = smoother.run(&options).on(&backends()[0]).block();
         let Err(SmoothError::Option(OptionError::Conflict { features, .. })) = error else {
             panic!("{error:?}")
@@ -79,7 +79,7 @@ fn the_least_altitude_is_kept_where_vertices_slide() {
     };
     for (backend, stored) in backends().iter().zip([Precision::Double, Precision::Single]) {
         let label = name(backend);
-        let options = Options { stored, keep_altitude: true, ..Options::default() };
+        let options = Options::default().stored(stored).keep_altitude(true);
         let kept = run(&smoother, &options, backend);
         let [before, after] = altitudes(&kept.points);
         assert!(after >= before, "{label}: {before} {after}");
@@ -106,8 +106,7 @@ fn the_worst_triangle_does_not_get_worse_where_altitudes_are_kept_too() {
             continue;
         }
         for (metric, guard) in [(Metric::Imr, Guard::Worst), (Metric::Area, Guard::ByMetric)] {
-            let options =
-                Options { scheme: metric.into(), guard, keep_altitude: true, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).guard(guard).keep_altitude(true);
             // Some meshes are too flat for double precision.
             let Ok(outcome) = smoother.run(&options).on(&Backend::Cpu).block() else { continue };
             let [before, after] = [&mesh.points, &outcome.points].map(|points| {

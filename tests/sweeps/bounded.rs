@@ -12,9 +12,9 @@ const MOST: f64 = 0.15;
 /// Two meshes with the bounds of their runs. Without the bound, vertices of the first mesh move by more than [`MOST`], and
 /// the least altitude of the second mesh falls.
 fn cases() -> [(Mesh, Options); 3] {
-    let moved = Options { max_move: Some(MOST), ..Options::default() };
-    let kept = Options { keep_altitude: true, ..Options::default() };
-    let both = Options { max_move: Some(1.0), ..kept.clone() };
+    let moved = Options::default().max_move(Some(MOST));
+    let kept = Options::default().keep_altitude(true);
+    let both = kept.clone().max_move(Some(1.0));
     let plate = support::perturb_random(&plate(300), 0.5, 3);
     [(plate, moved), (fields(12), kept), (fields(12), both)]
 }
@@ -49,8 +49,7 @@ fn alternating_schemes_and_edge_keep_bounds_on_both_engines() {
         let smoother = with_free_layers(&mesh);
         for (scheme, least) in [("imr+edge", 0.8), ("imr+area", 0.8), ("edge", 0.005)] {
             for method in [Method::Auto, Method::RELAXED] {
-                let options =
-                    Options { scheme: scheme.parse().unwrap(), method, ..bounded.clone() };
+                let options = bounded.clone().scheme(scheme.parse().unwrap()).method(method);
                 for backend in backends() {
                     let label = format!(
                         "{scheme}, {method:?}, {:?} on the {}",
@@ -86,7 +85,7 @@ fn a_searched_goal_is_the_optimum_within_the_bounds() {
             .unwrap();
         for backend in backends() {
             let stopping = Stopping::Goal(Goal { fraction: 0.99, desired: None });
-            let outcome = run(&smoother, &Options { stopping, ..bounded.clone() }, backend);
+            let outcome = run(&smoother, &bounded.clone().stopping(stopping), backend);
             let label = format!("{:?} on the {}", bounded.max_move, name(backend));
             assert_eq!(outcome.stop, Stop::Reached, "{label}");
             let desired = outcome.goal.unwrap().desired;
@@ -106,7 +105,7 @@ fn sweeps_by_finite_differences_keep_bounds() {
         let smoother = with_free_layers(&mesh);
         let paper = Options::paper(Metric::Imr.into());
         let Options { max_move, keep_altitude, .. } = bounded;
-        let options = Options { max_move, keep_altitude, ..paper };
+        let options = paper.max_move(max_move).keep_altitude(keep_altitude);
         let outcome = run(&smoother, &options, &backends()[0]);
         assert_bounded("finite differences", &smoother, &options, &outcome);
         let share = share(&smoother, &outcome.points, &bounded);

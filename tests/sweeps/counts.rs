@@ -94,7 +94,7 @@ fn sweeps_alone_give_the_device_no_more_work_than_before() {
     let (gpu, mesh) = (open(), perturbed(2000));
     let (_, problem) = prepare(&mesh).unwrap();
     let stopping = Stopping::Tolerance(0.0);
-    let plan = Plan::new(&Options { method: Method::RELAXED, stopping, ..Options::default() });
+    let plan = Plan::new(&Options::default().method(Method::RELAXED).stopping(stopping));
     let before = device_counts(&gpu);
     run_on_gpu(&gpu, &problem, problem.positions(), plan).unwrap().advance(20).unwrap();
     let counts = device_counts(&gpu).since(&before);

@@ -27,7 +27,7 @@ fn sizes_are_those_wanted_where_vertices_have_moved_to() {
     let (mesh, [width, height]) = even();
     let (square, targets) = background(width, height);
     let field = TargetField::new(&square, &targets).unwrap();
-    let options = Options { scheme: Metric::ShapeSize.into(), ..Options::default() };
+    let options = Options::default().scheme(Metric::ShapeSize.into());
     let mut smoother = Smoother::new(&mesh).unwrap();
     let (start, outside) = field.at(&mesh.points).unwrap();
     assert_eq!(outside.count, 0);
@@ -88,9 +88,9 @@ fn options_that_do_not_go_with_a_target_field_are_refused() {
         assert!(features.contains(&Feature::TargetField), "{features:?}");
     };
     let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: Some(1.0) });
-    refused(&smoother, &Options { stopping, ..Options::default() });
-    refused(&smoother, &Options { max_move: Some(1.0), ..Options::default() });
-    refused(&smoother, &Options { scheme: Metric::Edge.into(), ..Options::default() });
+    refused(&smoother, &Options::default().stopping(stopping));
+    refused(&smoother, &Options::default().max_move(Some(1.0)));
+    refused(&smoother, &Options::default().scheme(Metric::Edge.into()));
     smoother.set_slide(Some(&Slide::default())).unwrap();
     refused(&smoother, &Options::default());
 }

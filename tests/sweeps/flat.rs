@@ -29,7 +29,7 @@ fn flat_triangles_are_opened_in_double_precision() {
             (scheme("rms+imr"), Method::Auto),
             (scheme("edge+imr"), Method::RELAXED),
         ] {
-            let options = Options { scheme, method, ..Options::default() };
+            let options = Options::default().scheme(scheme).method(method);
             let base = options.scheme.base();
             let best = backends().each_ref().map(|backend| {
                 let outcome = run(&smoother, &options, backend);
@@ -56,7 +56,7 @@ fn a_run_that_ends_before_flat_triangles_are_open_is_done_on_the_cpu() {
     let mesh = flattened(1e-12);
     let smoother = Smoother::new(&mesh).unwrap();
     for method in [Method::Auto, Method::RELAXED] {
-        let options = Options { max_sweeps: 1, method, ..Options::default() };
+        let options = Options::default().max_sweeps(1).method(method);
         let [cpu, gpu] = backends().each_ref().map(|backend| run(&smoother, &options, backend));
         assert_eq!((gpu.stop, gpu.sweeps, gpu.opening_sweeps), (Stop::MaxSweeps, 1, 1));
         assert_eq!(cpu.points, gpu.points);
@@ -91,7 +91,7 @@ fn a_triangle_as_flat_as_coordinates_allow_is_opened() {
     let smoother = Smoother::new(&mesh).unwrap();
     for metric in [Metric::Imr, Metric::ShapeSize] {
         for (method, most) in [(Method::Auto, 40), (Method::RELAXED, 300)] {
-            let options = Options { scheme: metric.into(), method, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).method(method);
             for backend in backends() {
                 let outcome = run(&smoother, &options, backend);
                 let label = format!("{metric} by {method:?} on the {}", name(backend));
@@ -163,7 +163,7 @@ fn no_metric_rises_on_fans_without_height() {
     let f =
         |metric, points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(metric);
     for metric in [Metric::ShapeSize, Metric::Imr] {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         for backend in backends() {
             let outcome = run(&smoother, &options, backend);
             let [before, after] = [&mesh.points, &outcome.points].map(|points| f(metric, points));
@@ -200,10 +200,10 @@ fn vertices_pressed_to_a_line_spread_over_the_mesh() {
     assert!(support::is_ccw(&pressed) && support::worst_imr(&pressed) > 1e13);
     let [from_bent, from_pressed] = [&bent, &pressed].map(|mesh| Smoother::new(mesh).unwrap());
     for metric in [Metric::Imr, Metric::SoftSize, Metric::Tmop80] {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         let best = run(&from_bent, &options, &Backend::Cpu);
         let best = from_bent.f(metric, &best.points).unwrap();
-        let options = Options { stopping: Stopping::Tolerance(0.01), ..options };
+        let options = options.stopping(Stopping::Tolerance(0.01));
         for backend in backends() {
             let outcome = run(&from_pressed, &options, backend);
             let label = format!("{metric} on the {}", name(backend));
@@ -226,7 +226,7 @@ fn runs_that_follow_a_given_sequence_of_sweeps_begin_at_extremely_flat_triangles
     let mesh = pressed_to_a_line(bent(24, 20), 18.0, 1e-12);
     let smoother = Smoother::new(&mesh).unwrap();
     for (method, max_sweeps) in [(Method::RELAXED, 50), (Method::Auto, 40)] {
-        let options = Options { method, max_sweeps, ..Options::default() };
+        let options = Options::default().method(method).max_sweeps(max_sweeps);
         let outcome = run(&smoother, &options, &Backend::Cpu);
         assert_eq!((outcome.stop, outcome.sweeps), (Stop::MaxSweeps, max_sweeps));
         assert!(history(&outcome, Metric::Imr)[1] > 1e20, "{method:?}");

@@ -87,11 +87,11 @@ fn right_triangles_of_a_regular_lattice_do_not_become_sharp() {
 fn with_another_aim() -> [Options; 5] {
     let usual = Options::default;
     [
-        Options { method: Method::PAPER, ..usual() },
-        Options { method: Method::Multilevel, ..usual() },
-        Options { scheme: Metric::Ar.into(), ..usual() },
-        Options { guard: Guard::Worst, ..usual() },
-        Options { stopping: Stopping::Goal(Goal { fraction: 0.9, desired: Some(1.0) }), ..usual() },
+        usual().method(Method::PAPER),
+        usual().method(Method::Multilevel),
+        usual().scheme(Metric::Ar.into()),
+        usual().guard(Guard::Worst),
+        usual().stopping(Stopping::Goal(Goal { fraction: 0.9, desired: Some(1.0) })),
     ]
 }
 
@@ -160,7 +160,7 @@ fn the_floor_holds_for_coordinates_as_they_are_stored() {
                 continue;
             }
             let smoother = Smoother::new(&mesh).unwrap();
-            let options = Options { stored, ..Options::default() };
+            let options = Options::default().stored(stored);
             let outcome = run(&smoother, &options, &Backend::Cpu);
             let label = format!("{name}, {stored:?}: {:?}", outcome.floored);
             assert_not_worse(&mesh, &outcome, &label);
@@ -176,12 +176,12 @@ fn the_floor_holds_for_coordinates_as_they_are_stored() {
 fn sliding_vertices_and_bounds_keep_the_floor() {
     let mesh = with_wave(alternating(20), 20, 0.1);
     let mut smoother = Smoother::new(&mesh).unwrap();
-    let bounded = Options { max_move: Some(0.6), ..Options::default() };
+    let bounded = Options::default().max_move(Some(0.6));
     let outcome = run(&smoother, &bounded, &Backend::Cpu);
     assert_not_worse(&mesh, &outcome, "with a bound of moves");
     let change = Change::between(smoother.topology(), &mesh.points, &outcome.points).unwrap();
     assert!(change.moved.most <= 0.6 + 1e-9 && outcome.floored.is_some(), "{change:?}");
-    let kept = Options { keep_altitude: true, ..Options::default() };
+    let kept = Options::default().keep_altitude(true);
     let outcome = run(&smoother, &kept, &Backend::Cpu);
     assert_not_worse(&mesh, &outcome, "with the least altitude kept");
     let change = Change::between(smoother.topology(), &mesh.points, &outcome.points).unwrap();

@@ -14,12 +14,8 @@ fn desired(metric: Metric) -> f64 {
         let smoother = Smoother::new(perturbed()).unwrap();
         let find = |metric: Metric| {
             let sharpness = Some(PNormExponent::CONTINUED);
-            let options = Options {
-                scheme: metric.into(),
-                edge_norm: sharpness,
-                max_sweeps: 500,
-                ..Options::default()
-            };
+            let options =
+                Options::default().scheme(metric.into()).edge_norm(sharpness).max_sweeps(500);
             let f = history(&run(&smoother, &options, &backends()[0]), metric);
             (metric, f.into_iter().fold(f64::INFINITY, f64::min))
         };
@@ -36,7 +32,7 @@ fn both_engines_reach_goals_at_the_same_sweep() {
             let scheme = scheme(name_of_scheme);
             let base = scheme.base();
             let stopping = Stopping::Goal(Goal { fraction, desired: Some(desired(base)) });
-            let options = Options { stopping, max_sweeps: 300, ..Options::paper(scheme) };
+            let options = Options::paper(scheme).stopping(stopping).max_sweeps(300);
             let [cpu, gpu] = backends().each_ref().map(|backend| run(&smoother, &options, backend));
             let [f_cpu, f_gpu] =
                 [&cpu, &gpu].map(|o| history(o, base).into_iter().fold(f64::INFINITY, f64::min));
@@ -61,7 +57,7 @@ fn the_optimum_is_reached_from_the_start_on_an_optimal_mesh() {
     let smoother = Smoother::new(&mesh).unwrap();
     for name_of_scheme in ["imr", "rms", "area+imr"] {
         let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: None });
-        let options = Options { stopping, scheme: scheme(name_of_scheme), ..Options::default() };
+        let options = Options::default().stopping(stopping).scheme(scheme(name_of_scheme));
         for backend in backends() {
             let outcome = run(&smoother, &options, backend);
             let label = format!("{name_of_scheme} on the {}", name(backend));
@@ -82,7 +78,7 @@ fn a_goal_out_of_reach_is_not_reached_and_the_best_state_is_returned() {
             let base = scheme.base();
             let optimum = if base == Metric::Imr { 1.0 } else { desired(base) };
             let stopping = Stopping::Goal(Goal { fraction: 1.0, desired: Some(optimum - beyond) });
-            let options = Options { stopping, max_sweeps: 400, ..Options::paper(scheme) };
+            let options = Options::paper(scheme).stopping(stopping).max_sweeps(400);
             let outcome = run(&smoother, &options, backend);
             let label = format!("{name_of_scheme} on the {}", name(backend));
             assert!(matches!(outcome.stop, Stop::Stalled | Stop::MaxSweeps), "{label}");

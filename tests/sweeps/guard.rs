@@ -20,7 +20,7 @@ fn the_worst_element_does_not_get_worse_by_any_metric() {
     let mut risen = 0;
     for metric in [Metric::ShapeSize, Metric::Imr, Metric::Rms] {
         for guard in [Guard::ByMetric, Guard::Worst] {
-            let options = Options { scheme: metric.into(), guard, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).guard(guard);
             for backend in backends() {
                 let outcome = run(&smoother, &options, backend);
                 let after = worst(&outcome.points);
@@ -51,7 +51,7 @@ fn the_guard_of_a_run_with_sliding_is_that_of_the_given_mesh() {
     let worst = |points: &[[f64; 2]]| support::worst_imr(&with_points(&mesh, points));
     for backend in backends() {
         let [first, last] = [2, 12].map(|max_sweeps| {
-            let options = Options { scheme: Metric::Area.into(), max_sweeps, ..Options::default() };
+            let options = Options::default().scheme(Metric::Area.into()).max_sweeps(max_sweeps);
             worst(&run(&smoother, &options, backend).points)
         });
         let (given, label) = (worst(&mesh.points), name(backend));

@@ -76,8 +76,7 @@ fn flat_stars_that_rounding_could_invert_come_back_finite_and_feasible() {
         let smoother = Smoother::new(&mesh).unwrap();
         for &metric in Metric::ALL {
             for backend in backends() {
-                let options =
-                    Options { scheme: metric.into(), max_sweeps: 50, ..Options::default() };
+                let options = Options::default().scheme(metric.into()).max_sweeps(50);
                 let outcome = smoother.run(&options).on(backend).block();
                 let label = format!("{metric} on the {}", name(backend));
                 match outcome {
@@ -149,7 +148,7 @@ fn a_run_with_one_free_vertex_ends_soon_and_both_engines_say_so_in_one_word() {
         [Metric::Imr, Metric::Ar, Metric::Rms, Metric::ShapeSize, Metric::Tmop80, Metric::Area]
     {
         for backend in backends() {
-            let options = Options { scheme: metric.into(), ..Options::default() };
+            let options = Options::default().scheme(metric.into());
             let outcome = run(&smoother, &options, backend);
             let label = format!("{metric} on the {}", name(backend));
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
@@ -193,7 +192,7 @@ fn a_run_ended_by_the_shape_guard_is_not_called_converged() {
         *p = p.map(|x| x * r * r);
     });
     let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { scheme: Metric::Area.into(), max_sweeps: 600, ..Options::default() };
+    let options = Options::default().scheme(Metric::Area.into()).max_sweeps(600);
     for backend in backends() {
         let outcome = run(&smoother, &options, backend);
         let label = format!("{} sweeps on the {}", outcome.sweeps, name(backend));
@@ -201,12 +200,12 @@ fn a_run_ended_by_the_shape_guard_is_not_called_converged() {
         assert!(outcome.held_back > 0, "{label}");
     }
     // Held vertices are also counted if the run ends at its last sweep.
-    let few = Options { max_sweeps: 30, ..options };
+    let few = options.max_sweeps(30);
     let outcome = run(&smoother, &few, &backends()[0]);
     assert_eq!(outcome.stop, Stop::MaxSweeps);
     assert!(outcome.held_back > 0);
     // A vertex held by the bound of its move does not count as held by the guard.
-    let bounded = Options { scheme: Metric::Rms.into(), max_move: Some(1e-4), ..few };
+    let bounded = few.scheme(Metric::Rms.into()).max_move(Some(1e-4));
     let outcome = run(&smoother, &bounded, &backends()[0]);
     assert_eq!(outcome.held_back, 0, "{:?}", outcome.stop);
     // Metrics with a barrier have no guard.
@@ -252,7 +251,7 @@ fn f_of_a_mesh_on_a_line_does_not_rise() {
         let mesh = Mesh { points, triangles, fixed: vec![] };
         let Ok(smoother) = Smoother::new(&mesh) else { continue };
         for metric in [Metric::Area, Metric::Rms] {
-            let options = Options { scheme: metric.into(), ..Options::default() };
+            let options = Options::default().scheme(metric.into());
             let f =
                 |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(metric);
             match smoother.run(&options).on(&Backend::Cpu).block() {

@@ -10,13 +10,11 @@ fn mild() -> Mesh {
 
 fn thirty_sweeps(metric: Metric, method: Method) -> Options {
     let scheme = metric.into();
-    Options {
-        scheme,
-        method,
-        stopping: Stopping::Tolerance(0.0),
-        max_sweeps: 30,
-        ..Options::default()
-    }
+    Options::default()
+        .scheme(scheme)
+        .method(method)
+        .stopping(Stopping::Tolerance(0.0))
+        .max_sweeps(30)
 }
 
 /// Largest differences between two results: the distance of a vertex in typical edge lengths, and f.
@@ -99,11 +97,7 @@ fn numbering_does_not_matter_to_the_optimum() {
     let mesh = perturbed();
     let (other, new_index) = support::renumbered(mesh, 8);
     for metric in [Metric::Rms, Metric::Imr] {
-        let options = Options {
-            scheme: metric.into(),
-            stopping: Stopping::Tolerance(1e-8),
-            ..Options::default()
-        };
+        let options = Options::default().scheme(metric.into()).stopping(Stopping::Tolerance(1e-8));
         for backend in backends() {
             let (a, b) = (Smoother::new(mesh).unwrap(), Smoother::new(&other).unwrap());
             let (a, b) = (run(&a, &options, backend), run(&b, &options, backend));
@@ -128,8 +122,8 @@ fn triangles_a_ten_millionth_of_the_domain_are_smoothed_like_any() {
     for &metric in Metric::ALL {
         // EDGE has many minima, and with corrections, rounding decides in which minimum a run ends.
         let method = if metric.is_smooth() { Method::Auto } else { Method::RELAXED };
-        let options = Options { method, max_sweeps: 400, ..Options::default() };
-        let options = Options { scheme: metric.into(), ..options };
+        let options = Options::default().method(method).max_sweeps(400);
+        let options = options.scheme(metric.into());
         let [cpu, gpu] = backends().each_ref().map(|backend| {
             let outcome = run(&smoother, &options, backend);
             let after = crate::with_points(&mesh, &outcome.points);

@@ -17,7 +17,7 @@ fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {
     let mut least = f64::INFINITY;
     for most in [0.05, 0.3, 2.0] {
         let max_move = Some(most);
-        let options = Options { max_move, stored: Precision::Single, ..Options::default() };
+        let options = Options::default().max_move(max_move).stored(Precision::Single);
         let ends = backends().each_ref().map(|backend| {
             let label = format!("{most} on the {}", name(backend));
             let outcome = run(&smoother, &options, backend);
@@ -44,9 +44,9 @@ fn no_vertex_goes_beyond_its_bound_and_f_is_as_low_as_that_allows() {
 fn a_bounded_run_of_no_sweeps_ends() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
     let smoother = Smoother::new(&mesh).unwrap();
-    let start = Options { max_sweeps: 0, max_move: Some(0.3), ..Options::default() };
+    let start = Options::default().max_sweeps(0).max_move(Some(0.3));
     for method in [Method::RELAXED, Method::Multilevel] {
-        let options = Options { method, ..start.clone() };
+        let options = start.clone().method(method);
         for backend in backends() {
             let outcome = run(&smoother, &options, backend);
             assert_eq!((outcome.stop, outcome.sweeps), (Stop::MaxSweeps, 0), "{}", name(backend));
@@ -61,8 +61,7 @@ fn the_end_of_a_bounded_run_is_an_optimum() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
     let smoother = Smoother::new(&mesh).unwrap();
     let most = 0.2;
-    let options =
-        Options { max_move: Some(most), stopping: Stopping::Tolerance(1e-8), ..Options::default() };
+    let options = Options::default().max_move(Some(most)).stopping(Stopping::Tolerance(1e-8));
     let outcome = run(&smoother, &options, &Backend::Cpu);
     let f = |points: &[[f64; 2]]| smoother.f(Metric::Imr, points).unwrap();
     let (start, end) = (f(&mesh.points), f(&outcome.points));
@@ -91,7 +90,7 @@ fn targets_are_seen_by_a_bounded_run_as_well() {
     let targets = Targets::tensors(&vec![[1.0, 0.0, 4.0]; mesh.points.len()]).unwrap();
     let mut smoother = Smoother::new(&mesh).unwrap();
     smoother.set_targets(&targets).unwrap();
-    let options = Options { max_move: Some(0.2), ..Options::default() };
+    let options = Options::default().max_move(Some(0.2));
     let outcome = run(&smoother, &options, &Backend::Cpu);
     let f = history(&outcome, Metric::Imr);
     let end = smoother.f(Metric::Imr, &outcome.points).unwrap();
@@ -117,7 +116,7 @@ fn vertices_that_slide_have_a_bound_as_well() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
     let mut smoother = Smoother::new(&mesh).unwrap();
     let ends = |smoother: &Smoother, most: f64, backend: &Backend| {
-        let options = Options { max_move: Some(most), ..Options::default() };
+        let options = Options::default().max_move(Some(most));
         let outcome = run(smoother, &options, backend);
         let f = history(&outcome, Metric::Imr);
         assert!(f.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-6)), "{most}: {f:?}");
@@ -154,7 +153,7 @@ fn bounds_that_make_no_sense_are_refused() {
     let mesh = plate(300);
     let smoother = Smoother::new(&mesh).unwrap();
     for max_move in [0.0, f64::NAN] {
-        let options = Options { max_move: Some(max_move), ..Options::default() };
+        let options = Options::default().max_move(Some(max_move));
         let error = smoother.run(&options).on(&Backend::Cpu).block();
         let error = error.unwrap_err();
         let is_it = match &error {
@@ -176,8 +175,7 @@ fn rounding_to_single_precision_takes_no_vertex_beyond_its_bound() {
         mesh.points.iter_mut().for_each(|p| *p = [p[0] - x, p[1] - y].map(|x| f64::from(x as f32)));
         let smoother = Smoother::new(&mesh).unwrap();
         for most in [0.05, 0.3] {
-            let options =
-                Options { max_move: Some(most), stored: Precision::Single, ..Options::default() };
+            let options = Options::default().max_move(Some(most)).stored(Precision::Single);
             let outcome = run(&smoother, &options, &Backend::Cpu);
             let change =
                 Change::between(smoother.topology(), &mesh.points, &outcome.points).unwrap();

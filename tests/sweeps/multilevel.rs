@@ -9,12 +9,12 @@ use gpu_smooth::{
 };
 
 fn multilevel(metric: Metric) -> Options {
-    Options { scheme: metric.into(), method: Method::Multilevel, ..Options::default() }
+    Options::default().scheme(metric.into()).method(Method::Multilevel)
 }
 
 /// Returns options for uncorrected sweeps.
 fn sweeps(metric: Metric) -> Options {
-    Options { method: Method::RELAXED, ..multilevel(metric) }
+    multilevel(metric).method(Method::RELAXED)
 }
 
 fn last(outcome: &Outcome, metric: Metric) -> f64 {
@@ -31,11 +31,7 @@ fn a_dozen_sweeps_suffice_whatever_the_size_of_the_mesh() {
         for mesh in meshes {
             let smoother = Smoother::new(&mesh).unwrap();
             let backend = &backends()[0];
-            let long = Options {
-                stopping: Stopping::Tolerance(1e-10),
-                max_sweeps: 3000,
-                ..sweeps(Metric::Imr)
-            };
+            let long = sweeps(Metric::Imr).stopping(Stopping::Tolerance(1e-10)).max_sweeps(3000);
             let limit = last(&run(&smoother, &long, backend), Metric::Imr);
             for backend in backends() {
                 let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
@@ -68,7 +64,7 @@ fn hard_meshes() -> [(&'static str, Mesh, u32); 5] {
 fn hard_meshes_take_a_few_dozen_sweeps_and_the_promise_holds() {
     for (label, mesh, most) in hard_meshes() {
         let smoother = Smoother::new(&mesh).unwrap();
-        let long = Options { stopping: Stopping::Tolerance(1e-12), ..multilevel(Metric::Imr) };
+        let long = multilevel(Metric::Imr).stopping(Stopping::Tolerance(1e-12));
         let limit = last(&run(&smoother, &long, &backends()[0]), Metric::Imr);
         for backend in backends() {
             let label = format!("{label} on the {}", name(backend));
@@ -98,7 +94,7 @@ fn corrected_runs_end_at_the_global_optimum() {
             [(Metric::Imr, imr), (Metric::Ar, imr), (Metric::Rms, global::f_rms(&rms))]
         {
             for backend in backends() {
-                let options = Options { stopping: Stopping::Tolerance(1e-8), ..multilevel(metric) };
+                let options = multilevel(metric).stopping(Stopping::Tolerance(1e-8));
                 let f = last(&run(&smoother, &options, backend), metric);
                 let off = f / optimum - 1.0;
                 assert!(off.abs() < 1e-7, "{metric} on the {}: {off:e}", name(backend));
@@ -119,7 +115,7 @@ fn every_step_lowers_the_objective_and_inverts_nothing() {
                 let corrected = whole.corrections + whole.newton_steps;
                 assert!(corrected > 0 && corrected < whole.sweeps);
                 for max_sweeps in 1..whole.sweeps {
-                    let options = Options { max_sweeps, ..multilevel(metric) };
+                    let options = multilevel(metric).max_sweeps(max_sweeps);
                     let outcome = run(&smoother, &options, backend);
                     assert_eq!(outcome.sweeps, max_sweeps);
                     assert_eq!(outcome.returned, 0, "left to the certificate");
@@ -200,8 +196,7 @@ fn tiny_and_scattered_meshes_converge() {
 fn elements_graded_over_seven_decades_converge() {
     let mesh = support::perturb_random(&support::graded(24, 1e-7), 0.5, 2);
     let smoother = Smoother::new(&mesh).unwrap();
-    let long =
-        Options { stopping: Stopping::Tolerance(1e-9), max_sweeps: 5000, ..sweeps(Metric::Imr) };
+    let long = sweeps(Metric::Imr).stopping(Stopping::Tolerance(1e-9)).max_sweeps(5000);
     let limit = last(&run(&smoother, &long, &backends()[0]), Metric::Imr);
     for backend in backends() {
         let outcome = run(&smoother, &multilevel(Metric::Imr), backend);
@@ -213,21 +208,21 @@ fn elements_graded_over_seven_decades_converge() {
 
 #[test]
 fn corrections_are_the_default_where_they_are_possible() {
-    let alone = |metric: Metric| Options { scheme: metric.into(), ..Options::default() };
+    let alone = |metric: Metric| Options::default().scheme(metric.into());
     for metric in [Metric::Imr, Metric::Ar, Metric::Rms, Metric::Edge] {
         assert!(alone(metric).is_multilevel());
     }
     let imr = alone(Metric::Imr);
     let others = [
         alone(Metric::Area),
-        Options { scheme: scheme("area+imr"), ..imr.clone() },
-        Options { method: Method::RELAXED, ..imr.clone() },
+        imr.clone().scheme(scheme("area+imr")),
+        imr.clone().method(Method::RELAXED),
         Options::paper(Metric::Imr.into()),
     ];
     let smoother = Smoother::new(perturbed()).unwrap();
     for options in others {
         assert!(!options.is_multilevel(), "{options:?}");
-        let asked = Options { method: Method::Multilevel, ..options.clone() };
+        let asked = options.clone().method(Method::Multilevel);
         let done = smoother.run(&asked).on(&Backend::Cpu).block();
         match done {
             Err(SmoothError::Option(OptionError::Conflict {
@@ -251,7 +246,7 @@ fn metrics_that_alternate_end_at_the_optimum_of_the_base() {
     {
         let limit = last(&run(&smoother, &multilevel(base), &backends()[0]), base);
         for backend in backends() {
-            let options = Options { scheme: scheme(names), ..Options::default() };
+            let options = Options::default().scheme(scheme(names));
             let outcome = run(&smoother, &options, backend);
             let label = format!("{names} on the {}", name(backend));
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
@@ -260,7 +255,7 @@ fn metrics_that_alternate_end_at_the_optimum_of_the_base() {
             assert!(left.abs() < 2e-6, "{label}: {left:e} left");
             // The returned state is the one after the last correction.
             let returned = with_points(&mesh, &outcome.points);
-            let measure = Options { max_sweeps: 0, ..multilevel(base) };
+            let measure = multilevel(base).max_sweeps(0);
             let returned = Smoother::new(&returned).unwrap();
             let returned = last(&run(&returned, &measure, &Backend::Cpu), base);
             let told = last(&outcome, base);
@@ -273,7 +268,7 @@ fn metrics_that_alternate_end_at_the_optimum_of_the_base() {
 fn history_holds_every_metric_if_asked() {
     let smoother = Smoother::new(distorted()).unwrap();
     for backend in backends() {
-        let options = Options { track_all: true, ..multilevel(Metric::Imr) };
+        let options = multilevel(Metric::Imr).track_all(true);
         let outcome = run(&smoother, &options, backend);
         assert_eq!(outcome.history.len() as u32, outcome.sweeps + 1);
         for objectives in &outcome.history {

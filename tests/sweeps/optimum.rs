@@ -13,11 +13,8 @@ fn a_perturbed_lattice_becomes_equilateral_again() {
     let smoother = Smoother::new(&mesh).unwrap();
     for &metric in Metric::ALL {
         for backend in backends() {
-            let options = Options {
-                scheme: metric.into(),
-                stopping: Stopping::Tolerance(1e-9),
-                ..Options::default()
-            };
+            let options =
+                Options::default().scheme(metric.into()).stopping(Stopping::Tolerance(1e-9));
             let outcome = run(&smoother, &options, backend);
             let f = support::f_imr(&with_points(&mesh, &outcome.points));
             assert!(f - 1.0 < 1e-6, "{metric} on the {}: {:e}", name(backend), f - 1.0);
@@ -33,7 +30,7 @@ fn rms_ends_at_the_solution_of_its_linear_system() {
         let best = global::f_rms(&optimum);
         let smoother = Smoother::new(mesh).unwrap();
         for backend in backends() {
-            let options = Options { scheme: Metric::Rms.into(), ..Options::default() };
+            let options = Options::default().scheme(Metric::Rms.into());
             let outcome = run(&smoother, &options, backend);
             let f = global::f_rms(&with_points(mesh, &outcome.points));
             assert!(f >= best * (1.0 - 1e-12), "the optimum is one");
@@ -65,8 +62,8 @@ fn edge_ends_at_the_best_known() {
     let mesh = perturbed();
     let smoother = Smoother::new(mesh).unwrap();
     let edge = |method, sharpness| {
-        let options = Options { scheme: Metric::Edge.into(), ..Options::default() };
-        Options { method, edge_norm: sharpness, ..options }
+        let options = Options::default().scheme(Metric::Edge.into());
+        options.method(method).edge_norm(sharpness)
     };
     let imr = run(&smoother, &Options::default(), &backends()[0]);
     let from_imr = with_points(mesh, &imr.points);
@@ -76,7 +73,7 @@ fn edge_ends_at_the_best_known() {
     };
     // The best of several hundred uncorrected sweeps. Thousands more would gain another 3e-5.
     let alone = |sharpness| edge(Method::RELAXED, Some(sharpness));
-    let continued = Options { max_sweeps: 700, ..alone(PNormExponent::CONTINUED) };
+    let continued = alone(PNormExponent::CONTINUED).max_sweeps(700);
     let best = [&smoother, &after_imr].map(|s| f(&run(s, &continued, &backends()[0])));
     let best = best[0].min(best[1]);
     for backend in backends() {
@@ -117,11 +114,9 @@ fn edge_ends_within_1e_4_of_the_best_known_after_some_eighty_sweeps() {
         for backend in backends() {
             let on = format!("{mesh} on the {}", name(backend));
             let ends = |tolerance| {
-                let edge = Options {
-                    scheme: Metric::Edge.into(),
-                    stopping: Stopping::Tolerance(tolerance),
-                    ..Options::default()
-                };
+                let edge = Options::default()
+                    .scheme(Metric::Edge.into())
+                    .stopping(Stopping::Tolerance(tolerance));
                 let outcome = run(&smoother, &edge, backend);
                 assert_eq!(outcome.stop, Stop::Converged, "{on}");
                 assert!(worst(&outcome.points) <= before, "{on}: the shape guard holds");

@@ -102,7 +102,7 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
     assert_eq!(smoother.pairs(), [inner[0], 0]);
     let held = run(&sliding(&mesh, &alone).0, &Options::default(), &Backend::Cpu);
     let topology = Topology::new(&mesh).unwrap();
-    let by_sweeps = Options { method: Method::Relaxed(Relaxed::default()), ..Options::default() };
+    let by_sweeps = Options::default().method(Method::Relaxed(Relaxed::default()));
     let methods = [Options::default(), by_sweeps];
     for (backend, options) in backends().iter().flat_map(|b| methods.each_ref().map(|o| (b, o))) {
         let label = name(backend);
@@ -138,7 +138,7 @@ fn partners_of_a_translation_slide_together_on_both_engines() {
 fn a_pair_rests_where_both_patches_together_are_best() {
     let mesh = lattice(|[u, v]| [2.0 * u, v]);
     let (smoother, _) = sliding(&mesh, &periodic(sides()));
-    let options = Options { stopping: Stopping::Tolerance(1e-10), ..Options::default() };
+    let options = Options::default().stopping(Stopping::Tolerance(1e-10));
     let outcome = run(&smoother, &options, &Backend::Cpu);
     let f = |points: &[[f64; 2]]| smoother.f(Metric::Imr, points).unwrap();
     let best = f(&outcome.points);
@@ -188,9 +188,9 @@ fn a_bound_and_an_altitude_hold_for_both_of_a_pair() {
     let slide = periodic(sides());
     let (smoother, _) = sliding(&mesh, &slide);
     let bounds = [
-        Options { max_move: Some(0.1), ..Options::default() },
-        Options { keep_altitude: true, ..Options::default() },
-        Options { stored: Precision::Single, ..Options::default() },
+        Options::default().max_move(Some(0.1)),
+        Options::default().keep_altitude(true),
+        Options::default().stored(Precision::Single),
     ];
     for options in bounds {
         let outcome = run(&smoother, &options, &Backend::Cpu);

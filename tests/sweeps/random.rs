@@ -185,13 +185,11 @@ fn random_mesh(rng: &mut SplitMix64) -> Mesh {
 
 fn random_options(rng: &mut SplitMix64) -> Options {
     let mut schemes = all_schemes();
-    let mut options = Options {
-        scheme: schemes.swap_remove(rng.below(schemes.len())),
-        max_sweeps: rng.below(60) as u32,
-        stopping: Stopping::Tolerance([0.0, 1e-3, 1e-6, 1e-12][rng.below(4)]),
-        track_all: rng.below(4) == 0,
-        ..Options::default()
-    };
+    let mut options = Options::default()
+        .scheme(schemes.swap_remove(rng.below(schemes.len())))
+        .max_sweeps(rng.below(60) as u32)
+        .stopping(Stopping::Tolerance([0.0, 1e-3, 1e-6, 1e-12][rng.below(4)]))
+        .track_all(rng.below(4) == 0);
     match rng.below(8) {
         0 => options.method = Method::RELAXED,
         1 => {
@@ -382,7 +380,7 @@ fn runs_by_default_leave_no_worse_triangle() {
             continue;
         }
         let Ok(smoother) = Smoother::new(&mesh) else { continue };
-        let options = Options { stored, ..Options::default() };
+        let options = Options::default().stored(stored);
         let held = support::check::held(smoother.mesh());
         for backend in backends() {
             // The test above tells which meshes a run may refuse.

@@ -14,11 +14,8 @@ fn an_observer_can_end_a_run_and_gets_the_best_so_far() {
     let smoother = Smoother::new(mesh).unwrap();
     for backend in backends() {
         for name in ["imr", "edge+imr"] {
-            let options = Options {
-                scheme: scheme(name),
-                stopping: Stopping::Tolerance(0.0),
-                ..Options::default()
-            };
+            let options =
+                Options::default().scheme(scheme(name)).stopping(Stopping::Tolerance(0.0));
             let base = options.scheme.base();
             let mut seen = Vec::new();
             let mut observe = |progress: &gpu_smooth::Progress| {
@@ -60,7 +57,7 @@ fn a_run_canceled_while_the_optimum_is_sought_returns_the_start() {
     let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: None });
     for backend in backends() {
         for name in ["imr", "edge"] {
-            let options = Options { scheme: scheme(name), stopping, ..Options::default() };
+            let options = Options::default().scheme(scheme(name)).stopping(stopping);
             let cancel = &mut |progress: &gpu_smooth::Progress| {
                 assert_eq!(progress.phase, Phase::Reference);
                 ControlFlow::Break(())
@@ -83,27 +80,24 @@ fn options_out_of_range_are_named() {
     let sharpness = |first, last| Some(PNormExponent { first, every: 1, last });
     let long = Scheme::new(vec![Metric::Imr; 61]).unwrap();
     let wrong = [
-        ("tolerance", Options { stopping: Stopping::Tolerance(-1e-9), ..default() }),
-        ("tolerance", Options { stopping: Stopping::Tolerance(f64::NAN), ..default() }),
-        ("tolerance", Options { stopping: Stopping::Tolerance(f64::INFINITY), ..default() }),
-        ("omega", Options { method: omega(0.0), ..default() }),
-        ("omega", Options { method: omega(2.0), ..default() }),
-        ("omega", Options { method: omega(f64::NAN), ..default() }),
-        ("newton steps", Options { method: steps(0), ..default() }),
+        ("tolerance", default().stopping(Stopping::Tolerance(-1e-9))),
+        ("tolerance", default().stopping(Stopping::Tolerance(f64::NAN))),
+        ("tolerance", default().stopping(Stopping::Tolerance(f64::INFINITY))),
+        ("omega", default().method(omega(0.0))),
+        ("omega", default().method(omega(2.0))),
+        ("omega", default().method(omega(f64::NAN))),
+        ("newton steps", default().method(steps(0))),
         // A sweep with more Newton steps could not be canceled in time.
-        ("newton steps", Options { method: steps(Paper::MAX_NEWTON_STEPS + 1), ..default() }),
-        ("edge norm", Options { edge_norm: sharpness(14, 4), ..default() }),
-        ("edge norm", Options { edge_norm: sharpness(1, 14), ..default() }),
+        ("newton steps", default().method(steps(Paper::MAX_NEWTON_STEPS + 1))),
+        ("edge norm", default().edge_norm(sharpness(14, 4))),
+        ("edge norm", default().edge_norm(sharpness(1, 14))),
         // A former defect: no sweep of the run was encoded on a device, and the run ended as converged.
-        (
-            "edge norm",
-            Options { edge_norm: Some(PNormExponent { first: 5, every: 0, last: 2 }), ..default() },
-        ),
-        ("scheme length", Options { scheme: long, ..default() }),
-        ("fraction", Options { stopping: goal(0.0, 1.0), ..default() }),
-        ("fraction", Options { stopping: goal(1.5, 1.0), ..default() }),
-        ("fraction", Options { stopping: goal(f64::NAN, 1.0), ..default() }),
-        ("desired", Options { stopping: goal(0.95, f64::NAN), ..default() }),
+        ("edge norm", default().edge_norm(Some(PNormExponent { first: 5, every: 0, last: 2 }))),
+        ("scheme length", default().scheme(long)),
+        ("fraction", default().stopping(goal(0.0, 1.0))),
+        ("fraction", default().stopping(goal(1.5, 1.0))),
+        ("fraction", default().stopping(goal(f64::NAN, 1.0))),
+        ("desired", default().stopping(goal(0.95, f64::NAN))),
     ];
     for (named, options) in wrong {
         for backend in backends() {
@@ -117,14 +111,12 @@ fn options_out_of_range_are_named() {
         }
     }
     // The ends of the ranges are valid.
-    let edge = Options {
-        method: omega(1.99),
-        edge_norm: sharpness(0, 10),
-        scheme: Scheme::new(vec![Metric::Edge; 60]).unwrap(),
-        stopping: goal(1.0, 0.0),
-        max_sweeps: 3,
-        ..default()
-    };
+    let edge = default()
+        .method(omega(1.99))
+        .edge_norm(sharpness(0, 10))
+        .scheme(Scheme::new(vec![Metric::Edge; 60]).unwrap())
+        .stopping(goal(1.0, 0.0))
+        .max_sweeps(3);
     assert_eq!(run(&smoother, &edge, &backends()[0]).stop, Stop::MaxSweeps);
 }
 
@@ -134,7 +126,7 @@ fn no_sweep_at_all_leaves_the_mesh_as_it_is() {
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
         for name in ["imr", "edge+imr"] {
-            let options = Options { scheme: scheme(name), max_sweeps: 0, ..Options::default() };
+            let options = Options::default().scheme(scheme(name)).max_sweeps(0);
             let outcome = run(&smoother, &options, backend);
             assert_eq!((outcome.stop, outcome.sweeps, outcome.best_sweep), (Stop::MaxSweeps, 0, 0));
             assert_eq!(outcome.points, mesh.points);
@@ -149,8 +141,7 @@ fn no_sweep_at_all_leaves_the_mesh_as_it_is() {
 fn every_metric_is_tracked_on_request() {
     let mesh = perturbed();
     let smoother = Smoother::new(mesh).unwrap();
-    let options =
-        Options { scheme: scheme("rms+imr"), track_all: true, max_sweeps: 6, ..Options::default() };
+    let options = Options::default().scheme(scheme("rms+imr")).track_all(true).max_sweeps(6);
     let outcomes = backends().each_ref().map(|backend| run(&smoother, &options, backend));
     for sweep in 0..=6 {
         for &metric in Metric::ALL {
@@ -161,7 +152,7 @@ fn every_metric_is_tracked_on_request() {
             assert!((gpu / cpu - 1.0).abs() < most, "{metric}, sweep {sweep}: {gpu} for {cpu}");
         }
     }
-    let alone = run(&smoother, &Options { track_all: false, ..options }, &backends()[1]);
+    let alone = run(&smoother, &options.track_all(false), &backends()[1]);
     assert_eq!(alone.points, outcomes[1].points, "looking changes nothing");
     assert_eq!(alone.history[3].of(Metric::Imr), None);
 }

@@ -82,10 +82,10 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
         let every = if matches!(backend, Backend::Cpu) { 1 } else { 3 };
         for scheme in all_schemes().into_iter().step_by(every) {
             let alternates = scheme.alternates();
-            let options = Options { scheme, max_sweeps: 40, ..Options::default() };
+            let options = Options::default().scheme(scheme).max_sweeps(40);
             assert_goes_on(&smoother, &options, backend, 2);
             if alternates {
-                let alone = Options { method: Method::RELAXED, ..options };
+                let alone = options.method(Method::RELAXED);
                 assert_goes_on(&smoother, &alone, backend, 2);
             }
         }
@@ -97,7 +97,7 @@ fn a_run_by_any_scheme_goes_on_to_the_same_bits() {
 fn sweeps_alone_that_go_on_after_a_refused_end_come_to_the_same_bits() {
     let mesh = support::perturb_random(&support::hub_evenly(200, 6), 0.5, 1);
     let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { method: Method::RELAXED, ..Options::default() };
+    let options = Options::default().method(Method::RELAXED);
     for backend in backends() {
         assert_goes_on(&smoother, &options, backend, 4);
     }
@@ -125,7 +125,7 @@ fn a_bounded_run_around_a_hub_goes_on_to_the_same_bits() {
     let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
     let mut smoother = Smoother::new(&mesh).unwrap();
     smoother.set_targets(&targets).unwrap();
-    let options = Options { scheme: Metric::Rms.into(), max_move: Some(3.0), ..Options::default() };
+    let options = Options::default().scheme(Metric::Rms.into()).max_move(Some(3.0));
     assert_goes_on(&smoother, &options, &backends()[1], 3);
 }
 
@@ -136,14 +136,11 @@ fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
     let sizes: Vec<f64> = mesh.points.iter().map(|[x, _]| 1.0 + x * x).collect();
     let field = TargetField::new(&plate(300), &Targets::sizes(&sizes).unwrap()).unwrap();
     let default = Options::default;
-    let limited = Options { max_move: Some(0.2), ..default() };
-    let kept = Options { keep_altitude: true, ..default() };
-    let worst = Options { improve_worst: Some(WorstBy::Imr), ..default() };
-    let relaxed = Options {
-        method: Method::Relaxed(Relaxed::default()),
-        scheme: "imr+edge".parse().unwrap(),
-        ..default()
-    };
+    let limited = default().max_move(Some(0.2));
+    let kept = default().keep_altitude(true);
+    let worst = default().improve_worst(Some(WorstBy::Imr));
+    let relaxed =
+        default().method(Method::Relaxed(Relaxed::default())).scheme("imr+edge".parse().unwrap());
     for (name_of_case, options, slides, has_field) in [
         ("slide", default(), true, false),
         ("slide by sweeps alone", relaxed, true, false),
@@ -161,7 +158,7 @@ fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
             smoother.set_target_field(field.clone()).unwrap();
         }
         for backend in backends() {
-            let options = Options { max_sweeps: 20, ..options.clone() };
+            let options = options.clone().max_sweeps(20);
             let every = if matches!(backend, Backend::Cpu) { 1 } else { 4 };
             assert_goes_on_as(name_of_case, &smoother, &options, backend, every);
         }
@@ -179,8 +176,7 @@ fn a_run_with_a_target_field_on_a_strongly_stretched_mesh_goes_on_to_the_same_bi
     let mut smoother = Smoother::new(&mesh).unwrap();
     smoother.set_target_field(field).unwrap();
     for backend in backends() {
-        let options =
-            Options { scheme: Metric::SoftSize.into(), max_sweeps: 20, ..Options::default() };
+        let options = Options::default().scheme(Metric::SoftSize.into()).max_sweeps(20);
         assert_goes_on_as("stretched", &smoother, &options, backend, 1);
     }
 }
@@ -190,7 +186,7 @@ fn a_run_with_a_target_field_on_a_strongly_stretched_mesh_goes_on_to_the_same_bi
 fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let mut smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { max_sweeps: 9, ..Options::default() };
+    let options = Options::default().max_sweeps(9);
     let slide = |corner_angle| Slide { corner_angle, ..Slide::default() };
     smoother.set_slide(Some(&slide(40.0))).unwrap();
     let mut all = All::default();
@@ -211,7 +207,7 @@ fn a_checkpoint_of_a_run_with_other_curves_or_another_field_is_refused() {
 fn a_run_that_begins_at_means_of_neighbors_goes_on_to_the_same_bits() {
     let mesh = pressed_to_a_line(bent(24, 20), 18.0, 1e-12);
     let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { scheme: Metric::Tmop80.into(), ..Options::default() };
+    let options = Options::default().scheme(Metric::Tmop80.into());
     for backend in backends() {
         assert_goes_on_as("pressed", &smoother, &options, backend, 1);
     }
@@ -262,7 +258,7 @@ fn a_resumed_run_does_not_seek_its_goal_again() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let smoother = Smoother::new(&mesh).unwrap();
     let stopping = Stopping::Goal(Goal { fraction: 0.999, desired: None });
-    let options = Options { stopping, method: Method::RELAXED, ..Options::default() };
+    let options = Options::default().stopping(stopping).method(Method::RELAXED);
     let mut all = All::default();
     let whole = smoother.run(&options).on(&Backend::Cpu).checkpoints(&mut all).block().unwrap();
     assert_eq!(whole.stop, Stop::Reached);
@@ -330,7 +326,7 @@ fn a_run_goes_on_on_the_cpu_wherever_it_was_left() {
     let smoother = Smoother::new(&mesh).unwrap();
     let [cpu, gpu] = backends();
     for scheme in ["imr", "edge+imr"] {
-        let options = Options { scheme: super::scheme(scheme), ..Options::default() };
+        let options = Options::default().scheme(super::scheme(scheme));
         let on_cpu = smoother.run(&options).on(cpu).block().unwrap();
         let f = |o: &Outcome| {
             Quality::of(&o.points, smoother.topology()).unwrap().f(options.scheme.base())
@@ -374,13 +370,13 @@ fn a_checkpoint_of_another_run_is_refused() {
         assert!(matches!(error, SmoothError::Checkpoint(_)), "{error:?}");
         error.to_string()
     };
-    let other = Options { stopping: Stopping::Tolerance(1e-3), ..options.clone() };
+    let other = options.clone().stopping(Stopping::Tolerance(1e-3));
     let error = refused(&smoother, &other);
     assert!(
         error.contains("tolerance 0.000001, and this run has stopping = tolerance 0.001"),
         "{error}"
     );
-    let other = Options { scheme: Metric::Rms.into(), ..options.clone() };
+    let other = options.clone().scheme(Metric::Rms.into());
     refused(&smoother, &other);
     let mut held = mesh.clone();
     held.fixed.push(mesh.points.len() as u32 - 1);
@@ -401,8 +397,7 @@ fn keeping_positions_changes_no_bit() {
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
         for scheme in ["imr", "edge+imr"] {
-            let options =
-                Options { scheme: super::scheme(scheme), max_sweeps: 40, ..Options::default() };
+            let options = Options::default().scheme(super::scheme(scheme)).max_sweeps(40);
             let whole = smoother.run(&options).on(backend).block().unwrap();
             let kept = smoother.run(&options).on(backend).checkpoints(&mut Often).block().unwrap();
             assert_same(&whole, &kept, scheme);
@@ -417,7 +412,7 @@ fn a_run_by_edge_that_reopens_triangles_goes_on_to_the_same_bits() {
         let start = stuck::untangled_square(seed, share);
         let smoother = Smoother::new(&start).unwrap();
         for backend in backends() {
-            let options = Options { scheme: Metric::Edge.into(), ..Options::default() };
+            let options = Options::default().scheme(Metric::Edge.into());
             assert_goes_on(&smoother, &options, backend, 3);
         }
     }

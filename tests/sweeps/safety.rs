@@ -24,12 +24,10 @@ fn no_scheme_inverts_a_triangle_or_moves_what_is_held() {
     let smoother = Smoother::new(&mesh).unwrap();
     for scheme in all_schemes() {
         for backend in backends() {
-            let options = Options {
-                scheme: scheme.clone(),
-                max_sweeps: 40,
-                stopping: Stopping::Tolerance(0.0),
-                ..Options::default()
-            };
+            let options = Options::default()
+                .scheme(scheme.clone())
+                .max_sweeps(40)
+                .stopping(Stopping::Tolerance(0.0));
             let outcome = run(&smoother, &options, backend);
             let after = with_points(&mesh, &outcome.points);
             let label = format!("{scheme} on the {}", name(backend));
@@ -58,8 +56,7 @@ fn metrics_without_a_barrier_leave_no_slivers() {
         for metric in [Metric::Edge, Metric::Area, Metric::Rms] {
             let guard = metric.properties().shape_guard.min(support::worst_imr(mesh));
             for backend in backends() {
-                let options =
-                    Options { scheme: metric.into(), max_sweeps: 150, ..Options::default() };
+                let options = Options::default().scheme(metric.into()).max_sweeps(150);
                 let outcome = run(&smoother, &options, backend);
                 let worst = support::worst_imr(&with_points(mesh, &outcome.points));
                 // Only rounding in single precision may exceed the guard.
@@ -89,7 +86,7 @@ fn a_good_mesh_of_uneven_sizes_is_not_flattened() {
     assert!(before < 10.0, "{before}");
     for metric in [Metric::Edge, Metric::Area, Metric::Rms] {
         for backend in backends() {
-            let options = Options { scheme: metric.into(), max_sweeps: 100, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).max_sweeps(100);
             let outcome = run(&smoother, &options, backend);
             let after = Quality::of(&outcome.points, smoother.topology()).unwrap();
             let label = format!("{metric} on the {}", name(backend));
@@ -106,8 +103,7 @@ fn an_optimal_mesh_comes_back_as_it_was() {
     // A former defect: rounding on a device moved thousands of vertices by a millionth, and raised f in the eighth
     // digit.
     let smoother = Smoother::new(perturbed()).unwrap();
-    let options =
-        Options { stopping: Stopping::Tolerance(1e-13), max_sweeps: 300, ..Options::default() };
+    let options = Options::default().stopping(Stopping::Tolerance(1e-13)).max_sweeps(300);
     let outcome = run(&smoother, &options, &backends()[0]);
     let optimal = with_points(perturbed(), &outcome.points);
     let smoother = Smoother::new(&optimal).unwrap();

@@ -85,7 +85,7 @@ fn curved_lines_are_followed_and_nothing_else_that_is_fixed_moves() {
     let topology = Topology::new(&mesh).unwrap();
     let still = run(&Smoother::new(&mesh).unwrap(), &Options::default(), &Backend::Cpu);
     for metric in [Metric::Imr, Metric::Rms] {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         let outcome = run(&smoother, &options, &Backend::Cpu);
         // The guard of RMS is the worst triangle before the run. A guard renewed after some sweeps would hold vertices
         // back.
@@ -119,7 +119,7 @@ fn a_run_that_has_reached_its_goal_at_the_start_slides_no_vertex() {
     let (mesh, lines) = halves();
     let (smoother, _) = sliding(&mesh, &Slide { lines, ..Slide::default() });
     let stopping = Stopping::Goal(Goal { fraction: 0.5, desired: Some(1e6) });
-    let options = Options { stopping, ..Options::default() };
+    let options = Options::default().stopping(stopping);
     for backend in backends() {
         let outcome = run(&smoother, &options, backend);
         assert_eq!((outcome.stop, outcome.sweeps), (Stop::Reached, 0), "{}", name(backend));
@@ -225,13 +225,10 @@ fn options_that_cannot_be_combined_with_sliding_are_refused() {
         smoother.set_slide(Some(&Slide { corner_angle: 0.0, ..Slide::default() })).unwrap(),
         2 * 10 + 2 * 5
     );
-    let options = Options {
-        method: Method::Paper(Paper {
-            derivatives: Derivatives::FiniteDifference,
-            ..Paper::default()
-        }),
-        ..Options::default()
-    };
+    let options = Options::default().method(Method::Paper(Paper {
+        derivatives: Derivatives::FiniteDifference,
+        ..Paper::default()
+    }));
     let error = smoother.run(&options).on(&Backend::Cpu).block().unwrap_err();
     assert!(
         matches!(
@@ -251,13 +248,13 @@ fn vertices_slide_by_alternating_metrics_by_edge_and_toward_a_searched_goal() {
     let (smoother, _) = sliding(&mesh, &slide);
     let still = Smoother::new(&mesh).unwrap();
     let searched = Stopping::Goal(Goal { fraction: 0.95, desired: None });
-    let by = |scheme: &str| Options { scheme: scheme.parse().unwrap(), ..Options::default() };
+    let by = |scheme: &str| Options::default().scheme(scheme.parse().unwrap());
     for options in [
         by("imr+edge"),
         by("rms+edge"),
         by("edge"),
-        Options { method: Method::Relaxed(Relaxed::default()), ..by("imr+rms") },
-        Options { stopping: searched, ..Options::default() },
+        by("imr+rms").method(Method::Relaxed(Relaxed::default())),
+        Options::default().stopping(searched),
     ] {
         let base = options.scheme.base();
         let label = format!("{} {:?}", options.scheme, options.stopping);
@@ -325,8 +322,7 @@ fn runs_on_curves_take_few_sweeps() {
     for (mesh, apart) in [(twisted(), 0.0), (wavy(), 1e-3), (worn(), 0.0)] {
         let slide = Slide::default();
         let (smoother, count) = sliding(&mesh, &slide);
-        let to =
-            |tolerance| Options { stopping: Stopping::Tolerance(tolerance), ..Options::default() };
+        let to = |tolerance| Options::default().stopping(Stopping::Tolerance(tolerance));
         let f_of = |points: &[[f64; 2]]| smoother.f(Metric::Imr, points).unwrap();
         let least = f_of(&run(&smoother, &to(1e-10), &Backend::Cpu).points);
         for backend in backends() {
@@ -362,8 +358,7 @@ fn a_run_on_a_ring_reports_what_a_turn_gains() {
     for seed in [2, 6, 10, 14, 18] {
         let mesh = support::perturb_random(&twisted(), 0.5, seed);
         let (smoother, _) = sliding(&mesh, &Slide::default());
-        let to =
-            |tolerance| Options { stopping: Stopping::Tolerance(tolerance), ..Options::default() };
+        let to = |tolerance| Options::default().stopping(Stopping::Tolerance(tolerance));
         let f_of =
             |outcome: &gpu_smooth::Outcome| smoother.f(Metric::Imr, &outcome.points).unwrap();
         let outcome = run(&smoother, &to(1e-6), &Backend::Cpu);
@@ -419,7 +414,7 @@ fn f_by_the_areas_of_the_result_does_not_rise_where_vertices_slide() {
         let mut mesh = worn();
         for round in 0..4 {
             let (smoother, _) = sliding(&mesh, &Slide::default());
-            let options = Options { scheme: metric.into(), ..Options::default() };
+            let options = Options::default().scheme(metric.into());
             let outcome = run(&smoother, &options, &Backend::Cpu);
             let f = |points: &[[f64; 2]]| {
                 gpu_smooth::Quality::of(points, smoother.topology()).unwrap().f(metric)
@@ -446,12 +441,10 @@ fn both_engines_slide_vertices_by_sweeps_alone() {
     for (case, mesh, slide) in &cases {
         let (smoother, count) = sliding(mesh, slide);
         for scheme in ["imr", "imr+rms", "rms+edge", "edge"] {
-            let options = Options {
-                scheme: scheme.parse().unwrap(),
-                method: Method::Relaxed(Relaxed::default()),
-                max_sweeps: 200,
-                ..Options::default()
-            };
+            let options = Options::default()
+                .scheme(scheme.parse().unwrap())
+                .method(Method::Relaxed(Relaxed::default()))
+                .max_sweeps(200);
             let mut ends = Vec::new();
             for backend in &engines {
                 let label = format!("{case}, {scheme} on the {}", name(backend));
@@ -495,14 +488,10 @@ fn dispatches(backend: &Backend) -> u64 {
 fn vertices_that_slide_on_a_device_keep_bounds_and_follow_targets() {
     let mesh = worn();
     let slide = Slide::default();
-    let relaxed = || Options {
-        method: Method::Relaxed(Relaxed::default()),
-        max_sweeps: 60,
-        ..Options::default()
-    };
+    let relaxed = || Options::default().method(Method::Relaxed(Relaxed::default())).max_sweeps(60);
     let (mut smoother, _) = sliding(&mesh, &slide);
     let gpu = &backends()[1];
-    let limited = run(&smoother, &Options { max_move: Some(0.1), ..relaxed() }, gpu);
+    let limited = run(&smoother, &relaxed().max_move(Some(0.1)), gpu);
     let free = run(&smoother, &relaxed(), gpu);
     let way = |points: &[[f64; 2]]| {
         let squares =
@@ -511,7 +500,7 @@ fn vertices_that_slide_on_a_device_keep_bounds_and_follow_targets() {
     };
     assert!(limited.slid.unwrap().moved > 20);
     assert!(way(&limited.points) < 0.5 * way(&free.points));
-    let kept = run(&smoother, &Options { keep_altitude: true, ..relaxed() }, gpu);
+    let kept = run(&smoother, &relaxed().keep_altitude(true), gpu);
     let least = |points: &[[f64; 2]]| {
         let of = |t: &[u32; 3]| {
             let [p, q, r] = t.map(|v| points[v as usize]);

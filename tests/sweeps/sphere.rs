@@ -115,8 +115,8 @@ fn left(mesh: &Mesh, points: &[[f64; 2]], mut allows: impl FnMut(&[[f64; 2]]) ->
 fn a_wide_bound_leaves_the_optimum_of_the_projection() {
     let mesh = lattice(0.2);
     let smoother = on_sphere(&mesh);
-    let free = Options { stopping: Stopping::Tolerance(1e-8), ..Options::default() };
-    let bounded = Options { max_move: Some(50.0), ..free.clone() };
+    let free = Options::default().stopping(Stopping::Tolerance(1e-8));
+    let bounded = free.clone().max_move(Some(50.0));
     for backend in backends() {
         let [free, bounded] = [&free, &bounded].map(|options| run(&smoother, options, backend));
         assert_eq!(bounded.stop, Stop::Converged, "{}", name(backend));
@@ -130,7 +130,7 @@ fn a_wide_bound_leaves_the_optimum_of_the_projection() {
 #[test]
 fn a_mesh_with_a_sliver_reaches_the_optimum_of_the_projection() {
     let (plain, mesh) = (lattice(0.2), with_a_sliver(0.2));
-    let options = Options { stopping: Stopping::Tolerance(1e-8), ..Options::default() };
+    let options = Options::default().stopping(Stopping::Tolerance(1e-8));
     let best = run(&on_sphere(&plain), &options, &backends()[0]);
     let best = f(&plain, &best.points);
     let mut smoother = on_sphere(&mesh);
@@ -150,7 +150,7 @@ fn a_mesh_with_a_sliver_reaches_the_optimum_of_the_projection() {
     let outcome = run(&smoother, &options, &backends()[0]);
     assert!((f(&mesh, &outcome.points) / best - 1.0).abs() < 1e-5, "{outcome:?}");
     // A bound is measured from the given positions, also those of the vertices near the sliver.
-    let bounded = Options { max_move: Some(0.05), ..options };
+    let bounded = options.max_move(Some(0.05));
     let outcome = run(&smoother, &bounded, &backends()[0]);
     let change = Change::between(smoother.topology(), &mesh.points, &outcome.points).unwrap();
     assert!(change.moved.most <= 0.05 && change.moved.most > 0.0499, "{change:?}");
@@ -161,7 +161,7 @@ fn a_mesh_with_a_sliver_reaches_the_optimum_of_the_projection() {
 fn frames_of_a_mesh_with_a_sliver_reach_the_optimum_of_the_projection() {
     let mesh = with_a_sliver(0.2);
     let smoother = on_sphere(&mesh);
-    let options = Options { stopping: Stopping::Tolerance(1e-8), ..Options::default() };
+    let options = Options::default().stopping(Stopping::Tolerance(1e-8));
     let [Backend::Cpu, Backend::Gpu(gpu)] = backends() else { panic!("a device is missing") };
     let best = f(&mesh, &run(&smoother, &options, &Backend::Cpu).points);
     let device_mesh = smoother.to_device(gpu).unwrap();
@@ -194,8 +194,7 @@ fn a_bound_is_kept_in_degrees_and_no_vertex_gains_within_the_bound() {
     let smoother = on_sphere(&mesh);
     let topology = smoother.topology();
     let most = 0.3;
-    let options =
-        Options { max_move: Some(most), stopping: Stopping::Tolerance(1e-8), ..Options::default() };
+    let options = Options::default().max_move(Some(most)).stopping(Stopping::Tolerance(1e-8));
     for backend in backends() {
         let outcome = run(&smoother, &options, backend);
         assert_eq!(outcome.stop, Stop::Converged, "{}", name(backend));
@@ -230,8 +229,8 @@ fn the_least_altitude_in_degrees_is_kept_or_improved() {
     let before = least(&mesh.points);
     let free = run(&smoother, &Options::default(), &backends()[0]);
     assert!(least(&free.points) < 0.9 * before, "the bound must matter");
-    let keeps = Options { keep_altitude: true, ..Options::default() };
-    let improves = Options { improve_worst: Some(WorstBy::Altitude), ..keeps.clone() };
+    let keeps = Options::default().keep_altitude(true);
+    let improves = keeps.clone().improve_worst(Some(WorstBy::Altitude));
     let [kept, improved] = [keeps, improves].map(|options| {
         let ends = backends().each_ref().map(|backend| {
             let outcome = run(&smoother, &options, backend);

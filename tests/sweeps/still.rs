@@ -63,7 +63,7 @@ fn fixed_slivers_do_not_hide_the_gain_of_a_run() {
     for backend in backends() {
         for tolerance in [1e-6, 0.0] {
             let stopping = Stopping::Tolerance(tolerance);
-            let options = Options { stopping, max_sweeps: 60, ..Options::default() };
+            let options = Options::default().stopping(stopping).max_sweeps(60);
             let smoother = Smoother::new(&mesh).unwrap();
             let outcome = run(&smoother, &options, backend);
             let expected = run(&Smoother::new(&alone).unwrap(), &options, backend);
@@ -91,7 +91,7 @@ fn a_history_has_the_mean_over_all_triangles() {
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {
         for metric in [Metric::Imr, Metric::ShapeSize, Metric::Edge] {
-            let options = Options { scheme: metric.into(), track_all: true, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).track_all(true);
             let outcome = run(&smoother, &options, backend);
             let precise = if matches!(backend, Backend::Cpu) { 1e-12 } else { 1e-5 };
             let ends = [
@@ -120,7 +120,7 @@ fn a_desired_objective_is_a_mean_over_all_triangles() {
         .map(|f| f.unwrap().of(Metric::Imr).unwrap());
     let desired = 0.5 * (first + last);
     let goal = Goal { fraction: 1.0, desired: Some(desired) };
-    let options = Options { stopping: Stopping::Goal(goal), ..Options::default() };
+    let options = Options::default().stopping(Stopping::Goal(goal));
     let outcome = run(&smoother, &options, &Backend::Cpu);
     assert_eq!(outcome.stop, Stop::Reached);
     let f = |k: usize| outcome.history[k].of(Metric::Imr).unwrap();

@@ -112,11 +112,11 @@ fn the_promise_holds_on_strongly_stretched_lattices_with_targets() {
         ] {
             let label = format!("1:{ratio:e}, {of_targets}");
             smoother.set_targets(&targets).unwrap();
-            let options = Options { scheme: metric.into(), ..Options::default() };
+            let options = Options::default().scheme(metric.into());
             let outcome = run(&smoother, &options, &Backend::Cpu);
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
             assert!(outcome.sweeps <= 60, "{label}: {} sweeps", outcome.sweeps);
-            let long = Options { stopping: Stopping::Tolerance(1e-11), ..options };
+            let long = options.stopping(Stopping::Tolerance(1e-11));
             let further = run(&smoother, &long, &Backend::Cpu);
             let [f, least] = [&outcome, &further].map(|o| *history(o, metric).last().unwrap());
             let left = 1.0 - least / f;
@@ -148,7 +148,7 @@ fn the_promise_holds_around_a_vertex_of_3000() {
     assert_eq!(outcome.stop, Stop::Converged);
     let f = *history(&outcome, Metric::Imr).last().unwrap();
     let after = with_points(&mesh, &outcome.points);
-    let long = Options { stopping: Stopping::Tolerance(1e-10), ..Options::default() };
+    let long = Options::default().stopping(Stopping::Tolerance(1e-10));
     let further = run(&Smoother::new(&after).unwrap(), &long, &Backend::Cpu);
     let left = 1.0 - history(&further, Metric::Imr).last().unwrap() / f;
     let said = outcome.remaining.unwrap();

@@ -44,7 +44,7 @@ pub(super) fn untangled_square(seed: u64, share: f64) -> Mesh {
 
 fn by_edge(mesh: &Mesh, backend: &Backend) -> (Outcome, f64) {
     let smoother = Smoother::new(mesh).unwrap();
-    let options = Options { scheme: Metric::Edge.into(), ..Options::default() };
+    let options = Options::default().scheme(Metric::Edge.into());
     let outcome = run(&smoother, &options, backend);
     let f = smoother.f(Metric::Edge, &outcome.points).unwrap();
     (outcome, f)

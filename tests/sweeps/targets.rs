@@ -48,7 +48,7 @@ fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_be
     let smoother = with_targets(&stretched, &targets);
     // EDGE has many minima, and rounding decides in which minimum a run ends.
     for &metric in Metric::ALL.iter().filter(|&&m| corrected(m) && m.is_smooth()) {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         for backend in backends() {
             let (one, other) = (run(&plain, &options, backend), run(&smoother, &options, backend));
             let label = format!("{metric} on the {}", name(backend));
@@ -87,12 +87,8 @@ fn both_engines_do_the_same_sweeps_to_targets() {
     let mesh = support::perturb_random(&plate(2000), 0.5, 3);
     let smoother = with_targets(&mesh, &swirling(&mesh));
     for &metric in Metric::ALL {
-        let options = Options {
-            scheme: metric.into(),
-            method: Method::RELAXED,
-            max_sweeps: 6,
-            ..Options::default()
-        };
+        let options =
+            Options::default().scheme(metric.into()).method(Method::RELAXED).max_sweeps(6);
         let [cpu, gpu] = backends()
             .each_ref()
             .map(|backend| history(&run(&smoother, &options, backend), metric));
@@ -109,7 +105,7 @@ fn both_engines_end_at_the_same_minimum_and_hold_the_certificate() {
     let mesh = perturbed();
     let smoother = with_targets(mesh, &swirling(mesh));
     for metric in [Metric::Imr, Metric::SoftSize, Metric::ShapeSize] {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         let [cpu, gpu] = backends().each_ref().map(|backend| {
             let outcome = run(&smoother, &options, backend);
             assert_eq!(outcome.stop, Stop::Converged, "{metric}");
@@ -135,7 +131,7 @@ fn no_run_to_targets_takes_the_ideal_without_targets_for_a_limit() {
         let smoother = with_targets(&lattice, &targets);
         for metric in [Metric::Rms, Metric::Imr, Metric::ShapeSize, Metric::SoftSize] {
             let f = |method| {
-                let options = Options { scheme: metric.into(), method, ..Options::default() };
+                let options = Options::default().scheme(metric.into()).method(method);
                 let outcome = run(&smoother, &options, &Backend::Cpu);
                 (smoother.f(metric, &outcome.points).unwrap(), outcome)
             };
@@ -187,7 +183,7 @@ fn keep_size_keeps_sizes_that_equilateral_elements_would_not() {
     let (plain, keeping) = (Smoother::new(&mesh).unwrap(), with_targets(&mesh, &targets));
     for backend in backends() {
         let free = run(&plain, &Options::default(), backend);
-        let options = Options { scheme: Metric::ShapeSize.into(), ..Options::default() };
+        let options = Options::default().scheme(Metric::ShapeSize.into());
         let kept = run(&keeping, &options, backend);
         let change = [&free, &kept].map(|outcome| size_change(&mesh, &outcome.points));
         // The strip is compressed in one direction only, so sizes and shapes cannot both be preserved.
@@ -260,7 +256,7 @@ fn equilateral_targets_change_nothing() {
     let smoother = with_targets(&mesh, &Targets::equilateral(mesh.points.len()));
     for backend in backends() {
         for metric in [Metric::Imr, Metric::ShapeSize, Metric::Rms] {
-            let options = Options { scheme: metric.into(), ..Options::default() };
+            let options = Options::default().scheme(metric.into());
             let f = [&plain, &smoother].map(|smoother| {
                 *history(&run(smoother, &options, backend), metric).last().unwrap()
             });
@@ -342,7 +338,7 @@ fn sizes_and_tensors_that_are_no_targets_are_refused() {
     assert_eq!(error, MeshError::ValueCount { expected: count, given: 3 });
     smoother.set_targets(&Targets::equilateral(count)).unwrap();
     let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
-    let options = Options { method: Method::Paper(differences), ..Options::default() };
+    let options = Options::default().method(Method::Paper(differences));
     let error = smoother.run(&options).on(&backends()[0]).block().unwrap_err();
     assert!(
         matches!(

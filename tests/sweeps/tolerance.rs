@@ -13,7 +13,7 @@ const TRUST: f64 = 1.5;
 fn check(smoother: &Smoother, options: &Options, limit: f64) {
     for tolerance in [1e-4, 1e-6] {
         for backend in backends() {
-            let options = Options { stopping: Stopping::Tolerance(tolerance), ..options.clone() };
+            let options = options.clone().stopping(Stopping::Tolerance(tolerance));
             let outcome = run(smoother, &options, backend);
             let label = format!("{} to {tolerance:e} on the {}", options.scheme, name(backend));
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
@@ -39,11 +39,7 @@ fn the_rest_above_the_limit_is_within_the_tolerance() {
         let smoother = Smoother::new(mesh).unwrap();
         for (metric, limit) in [(Metric::Imr, imr), (Metric::Rms, global::f_rms(&rms))] {
             for method in [Method::Auto, Method::PAPER] {
-                check(
-                    &smoother,
-                    &Options { scheme: metric.into(), method, ..Options::default() },
-                    limit,
-                );
+                check(&smoother, &Options::default().scheme(metric.into()).method(method), limit);
             }
         }
     }
@@ -55,12 +51,9 @@ fn the_rest_above_the_limit_of_edge_is_within_the_tolerance() {
     // disabled, because with them, rounding decides in which of many minima a run ends.
     let smoother = Smoother::new(perturbed()).unwrap();
     let (scheme, method) = (Metric::Edge.into(), Method::RELAXED);
-    let options = Options { scheme, method, ..Options::default() };
-    let long = run(
-        &smoother,
-        &Options { stopping: Stopping::Tolerance(1e-11), ..options.clone() },
-        &backends()[0],
-    );
+    let options = Options::default().scheme(scheme).method(method);
+    let long =
+        run(&smoother, &options.clone().stopping(Stopping::Tolerance(1e-11)), &backends()[0]);
     let limit = history(&long, Metric::Edge).into_iter().fold(f64::INFINITY, f64::min);
     check(&smoother, &options, limit);
 }
@@ -79,7 +72,7 @@ fn the_rest_above_the_limit_is_at_most_that_above_the_ideal() {
             smoother.set_target_field(field).unwrap();
         }
         for max_sweeps in [1, 3, 40] {
-            let options = Options { scheme: metric.into(), max_sweeps, ..Options::default() };
+            let options = Options::default().scheme(metric.into()).max_sweeps(max_sweeps);
             let outcome = run(&smoother, &options, &Backend::Cpu);
             let f = smoother.f(metric, &outcome.points).unwrap();
             let Some(left) = outcome.remaining else { continue };
@@ -97,7 +90,7 @@ fn a_run_that_is_cut_short_says_how_far_it_is() {
     let (limit, _) = global::imr_optimum(&rms);
     let smoother = Smoother::new(distorted()).unwrap();
     for (method, max_sweeps) in [(Method::PAPER, 120), (Method::Auto, 8)] {
-        let options = Options { method, max_sweeps, ..Options::default() };
+        let options = Options::default().method(method).max_sweeps(max_sweeps);
         for backend in backends() {
             let outcome = run(&smoother, &options, backend);
             let label = format!("{max_sweeps} sweeps on the {}", name(backend));
@@ -118,7 +111,7 @@ fn a_mesh_that_can_become_ideal_converges() {
         let smoother = Smoother::new(&mesh).unwrap();
         for metric in [Metric::Imr, Metric::Ar, Metric::ShapeSize] {
             for backend in backends() {
-                let options = Options { scheme: metric.into(), ..Options::default() };
+                let options = Options::default().scheme(metric.into());
                 let outcome = run(&smoother, &options, backend);
                 let (f, sweeps) = (*history(&outcome, metric).last().unwrap(), outcome.sweeps);
                 let label = format!("{metric} on {columns} by {rows} on the {}", name(backend));
@@ -140,11 +133,9 @@ fn a_loose_tolerance_holds_in_a_slow_decay() {
         let mesh = support::perturb_random(&support::graded(around, ratio), strength, 3);
         let smoother = Smoother::new(&mesh).unwrap();
         let f = |tolerance: f64, backend: &Backend| {
-            let options = Options {
-                scheme: Metric::ShapeSize.into(),
-                stopping: Stopping::Tolerance(tolerance),
-                ..Options::default()
-            };
+            let options = Options::default()
+                .scheme(Metric::ShapeSize.into())
+                .stopping(Stopping::Tolerance(tolerance));
             let outcome = run(&smoother, &options, backend);
             let label = format!("{around} {ratio} to {tolerance:e} on the {}", name(backend));
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
@@ -169,11 +160,11 @@ fn sweeps_alone_measure_the_rest_that_their_decay_hides() {
     let smoother = Smoother::new(&mesh).unwrap();
     let f = |outcome: &Outcome| smoother.f(Metric::Imr, &outcome.points).unwrap();
     let stopping = Stopping::Tolerance(1e-11);
-    let least = f(&run(&smoother, &Options { stopping, ..Options::default() }, &Backend::Cpu));
+    let least = f(&run(&smoother, &Options::default().stopping(stopping), &Backend::Cpu));
     for backend in backends() {
         let mut sweeps = Vec::new();
         for method in [Method::RELAXED, Method::PAPER] {
-            let outcome = run(&smoother, &Options { method, ..Options::default() }, backend);
+            let outcome = run(&smoother, &Options::default().method(method), backend);
             let (left, told) = (f(&outcome) / least - 1.0, outcome.remaining.unwrap());
             let label = format!("{method:?} on the {}: {told:e} of {left:e}", name(backend));
             assert_eq!(outcome.stop, Stop::Converged, "{label}");
@@ -216,8 +207,10 @@ fn the_rest_above_the_limit_is_not_below_the_error_of_single_precision() {
             for max_sweeps in [40, 50, 60, 70] {
                 // No vertex reaches its disc, but runs with discs take no Newton steps.
                 let max_move = Some(1e3);
-                let options =
-                    Options { scheme: metric.into(), max_sweeps, max_move, ..Options::default() };
+                let options = Options::default()
+                    .scheme(metric.into())
+                    .max_sweeps(max_sweeps)
+                    .max_move(max_move);
                 let outcome = run(&smoother, &options, gpu);
                 assert_eq!((outcome.stop, outcome.closing_sweeps), (Stop::MaxSweeps, 0));
                 let Some(told) = outcome.remaining else { continue };
@@ -245,10 +238,10 @@ pub(crate) fn with_gain_left(
 ) -> (Outcome, f64) {
     let mut smoother = Smoother::new(mesh).unwrap();
     targets.iter().for_each(|targets| smoother.set_targets(targets).unwrap());
-    let options = Options { scheme: metric.into(), ..Options::default() };
+    let options = Options::default().scheme(metric.into());
     let outcome = run(&smoother, &options, backend);
     let stopping = Stopping::Tolerance(1e-11);
-    let long = run(&smoother, &Options { stopping, ..options }, &Backend::Cpu);
+    let long = run(&smoother, &options.stopping(stopping), &Backend::Cpu);
     let [f, least] = [&outcome, &long].map(|run| smoother.f(metric, &run.points).unwrap());
     (outcome, (f - least) / f)
 }
@@ -351,10 +344,10 @@ fn slivers_are_opened_with_a_tolerance_of_a_thousandth() {
     assert!(support::is_valid(&mesh) && support::worst_imr(&mesh) > 1e5);
     let smoother = Smoother::new(&mesh).unwrap();
     for metric in [Metric::SoftSize, Metric::Imr] {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         let best = run(&smoother, &options, &Backend::Cpu);
         let best = smoother.f(metric, &best.points).unwrap();
-        let options = Options { stopping: Stopping::Tolerance(1e-3), ..options };
+        let options = options.stopping(Stopping::Tolerance(1e-3));
         for backend in backends() {
             let outcome = run(&smoother, &options, backend);
             let label = format!("{metric} on the {}: {} sweeps", name(backend), outcome.sweeps);
@@ -376,11 +369,11 @@ fn a_loose_tolerance_does_not_end_a_run_while_f_falls_steeply() {
     let smoother = Smoother::new(&mesh).unwrap();
     let stopping = Stopping::Tolerance(0.1);
     let options =
-        Options { scheme: Metric::Tmop80.into(), stopping, max_sweeps: 40, ..Options::default() };
+        Options::default().scheme(Metric::Tmop80.into()).stopping(stopping).max_sweeps(40);
     let outcome = run(&smoother, &options, &Backend::Cpu);
     let f = smoother.f(Metric::Tmop80, &outcome.points).unwrap();
     assert_eq!((outcome.stop, outcome.sweeps), (Stop::MaxSweeps, 40), "f = {f}");
-    let options = Options { max_sweeps: 1000, ..options };
+    let options = options.max_sweeps(1000);
     let outcome = run(&smoother, &options, &Backend::Cpu);
     let f = smoother.f(Metric::Tmop80, &outcome.points).unwrap();
     assert!(outcome.stop == Stop::Converged && f < 0.06, "{:?} at f = {f}", outcome.stop);
@@ -393,11 +386,11 @@ fn converged_runs_with_bounds_or_stages_do_not_report_too_little() {
     let mesh = support::perturb_random(&plate(300), 1.0, 3);
     let topology = Topology::new(&mesh).unwrap();
     let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
-    let default = Options { scheme: Metric::Tmop94.into(), ..Options::default() };
+    let default = Options::default().scheme(Metric::Tmop94.into());
     let mut told = Vec::new();
     for (options, has_field) in [
-        (Options { max_move: Some(0.3), ..default.clone() }, false),
-        (Options { keep_altitude: true, ..default.clone() }, false),
+        (default.clone().max_move(Some(0.3)), false),
+        (default.clone().keep_altitude(true), false),
         (default, true),
     ] {
         let mut smoother = Smoother::new(&mesh).unwrap();
@@ -409,7 +402,7 @@ fn converged_runs_with_bounds_or_stages_do_not_report_too_little() {
         assert_eq!(outcome.stop, Stop::Converged, "{outcome:?}");
         if let Some(told) = outcome.remaining {
             let stopping = Stopping::Tolerance(1e-11);
-            let long = run(&smoother, &Options { stopping, ..options }, &Backend::Cpu);
+            let long = run(&smoother, &options.stopping(stopping), &Backend::Cpu);
             let [f, least] = [&outcome, &long].map(|run| run.movable_f[1]);
             assert!(f / least - 1.0 <= 2.0 * told, "{told:e} of {:e}", f / least - 1.0);
         }

@@ -345,7 +345,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
     let refused = |metric: &&Metric| metric.properties().barrier || !metric.is_smooth();
     for metric in Metric::ALL.iter().filter(refused) {
         for backend in crate::backends() {
-            let options = Options { scheme: (*metric).into(), ..Options::default() };
+            let options = Options::default().scheme((*metric).into());
             let run = smoother.run(&options).on(backend).block();
             let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, .. })) = run else {
                 panic!("a mesh that double precision cannot judge was smoothed by {metric}")
@@ -356,7 +356,7 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
 
     // AREA and RMS judge triangles without a division by the area.
     for metric in [Metric::Area, Metric::Rms] {
-        let options = Options { scheme: metric.into(), ..Options::default() };
+        let options = Options::default().scheme(metric.into());
         let outcome = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
         assert!(support::worst_imr(&with_points(&mesh, &outcome.points)) < 1.01, "{metric}");
     }

@@ -41,7 +41,7 @@ fn worst(smoother: &Smoother, points: &[[f64; 2]], by: WorstBy) -> f64 {
 }
 
 fn improved(smoother: &Smoother, by: WorstBy, options: Options, backend: &Backend) -> Outcome {
-    run(smoother, &Options { improve_worst: Some(by), ..options }, backend)
+    run(smoother, &options.improve_worst(Some(by)), backend)
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_smooth_mesh_is_improved_without_a_sweep() {
     let smooth = run(&Smoother::new(&mesh).unwrap(), &Options::default(), &Backend::Cpu);
     let mesh = with_points(&mesh, &smooth.points);
     let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { max_sweeps: 0, ..Options::default() };
+    let options = Options::default().max_sweeps(0);
     let outcome = improved(&smoother, WorstBy::Imr, options, &Backend::Cpu);
     let told = outcome.improved.unwrap();
     assert!(told.worst[1] < 0.95 * told.worst[0] && told.f[1] > told.f[0], "{told:?}");
@@ -97,10 +97,10 @@ fn bounds_and_altitudes_hold_while_the_worst_is_improved() {
     let change = |outcome: &Outcome| {
         Change::between(smoother.topology(), &mesh.points, &outcome.points).unwrap()
     };
-    let bounded = Options { max_move: Some(0.4), ..Options::default() };
+    let bounded = Options::default().max_move(Some(0.4));
     let outcome = improved(&smoother, WorstBy::Imr, bounded, &Backend::Cpu);
     assert!(change(&outcome).moved.most <= 0.4 && outcome.improved.unwrap().vertices > 0);
-    let kept = Options { keep_altitude: true, ..Options::default() };
+    let kept = Options::default().keep_altitude(true);
     let outcome = improved(&smoother, WorstBy::MinAngle, kept, &Backend::Cpu);
     let [before, after] = change(&outcome).least_altitude;
     assert!(after >= before && outcome.improved.unwrap().vertices > 0);
@@ -117,7 +117,7 @@ fn the_worst_triangle_is_judged_in_the_shape_of_its_target() {
     let mut shown = Smoother::new(&image).unwrap();
     shown.set_targets(&targets).unwrap();
     for by in [WorstBy::Imr, WorstBy::MinAngle] {
-        let options = Options { stopping: Stopping::Tolerance(1e-9), ..Options::default() };
+        let options = Options::default().stopping(Stopping::Tolerance(1e-9));
         let ends = [&plain, &shown].map(|smoother| {
             improved(smoother, by, options.clone(), &Backend::Cpu).improved.unwrap()
         });
@@ -145,7 +145,7 @@ fn triangles_that_cannot_be_improved_stay() {
     // After a canceled run, nothing is improved.
     let mesh = distorted();
     let smoother = Smoother::new(mesh).unwrap();
-    let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
+    let options = Options::default().improve_worst(Some(WorstBy::Imr));
     let leave = |_: &gpu_smooth::Progress| std::ops::ControlFlow::Break(());
     let outcome = smoother.run(&options).on(&Backend::Cpu).observe(leave).block().unwrap();
     assert_eq!(outcome.improved, None);
@@ -174,7 +174,7 @@ fn a_pass_that_leaves_the_worst_as_it_is_is_undone() {
 fn improving_the_worst_ends_where_the_observer_says_so() {
     let mesh = support::perturb_random(&plate(300), 0.5, 3);
     let smoother = Smoother::new(&mesh).unwrap();
-    let options = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
+    let options = Options::default().improve_worst(Some(WorstBy::Imr));
     let whole = run(&smoother, &options, &Backend::Cpu);
     let passes_before_it_ends = |most: u32| {
         let mut passes = 0;
@@ -222,7 +222,7 @@ fn a_triangle_whose_corners_may_slide_is_not_stuck() {
     let mesh = Mesh { points, triangles, fixed: vec![] };
     let mut smoother = Smoother::new(&mesh).unwrap();
     let stuck = |smoother: &Smoother| {
-        let options = Options { max_sweeps: 0, ..Options::default() };
+        let options = Options::default().max_sweeps(0);
         improved(smoother, WorstBy::Imr, options, &Backend::Cpu).improved.unwrap().stuck
     };
     assert_eq!(stuck(&smoother), 2);
@@ -262,10 +262,10 @@ fn an_improvement_that_rounding_undoes_is_not_written() {
             continue;
         }
         let smoother = Smoother::new(&mesh).unwrap();
-        let usual = Options { stored: FIVE_DIGITS, guard: Guard::Worst, ..Options::default() };
+        let usual = Options::default().stored(FIVE_DIGITS).guard(Guard::Worst);
         let without = run(&smoother, &usual, &Backend::Cpu);
         for by in [WorstBy::Imr, WorstBy::MinAngle] {
-            let options = Options { improve_worst: Some(by), ..usual.clone() };
+            let options = usual.clone().improve_worst(Some(by));
             let outcome = run(&smoother, &options, &Backend::Cpu);
             let told = outcome.improved.unwrap();
             let label = format!("case {case}: {told:?}");

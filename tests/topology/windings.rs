@@ -142,7 +142,7 @@ fn a_valid_mesh_as_thin_as_rounding_is_not_inverted() {
     assert_bad(&mesh, &[]);
     let smoother = Smoother::new(&mesh).unwrap();
     let run = |metric: Metric| {
-        let options = Options { scheme: metric.into(), max_sweeps: 5, ..Options::default() };
+        let options = Options::default().scheme(metric.into()).max_sweeps(5);
         smoother.run(&options).on(&Backend::Cpu).block()
     };
     let outcome = run(Metric::Area).unwrap();

@@ -178,7 +178,7 @@ impl SmoothRequest {
 
     /// Returns the options of a run on a mesh whose file stores coordinates with precision `stored`.
     pub(crate) fn options(&self, stored: Precision) -> Options {
-        Options { stored, ..self.run.clone() }
+        self.run.clone().stored(stored)
     }
 }
 

@@ -132,9 +132,7 @@ fn cli_error(request: &SmoothRequest, file: &LoadedMesh, error: SmoothError) -> 
 fn options(request: &SmoothRequest, choice: &MovableSelection, stored: Precision) -> Options {
     let options = request.options(stored);
     match choice.nothing_to_do {
-        Some(_) => {
-            Options { max_sweeps: 0, stopping: Stopping::default(), improve_worst: None, ..options }
-        }
+        Some(_) => options.max_sweeps(0).stopping(Stopping::default()).improve_worst(None),
         None => options,
     }
 }

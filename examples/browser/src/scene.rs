@@ -37,7 +37,7 @@ impl Scene {
     /// because a browser can create corrected sweeps only asynchronously.
     pub(crate) async fn new(gpu: &Gpu, plate: &Plate) -> Result<Self, SmoothError> {
         let mesh = &plate.mesh;
-        let options = Options { method: Method::Multilevel, stopping: Stopping::Tolerance(1e-5), ..Options::default() };
+        let options = Options::default().method(Method::Multilevel).stopping(Stopping::Tolerance(1e-5));
         let device_mesh = DeviceMesh::new(gpu, mesh)?;
         let buffer = |label, size, usage| {
             gpu.device().create_buffer(&wgpu::BufferDescriptor {

@@ -47,11 +47,7 @@ pub(crate) struct Seen {
 /// Returns the options of all sweeps. A correction from coarser levels follows each sweep. A frame then has time for
 /// fewer sweeps, but a dragged mesh converges within a few frames.
 pub(crate) fn options() -> Options {
-    Options {
-        method: Method::Multilevel,
-        stopping: Stopping::Tolerance(1e-4),
-        ..Options::default()
-    }
+    Options::default().method(Method::Multilevel).stopping(Stopping::Tolerance(1e-4))
 }
 
 impl Scene {

@@ -109,12 +109,10 @@ fn measure(
     problem: &Problem,
     place: &Place,
 ) -> Result<Row, SmoothError> {
-    let options = Options {
-        scheme: args.scheme.clone(),
-        stopping: Stopping::Tolerance(0.0),
-        max_sweeps: u32::MAX,
-        ..Options::default()
-    };
+    let options = Options::default()
+        .scheme(args.scheme.clone())
+        .stopping(Stopping::Tolerance(0.0))
+        .max_sweeps(u32::MAX);
     let plan = Plan::new(&options);
     let (seconds, kernels, corrected) = match &place.gpu {
         None => {
@@ -126,7 +124,7 @@ fn measure(
                 Box::new(run_on_gpu(gpu, problem, problem.positions(), plan)?);
             let seconds = sweeps::time(&mut *engine, args.seconds)?;
             drop(engine);
-            let corrected = Options { method: Method::Multilevel, ..options.clone() };
+            let corrected = options.clone().method(Method::Multilevel);
             let corrected = match kernels::time(gpu, mesh, &corrected) {
                 // No frame corrects sweeps by EDGE or by alternating metrics.
                 Err(SmoothError::Option(_)) => None,

@@ -143,7 +143,7 @@ fn measure(
     let began = Instant::now();
     let smoother = Smoother::new(mesh)?;
     let prepare = began.elapsed();
-    let options = Options { scheme: args.scheme.clone(), ..Options::default() };
+    let options = Options::default().scheme(args.scheme.clone());
     for place in places {
         let row = |first, mut runs: Vec<Timed>| {
             runs.sort_by_key(|run| run.outcome.smooth);
