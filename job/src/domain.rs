@@ -37,7 +37,7 @@ pub struct Domain {
     plane: Option<Plane>,
 }
 
-/// How vertices slide along lines; see [`Domain::slide`].
+/// How vertices slide along lines; see [`Domain::curves`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct SlideBy {
