@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use gpu_smooth::SmoothError;
+use gpu_smooth::{SmoothError, topology::BadTriangle};
 use mesh_io::{FieldError, ReadError, SourceLocation, WriteError};
 
 /// Error of the plane of a file.
@@ -46,6 +46,18 @@ pub enum JobError {
         /// The error of the smoother. Vertices and triangles are zero-based indices.
         #[source]
         error: SmoothError,
+    },
+    /// The mesh cannot be untangled.
+    #[error(
+        "{}: the mesh cannot be untangled: {} triangles stay inverted or flat{}. Perhaps fixed vertices leave no room",
+        path.display(), left.len(),
+        if left.is_empty() { ", and triangles wind more than once around a vertex" } else { "" }
+    )]
+    Tangled {
+        /// The file of the mesh.
+        path: PathBuf,
+        /// The triangles that stay inverted or flat. Empty if triangles wind more than once around a vertex.
+        left: Vec<BadTriangle>,
     },
     /// The groups of the file cannot be read.
     #[error(transparent)]

@@ -1,12 +1,14 @@
 //! A mesh file that is prepared for smoothing, and the smoothed mesh.
 
 use std::borrow::Cow;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::targets::Surface;
+use gpu_smooth::untangle::{Untangled, Untangling};
 use gpu_smooth::{Backend, Mesh, MeshError, Options, Outcome, SmoothError, Smoother, Topology};
 use mesh_io::MeshFile;
 
@@ -26,6 +28,7 @@ pub struct Job<'f> {
     keep_layers: KeepLayers,
     target: TargetRequest,
     slide: Option<SlideBy>,
+    untangles: bool,
 }
 
 impl<'f> Job<'f> {
@@ -55,7 +58,7 @@ impl<'f> Job<'f> {
 
     fn with(file: &'f MeshFile, domain: Domain) -> Self {
         let (keep_layers, target) = (KeepLayers::Auto, TargetRequest::default());
-        Self { file, domain, keep_layers, target, slide: None }
+        Self { file, domain, keep_layers, target, slide: None, untangles: false }
     }
 
     /// Chooses the boundary layers whose vertices stay; by default [`KeepLayers::Auto`]. Walls are the boundary, the lines of
@@ -75,6 +78,11 @@ impl<'f> Job<'f> {
     /// stay.
     pub fn slide(self, by: SlideBy) -> Self {
         Self { slide: Some(by), ..self }
+    }
+
+    /// Untangles the mesh before the run, if triangles are inverted or flat; see [`gpu_smooth::untangle`].
+    pub fn untangle(self) -> Self {
+        Self { untangles: true, ..self }
     }
 
     /// Lets vertices between regions move, unless they are fixed for another reason.
@@ -142,12 +150,15 @@ impl<'f> Job<'f> {
     ///
     /// # Errors
     /// [`JobError::Smooth`] if the mesh cannot be smoothed, an option is refused, or the device fails. [`JobError::Groups`] if
-    /// vertices slide and the groups of the file cannot be read.
+    /// vertices slide and the groups of the file cannot be read. [`JobError::Tangled`] if the mesh cannot be untangled.
     pub fn smooth(
         mut self,
         options: &Options,
         backend: &Backend,
     ) -> Result<Smoothed<'f>, JobError> {
+        if self.untangles {
+            self.untangle_now()?;
+        }
         let target = std::mem::take(&mut self.target);
         let ends = match self.slide {
             Some(_) => self.file.group_ends()?,
@@ -174,6 +185,42 @@ impl<'f> Job<'f> {
         };
         let outcome = run().map_err(|error| self.error(error))?;
         Ok(Smoothed { job: self, outcome })
+    }
+
+    /// Untangles the mesh if it needs to be. Vertices of boundary layers stay.
+    fn untangle_now(&mut self) -> Result<(), JobError> {
+        let kept = match Topology::new(self.mesh()) {
+            // The preparation of the run reports errors of the mesh.
+            Err(_) => Vec::new(),
+            Ok(topology) => {
+                let layers = self.layers().map_err(|error| self.error(error))?;
+                if layers.have_all_free(&topology) { Vec::new() } else { layers.vertices }
+            }
+        };
+        if !kept.is_empty() {
+            self.domain.fix(&kept).map_err(|error| self.error(error))?;
+            self.keep_layers = KeepLayers::None;
+        }
+        let prepared = Smoother::keeping(Cow::Borrowed(self.mesh()), Layers::default());
+        let is_tangled = match prepared {
+            Ok(smoother) => {
+                smoother.beyond_precision().iter().any(|&t| smoother.topology().can_move(t))
+            }
+            Err(MeshError::Infeasible { .. }) => true,
+            Err(error) => return Err(self.error(error)),
+        };
+        if !is_tangled {
+            return Ok(());
+        }
+        let mut observe = |_: &Untangling| ControlFlow::Continue(());
+        let done = gpu_smooth::untangle(self.mesh(), self.stored(), &mut observe);
+        let Untangled { points, left, overlapping, .. } =
+            done.map_err(|error| self.error(error))?;
+        if !left.is_empty() || overlapping.is_some() {
+            return Err(JobError::Tangled { path: self.file.path().to_path_buf(), left });
+        }
+        self.domain.replace_points(points);
+        Ok(())
     }
 
     /// Returns an error of the smoother with the path of the file.

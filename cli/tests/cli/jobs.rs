@@ -2,7 +2,7 @@
 
 use gpu_smooth::layers::KeepLayers;
 use gpu_smooth::options::{Derivatives, WorstBy};
-use gpu_smooth::{Backend, Guard, Metric, Scheme};
+use gpu_smooth::{Backend, Guard, Metric, Options, Scheme};
 use gpu_smooth_job::{Job, MethodName, RunRequest, SlideBy, TargetKind, TargetRequest};
 use mesh_io::MeshFile;
 
@@ -120,5 +120,19 @@ fn a_job_and_the_command_line_write_equal_files_by_all_options() {
         let job = Job::of_file(&file).unwrap().fix(&[40, 41]).unwrap();
         std::fs::write(folder.path("held.txt"), "41\n42\n").unwrap();
         compare(&folder, input, "--fix-vertices held.txt", &request, job);
+    }
+}
+
+#[test]
+fn a_job_untangles_as_the_command_line_does() {
+    let mut mesh = disturbed();
+    let regions = halves(&mesh, [[1, 7], [2, 7]]);
+    mesh.points[41] = mesh.points[43];
+    for files in support::write_regions(&mesh, &regions).iter().take(2) {
+        let (folder, input) = (folder(files), files[0].0);
+        let file = MeshFile::read(&folder.path(input)).unwrap();
+        let job = || Job::of_file(&file).unwrap();
+        assert!(job().smooth(&Options::default(), &Backend::Cpu).is_err());
+        compare(&folder, input, "--untangle", &RunRequest::default(), job().untangle());
     }
 }
