@@ -31,7 +31,8 @@
 //! [`Outcome`]. An [`Interpolation`](interpolate::Interpolation) evaluates vertex data at the new positions. Vertices
 //! listed in [`Mesh::fixed`] do not move; [`select`] helps to list them. [`Measured`](measure::Measured) evaluates
 //! triangles by each [`Measure`](measure::Measure) of the field, and [`Quality`] compares a mesh before and after
-//! smoothing. The crate `mesh-io` reads and writes mesh files.
+//! smoothing. The crate `mesh-io` reads and writes mesh files, and the crate `gpu-smooth-job` sets runs of such files up as the
+//! command line does.
 //!
 //! The feature `gpu`, which is on by default, adds the GPU engine: `Gpu`, all else that computes on a device, and the
 //! dependency wgpu. Without the feature, every run uses the CPU engine.

@@ -80,7 +80,7 @@ impl<'f> Job<'f> {
         Self { slide: Some(by), ..self }
     }
 
-    /// Untangles the mesh before the run, if triangles are inverted or flat; see [`gpu_smooth::untangle`].
+    /// Untangles the mesh before the run, if triangles are inverted or flat; see [`gpu_smooth::untangle()`].
     pub fn untangle(self) -> Self {
         Self { untangles: true, ..self }
     }
