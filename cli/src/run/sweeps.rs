@@ -39,9 +39,15 @@ struct SweepClock<'a> {
 }
 
 impl SweepClock<'_> {
+    /// Returns whether the observer is called in the middle of a long step: nothing has changed since the last call.
+    fn is_within_step(&self, progress: &Progress) -> bool {
+        let is_last = self.times.last().is_some_and(|&(sweep, _)| sweep == progress.sweep);
+        progress.phase == Phase::Smoothing && is_last
+    }
+
     /// Records the time of a sweep. Breaks if the user interrupts the run or the time limit has passed.
     fn sweep(&mut self, progress: &Progress) -> ControlFlow<()> {
-        if progress.phase == Phase::Smoothing {
+        if progress.phase == Phase::Smoothing && !self.is_within_step(progress) {
             self.times.push((progress.sweep, self.start.elapsed().as_secs_f64()));
         }
         let limit = self.input.request().time_limit;
@@ -75,7 +81,9 @@ pub(super) fn smooth(
     let mut kept = CheckpointSaver::new(request.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
-            follow.lock().unwrap_or_else(PoisonError::into_inner).sweep(progress);
+            if !clock.is_within_step(progress) {
+                follow.lock().unwrap_or_else(PoisonError::into_inner).sweep(progress);
+            }
             clock.sweep(progress)
         };
         ready
