@@ -288,6 +288,7 @@ impl<'s> Session<'s> {
             let sweeps = (*batch).min(left);
             let now =
                 Progress { phase: spec.phase, sweep: done + history.sweeps(), f: history.last() };
+            #[cfg_attr(target_family = "wasm", expect(unused_mut))]
             let mut patience = Patience::new(now, observe, checkpointer.policy);
             #[cfg(not(target_family = "wasm"))]
             let mut goes_on = || patience.goes_on();
