@@ -1,16 +1,18 @@
-"""Pictures of results: by matplotlib, and as SVG in notebooks."""
+"""Pictures of meshes before and after a run: by matplotlib, and as SVG in notebooks."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gpu_smooth import _native
+from gpu_smooth._errors import OptionError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from gpu_smooth._options import Doubles, Integers
-    from gpu_smooth._result import Result
 
 # Largest number of triangles of which a notebook gets a picture. A picture of more takes megabytes.
 MOST_TRIANGLES = 20_000
@@ -18,25 +20,35 @@ MOST_TRIANGLES = 20_000
 WIDTH = 360.0
 
 
+class Subject(NamedTuple):
+    """Mesh of a picture, before and after a run."""
+
+    states: dict[str, Doubles]
+    """Points `"before"` and `"after"` the run, of shape (n, 2), in the plane in which they were moved."""
+    triangles: Integers
+    axes: tuple[str, str]
+    """Names of the two coordinates."""
+
+
 def plot(
-    result: Result,
+    subject: Subject,
     which: str,
     measure: str,
     ax: Any,
     picture_range: tuple[float, float] | None,
     options: dict[str, Any],
 ) -> Any:
-    """Draw a result by matplotlib; see `Result.plot`."""
+    """Draw a mesh by matplotlib; see `Result.plot`."""
     plt = _pyplot()
     from matplotlib.colors import LinearSegmentedColormap
 
     scale = _native.color_scale(measure, picture_range)
-    states = flat_states(result)
+    states = subject.states
     if which not in ("before", "after", "both"):
         raise _which_error(which)
     names = list(states) if which == "both" else [which]
     # matplotlib makes room for all points, and some vertices may belong to no triangle.
-    used, triangles = np.unique(result.triangles, return_inverse=True)
+    used, triangles = np.unique(subject.triangles, return_inverse=True)
     triangles = triangles.reshape(-1, 3)
     if ax is None:
         width, height = np.ptp(states["after"][used], axis=0)
@@ -54,7 +66,7 @@ def plot(
     else:
         figure, all_axes = ax.figure, [ax]
         names = names[-1:]
-    values = {name: _judged_values(states[name], result.triangles, measure) for name in names}
+    values = {name: _judged_values(states[name], subject.triangles, measure) for name in names}
     row = next(row for row in _native.measures() if row["name"] == measure.lower().replace("_", "-"))
     colors = plt.get_cmap(options.get("cmap", LinearSegmentedColormap.from_list("quality", scale["colors"])))
     chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2}
@@ -71,8 +83,8 @@ def plot(
         )
         axis.set_aspect("equal")
         axis.set_title(name)
-        if result.axes != ("x", "y"):
-            axis.set(xlabel=result.axes[0], ylabel=result.axes[1])
+        if subject.axes != ("x", "y"):
+            axis.set(xlabel=subject.axes[0], ylabel=subject.axes[1])
     every = np.concatenate(list(values.values()))
     label = f"{measure} ({row['unit']})" if row["unit"] else measure
     if np.isnan(every).any():
@@ -84,21 +96,15 @@ def plot(
     return figure
 
 
-def flat_states(result: Result) -> dict[str, Doubles]:
-    """Return the points before and after the run, of shape (n, 2), in the plane in which they were moved."""
-    outcome = result._outcome
-    return {"before": outcome.flat_points_before(), "after": outcome.flat_points()}
-
-
 def show(
-    result: Result,
+    subject: Subject,
     which: str,
     measure: str,
     picture_range: tuple[float, float] | None,
     options: dict[str, Any],
 ) -> None:
-    """Draw a result in a window, and wait until the window is closed; see `Result.show`."""
-    plot(result, which, measure, None, picture_range, options)
+    """Draw a mesh in a window, and wait until the window is closed; see `Result.show`."""
+    plot(subject, which, measure, None, picture_range, options)
     _pyplot().show()
 
 
@@ -119,44 +125,25 @@ def _judged_values(flat: Doubles, triangles: Integers, measure: str) -> Doubles:
 
 
 def _which_error(which: str) -> Exception:
-    from gpu_smooth._errors import OptionError
-
     return OptionError(f'which: the value is {which!r}, and must be "before" or "after" or "both"')
 
 
-def judged(result: Result) -> tuple[str, float, float]:
-    """Return the name of the objective that judges a run, and its values before and after the run."""
-    if result.has_target:
-        return "f of targets", float(result.history[0]), float(result.history[result.best_sweep])
-    metric = result.metric
-    return f"f {metric}", result.quality_before.f(metric), result.quality_after.f(metric)
-
-
-def html(result: Result) -> str:
-    """Return a result as HTML: the mesh before and after the run, colored by shape, and a table."""
+def html(subject: Subject, rows: Sequence[tuple[str, str, str]], ending: str) -> str:
+    """Return a mesh before and after a run as HTML: pictures colored by shape, a table of three columns, and a sentence."""
     pictures = legend = ""
-    if len(result.triangles) <= MOST_TRIANGLES:
+    if len(subject.triangles) <= MOST_TRIANGLES:
         pictures = "".join(
             f'<figure style="display:inline-block;margin:4px"><figcaption>{name}</figcaption>'
-            f"{svg(points, result.triangles)}</figure>"
-            for name, points in flat_states(result).items()
+            f"{svg(points, subject.triangles)}</figure>"
+            for name, points in subject.states.items()
         )
         legend = f"{_native.color_scale('shape', None)['legend']}.<br/>"
-    before, after = result.quality_before, result.quality_after
-    name, f_before, f_after = judged(result)
-    rows = [
-        (name, f"{f_before:.6g}", f"{f_after:.6g}"),
-        ("min angle", f"{before.min_angle:.2f}°", f"{after.min_angle:.2f}°"),
-        ("max angle", f"{before.max_angle:.2f}°", f"{after.max_angle:.2f}°"),
-        ("worst imr", f"{before.worst_imr:.6g}", f"{after.worst_imr:.6g}"),
-        ("inverted", str(before.inverted), str(after.inverted)),
-    ]
     table = "".join(
         f"<tr><th>{name}</th><td>{was}</td><td>{now}</td></tr>" for name, was, now in rows
     )
     return (
         f"<div>{pictures}<table><tr><th></th><th>before</th><th>after</th></tr>{table}</table>"
-        f"<p>{legend}{result.stop} after {result.sweeps} sweeps</p></div>"
+        f"<p>{legend}{ending}</p></div>"
     )
 
 

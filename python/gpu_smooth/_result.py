@@ -13,12 +13,11 @@ from gpu_smooth._native import Outcome, Quality
 
 if TYPE_CHECKING:
     from gpu_smooth._options import Doubles, Floats, Integers
-    from gpu_smooth._smooth import Smoother
 
 
 # Methods and properties of an outcome whose values a pickled result has.
 _METHODS = (
-    "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
+    "triangles", "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
 )
 _PROPERTIES = (
     "axes", "metric", "has_target", "engine", "stop", "fault", "sweeps", "corrections", "newton_steps", "newton_iterations",
@@ -36,16 +35,15 @@ class Result:
     A notebook shows the result as a picture. `run` and `Smoother.run` return results. A result may be pickled.
     """
 
-    def __init__(self, outcome: Outcome, smoother: Smoother) -> None:
+    def __init__(self, outcome: Outcome) -> None:
         self._outcome = outcome
-        self._smoother = smoother
         self.points: Floats = outcome.points()
         """Points after the run, in the shape and the type of the points that were passed."""
 
-    @property
+    @functools.cached_property
     def triangles(self) -> Integers:
         """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
-        return self._smoother.triangles
+        return self._outcome.triangles()
 
     @functools.cached_property
     def points_before(self) -> Floats:
@@ -220,7 +218,7 @@ class Result:
         OptionError
             No measure has the name, or the measure has no such range.
         """
-        return _picture.plot(self, which, measure, ax, picture_range, options)
+        return _picture.plot(self._subject(), which, measure, ax, picture_range, options)
 
     def show(
         self,
@@ -252,21 +250,41 @@ class Result:
         OptionError
             No measure has the name, or the measure has no such range.
         """
-        _picture.show(self, which, measure, picture_range, options)
+        _picture.show(self._subject(), which, measure, picture_range, options)
 
     def __getstate__(self) -> dict[str, Any]:
         outcome = self._outcome
         values: dict[str, Any] = {name: getattr(outcome, name) for name in _PROPERTIES}
         for name in _METHODS:
             values[name] = functools.partial(_same, getattr(outcome, name)())
-        smoother = types.SimpleNamespace(triangles=self.triangles)
-        return {**self.__dict__, "_outcome": types.SimpleNamespace(**values), "_smoother": smoother}
+        return {**self.__dict__, "_outcome": types.SimpleNamespace(**values)}
+
+    def _subject(self) -> _picture.Subject:
+        outcome = self._outcome
+        states = {"before": outcome.flat_points_before(), "after": outcome.flat_points()}
+        return _picture.Subject(states, self.triangles, self.axes)
+
+    def _judged(self) -> tuple[str, float, float]:
+        """Return the name of the objective that judges the run, and its values before and after the run."""
+        if self.has_target:
+            return "f of targets", float(self.history[0]), float(self.history[self.best_sweep])
+        metric = self.metric
+        return f"f {metric}", self.quality_before.f(metric), self.quality_after.f(metric)
 
     def _repr_html_(self) -> str:
-        return _picture.html(self)
+        before, after = self.quality_before, self.quality_after
+        name, f_before, f_after = self._judged()
+        rows = [
+            (name, f"{f_before:.6g}", f"{f_after:.6g}"),
+            ("min angle", f"{before.min_angle:.2f}°", f"{after.min_angle:.2f}°"),
+            ("max angle", f"{before.max_angle:.2f}°", f"{after.max_angle:.2f}°"),
+            ("worst imr", f"{before.worst_imr:.6g}", f"{after.worst_imr:.6g}"),
+            ("inverted", str(before.inverted), str(after.inverted)),
+        ]
+        return _picture.html(self._subject(), rows, f"{self.stop} after {self.sweeps} sweeps")
 
     def __repr__(self) -> str:
-        name, before, after = _picture.judged(self)
+        name, before, after = self._judged()
         return (
             f"Result({self.stop} after {self.sweeps} sweeps on {self.engine}, "
             f"{name} {before:.6g} -> {after:.6g}, inverted {self.quality_after.inverted})"

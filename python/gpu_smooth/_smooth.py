@@ -80,7 +80,7 @@ class Smoother:
         MeshError, OptionError, DeviceError
             As `smooth` does.
         """
-        return Result(self._native.run(**options), self)
+        return Result(self._native.run(**options))
 
     @property
     def free(self) -> Any:

@@ -56,6 +56,11 @@ fn flat(py: Python<'_>, points: Vec<[f64; 2]>) -> PyResult<Bound<'_, PyAny>> {
 
 #[pymethods]
 impl Outcome {
+    /// Returns the triangles with consistent windings, counter-clockwise.
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.prepared.triangles(py)
+    }
+
     /// Returns the points after the run, in the form of the points that were passed.
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let points = self.prepared.given(self.outcome.points.clone());

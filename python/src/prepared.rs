@@ -1,8 +1,9 @@
 //! A prepared mesh, with all that its results need.
 
 use gpu_smooth::Smoother as PreparedMesh;
+use pyo3::prelude::*;
 
-use crate::arrays::PointsForm;
+use crate::arrays::{self, PointsForm};
 use crate::input::Layout;
 use crate::mesh_options::MeshOptions;
 
@@ -23,6 +24,13 @@ impl Prepared {
     /// Returns the points before the run and before untangling.
     pub(crate) fn points_before(&self) -> &[[f64; 2]] {
         self.layout.tangled.as_ref().unwrap_or(&self.smoother.mesh().points)
+    }
+
+    /// Returns the triangles with consistent windings, counter-clockwise, as an array of shape (m, 3).
+    pub(crate) fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let triangles = self.smoother.topology().triangles();
+        let numbers = triangles.as_flattened().iter().map(|&v| i64::from(v)).collect();
+        arrays::matrix(py, numbers, [triangles.len(), 3])
     }
 
     /// Returns the number of vertices that were passed.

@@ -74,9 +74,7 @@ impl Smoother {
     /// The triangles with consistent windings, counter-clockwise.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let triangles = self.0.smoother.topology().triangles();
-        let numbers = triangles.as_flattened().iter().map(|&v| i64::from(v)).collect();
-        arrays::matrix(py, numbers, [triangles.len(), 3])
+        self.0.triangles(py)
     }
 }
 
