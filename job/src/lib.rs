@@ -36,6 +36,7 @@
 mod checkpoint;
 mod domain;
 mod error;
+mod facts;
 mod job;
 mod plane;
 mod precision;
@@ -45,6 +46,9 @@ mod target;
 pub use checkpoint::{CheckpointFile, CheckpointWriter, is_checkpoint};
 pub use domain::{Curves, Domain, SlideBy};
 pub use error::{JobError, PlaneError};
+pub use facts::{
+    Adapted, is_at_wall, look_like_degrees, overlooks_boundary, overlooks_wall, vertices_in_rows,
+};
 pub use job::{Job, Smoothed};
 pub use plane::{plane_of_file, points_in_space, z_field};
 pub use precision::smoother_precision;

@@ -24,7 +24,14 @@ from gpu_smooth._arrays import (
     quality,
     untangle,
 )
-from gpu_smooth._errors import DeviceError, FileError, GpuSmoothError, MeshError, OptionError
+from gpu_smooth._errors import (
+    DeviceError,
+    FileError,
+    GpuSmoothError,
+    MeshError,
+    MeshWarning,
+    OptionError,
+)
 from gpu_smooth._files import Group, MeshFile, convert, smooth_file
 from gpu_smooth._gmsh import smooth_gmsh_model
 from gpu_smooth._native import Quality, __version__
@@ -42,6 +49,7 @@ __all__ = [
     "Measure",
     "MeshError",
     "MeshFile",
+    "MeshWarning",
     "Metric",
     "OptionError",
     "Progress",

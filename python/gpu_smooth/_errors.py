@@ -1,4 +1,4 @@
-"""Exceptions of the package."""
+"""Exceptions and warnings of the package."""
 
 from __future__ import annotations
 
@@ -32,3 +32,7 @@ class DeviceError(GpuSmoothError, RuntimeError):
 
 class FileError(GpuSmoothError, OSError):
     """A file cannot be read, written or converted."""
+
+
+class MeshWarning(UserWarning):
+    """A run will not do what the caller may expect of the mesh, or a checkpoint was not saved."""

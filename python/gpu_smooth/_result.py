@@ -20,8 +20,8 @@ _METHODS = (
     "triangles", "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
 )
 _PROPERTIES = (
-    "axes", "metric", "has_target", "engine", "stop", "fault", "sweeps", "corrections", "newton_steps", "newton_iterations",
-    "best_sweep", "movable_f", "remaining", "held_back", "slid", "floored", "prepare_seconds", "seconds",
+    "axes", "metric", "has_target", "engine", "stop", "fault", "remarks", "sweeps", "corrections", "newton_steps",
+    "newton_iterations", "best_sweep", "movable_f", "remaining", "held_back", "slid", "floored", "prepare_seconds", "seconds",
 )
 
 
@@ -118,6 +118,11 @@ class Result:
     def fault(self) -> str | None:
         """Failure of the GPU after which the run continued on the CPU; None if no GPU failed."""
         return self._outcome.fault
+
+    @property
+    def remarks(self) -> list[str]:
+        """Remarks on the mesh and the run, such as vertices that stay or slide; those of a `MeshWarning` too."""
+        return self._outcome.remarks
 
     @property
     def sweeps(self) -> int:

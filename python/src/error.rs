@@ -1,5 +1,5 @@
-//! Exceptions: the classes of `gpu_smooth/_errors.py`, raised with messages that name the argument, the index and a
-//! remedy.
+//! Exceptions and warnings: the classes of `gpu_smooth/_errors.py`, raised with messages that name the argument, the index
+//! and a remedy.
 
 use gpu_smooth::options::{Feature, OptionError};
 use gpu_smooth::plane::NotPlanar;
@@ -13,15 +13,27 @@ use pyo3::types::{PyTuple, PyType};
 /// The module that defines the exceptions.
 static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
 
+/// Returns a class of `gpu_smooth._errors`.
+fn class_named<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyType>> {
+    let module = MODULE
+        .get_or_try_init(py, || py.import(intern!(py, "gpu_smooth._errors")).map(Bound::unbind))?;
+    Ok(module.bind(py).getattr(name)?.cast_into::<PyType>()?)
+}
+
 /// Returns an exception of the class `class` of `gpu_smooth._errors`.
 fn raised(py: Python<'_>, class: &str, text: &str) -> PyErr {
-    let module = MODULE
-        .get_or_try_init(py, || py.import(intern!(py, "gpu_smooth._errors")).map(Bound::unbind));
-    let class = module.and_then(|module| module.bind(py).getattr(class));
-    match class.and_then(|class| class.cast_into::<PyType>().map_err(PyErr::from)) {
+    match class_named(py, class) {
         Ok(class) => PyErr::from_type(class, (text.to_owned(),)),
         Err(error) => error,
     }
+}
+
+/// Issues a `MeshWarning`. A filter of warnings may make the warning an exception.
+pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    /// Number of frames from the line that a warning names up to the native function.
+    const LEVEL: i32 = 2;
+    let text = std::ffi::CString::new(text.replace('\0', " ")).unwrap_or_default();
+    PyErr::warn(py, class_named(py, "MeshWarning")?.as_any(), &text, LEVEL)
 }
 
 /// Returns the exception for arrays that are no mesh, or do not fit the mesh.

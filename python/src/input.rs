@@ -8,14 +8,15 @@ use gpu_smooth::precision::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::untangle::{Untangled, Untangling};
 use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, untangle};
-use gpu_smooth_job::Domain;
+use gpu_smooth_job::{Domain, look_like_degrees};
 
 use pyo3::prelude::*;
 
 use crate::error;
 use crate::mesh_options::MeshOptions;
-use crate::movement::{self, LayersEffect};
+use crate::movement;
 use crate::observer::RunObserver;
+use crate::remarks::Remarks;
 
 /// The reason for which a mesh cannot be smoothed.
 pub(crate) enum Failure {
@@ -69,23 +70,19 @@ impl Input {
         options: &MeshOptions,
         stored: Precision,
         observer: &RunObserver<'_>,
+        remarks: &mut Remarks<'_>,
     ) -> Result<Self, Failure> {
         let mut domain = movement::domain(mesh, options)?;
-        if options.surface == Surface::Sphere {
+        if options.surface() == Surface::Sphere {
             domain.lay_out_on_sphere(stored)?;
         }
         movement::fix_far_from_bad(&mut domain, options)?;
-        let (layers, effect) = movement::keep_layers(&mut domain, options)?;
-        match effect {
-            LayersEffect::Fixed => {}
-            LayersEffect::AllKept => observer.warn(
-                "keep_layers: every free vertex is in a boundary layer that stays, so the points do not move. Pass \
-                 keep_layers=\"none\" to let them move",
-            ),
-            LayersEffect::NotFound => observer.warn(
-                "keep_layers: no wall has such a layer, so all vertices may move. Pass the vertices of walls, as in \
-                 (\"rows=3\", walls)",
-            ),
+        let layers = movement::keep_layers(&mut domain, options, remarks)?;
+        if !options.slides {
+            remarks.interfaces(domain.interface_vertices().len());
+        }
+        if options.surface.is_none() && look_like_degrees(&domain.mesh().points, false) {
+            remarks.degrees();
         }
         let mut tangled = None;
         if options.untangles
@@ -97,10 +94,14 @@ impl Input {
     }
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.
-    pub(crate) fn smoother(&self, options: &MeshOptions) -> Result<Smoother<'_>, Failure> {
+    pub(crate) fn smoother(
+        &self,
+        options: &MeshOptions,
+        remarks: &mut Remarks<'_>,
+    ) -> Result<Smoother<'_>, Failure> {
         let mesh = Cow::Borrowed(self.layout.domain.mesh());
         let mut smoother = Smoother::keeping(mesh, self.layers.clone())?;
-        self.layout.set_up(options, &mut smoother)?;
+        self.layout.set_up(options, &mut smoother, remarks)?;
         Ok(smoother)
     }
 
@@ -108,26 +109,32 @@ impl Input {
     pub(crate) fn into_smoother(
         self,
         options: &MeshOptions,
+        remarks: &mut Remarks<'_>,
     ) -> Result<(Smoother<'static>, Layout), Failure> {
         let Self { layers, mut layout } = self;
         let mesh = Cow::Owned(layout.domain.take_mesh());
         let mut smoother = Smoother::keeping(mesh, layers)?;
-        layout.set_up(options, &mut smoother)?;
+        layout.set_up(options, &mut smoother, remarks)?;
         Ok((smoother, layout))
     }
 }
 
 impl Layout {
     /// Sets the projection, the targets and the sliding vertices of a smoother.
-    fn set_up(&self, options: &MeshOptions, smoother: &mut Smoother<'_>) -> Result<(), Failure> {
+    fn set_up(
+        &self,
+        options: &MeshOptions,
+        smoother: &mut Smoother<'_>,
+        remarks: &mut Remarks<'_>,
+    ) -> Result<(), Failure> {
         let targets = options.targets()?;
-        if options.surface == Surface::Sphere {
+        if options.surface() == Surface::Sphere {
             smoother.project_from_sphere()?;
         }
         let metric = options.target_kind().default_metric();
-        targets.set(smoother, self.domain.chart(), metric)?;
+        remarks.targets(&targets.set(smoother, self.domain.chart(), metric)?);
         if options.slides {
-            movement::slide(options, &self.domain, smoother)?;
+            movement::slide(options, &self.domain, smoother, remarks)?;
         }
         Ok(())
     }

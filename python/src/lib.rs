@@ -17,6 +17,7 @@ mod outcome;
 mod plane;
 mod prepared;
 mod recovery;
+mod remarks;
 mod run_options;
 mod smoother;
 mod tables;

@@ -72,7 +72,8 @@ pub(crate) struct MeshOptions {
     pub(crate) target_rings: Option<u32>,
     /// Whether targets belong to places.
     pub(crate) of_places: Option<bool>,
-    pub(crate) surface: Surface,
+    /// Surface of the coordinates; `None` if the caller does not name it.
+    pub(crate) surface: Option<Surface>,
     /// Meaning of third coordinates.
     pub(crate) z: ThirdCoordinate,
     pub(crate) untangles: bool,
@@ -95,7 +96,7 @@ impl MeshOptions {
             target: Target::Equilateral,
             target_rings: None,
             of_places: None,
-            surface: Surface::Plane,
+            surface: None,
             z: ThirdCoordinate::Coordinate,
             untangles: false,
         }
@@ -144,7 +145,7 @@ impl MeshOptions {
             }
             "surface" => {
                 let surfaces = [("plane", Surface::Plane), ("sphere", Surface::Sphere)];
-                self.surface = given.word(&surfaces)?;
+                self.surface = Some(given.word(&surfaces)?);
             }
             "z" => self.z = given.third_coordinate()?,
             "untangle" => self.untangles = given.flag()?,
@@ -181,6 +182,11 @@ impl MeshOptions {
         }
     }
 
+    /// Returns the surface of the coordinates.
+    pub(crate) fn surface(&self) -> Surface {
+        self.surface.unwrap_or(Surface::Plane)
+    }
+
     /// Returns the kind of the target.
     pub(crate) fn target_kind(&self) -> TargetKind {
         match &self.target {
@@ -196,7 +202,7 @@ impl MeshOptions {
 
     /// Returns the targets of a run.
     pub(crate) fn targets(&self) -> Result<TargetRequest, MeshError> {
-        let (kind, surface) = (self.target_kind(), self.surface);
+        let (kind, surface) = (self.target_kind(), self.surface());
         let source = match &self.target {
             Target::Equilateral | Target::KeepSize | Target::KeepShape => TargetSource::Mesh,
             Target::Given(values) => TargetSource::Vertices(values.numbers.clone()),

@@ -2,9 +2,10 @@
 
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, select};
-use gpu_smooth_job::{Domain, SlideBy};
+use gpu_smooth_job::{Domain, SlideBy, overlooks_boundary};
 
 use crate::mesh_options::MeshOptions;
+use crate::remarks::Remarks;
 
 /// Returns the domain of a mesh with the lines, regions, fixed vertices and pairs of its options.
 pub(crate) fn domain(mesh: Mesh, options: &MeshOptions) -> Result<Domain, MeshError> {
@@ -30,39 +31,43 @@ pub(crate) fn fix_far_from_bad(
     domain.fix_all_but(&near)
 }
 
-/// The effect of the boundary layers that stay.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum LayersEffect {
-    /// The vertices of layers are fixed, if any were found.
-    Fixed,
-    /// All free vertices are in layers. No vertex is fixed, and runs have no sweeps.
-    AllKept,
-    /// The walls, rows or distance of the options have no layer.
-    NotFound,
-}
-
 /// Returns the boundary layers that stay. Fixes their vertices, which untangling leaves alone too, unless no other vertex
 /// is free.
 pub(crate) fn keep_layers(
     domain: &mut Domain,
     options: &MeshOptions,
-) -> Result<(Layers, LayersEffect), MeshError> {
+    remarks: &mut Remarks<'_>,
+) -> Result<Layers, MeshError> {
     let (keep, walls) = (options.keep_layers, options.walls.as_deref());
     if keep == KeepLayers::None {
-        return Ok((Layers::default(), LayersEffect::Fixed));
+        return Ok(Layers::default());
     }
     let topology = Topology::new(domain.mesh())?;
     let layers = domain.layers(&topology, keep, walls, &[])?;
+    if walls.is_none() && overlooks_boundary(&layers, keep, &topology) {
+        remarks.overlooked_layers();
+    }
     if layers.have_all_free(&topology) {
-        return Ok((layers, LayersEffect::AllKept));
+        remarks.warn(
+            "keep_layers: every free vertex is in a boundary layer that stays, so the points do not move. Pass \
+             keep_layers=\"none\" to let them move"
+                .to_owned(),
+        );
+        return Ok(layers);
     }
     let is_asked = walls.is_some() || keep != KeepLayers::Auto;
     if is_asked && layers.vertices.is_empty() {
-        return Ok((layers, LayersEffect::NotFound));
+        remarks.warn(
+            "keep_layers: no wall has such a layer, so all vertices may move. Pass the vertices of walls, as in (\"rows=3\", \
+             walls)"
+                .to_owned(),
+        );
+        return Ok(layers);
     }
     drop(topology);
+    remarks.layers(&layers, keep);
     domain.fix(&layers.vertices)?;
-    Ok((layers, LayersEffect::Fixed))
+    Ok(layers)
 }
 
 /// Sets the vertices of a smoother that slide along the curves of a domain.
@@ -70,10 +75,13 @@ pub(crate) fn slide(
     options: &MeshOptions,
     domain: &Domain,
     smoother: &mut Smoother<'_>,
+    remarks: &mut Remarks<'_>,
 ) -> Result<(), SmoothError> {
     let mut by = SlideBy::default();
     by.corner_angle = options.corner_angle.unwrap_or(by.corner_angle);
     by.hausdorff = options.hausdorff;
     let curves = domain.curves(&smoother.mesh().points, smoother.topology(), &by);
-    smoother.set_slide(Some(&curves.slide)).map(|_| ())
+    let count = smoother.set_slide(Some(&curves.slide))?;
+    remarks.sliding(smoother, count, curves.has_lost_pairs);
+    Ok(())
 }

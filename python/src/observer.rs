@@ -6,9 +6,9 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use gpu_smooth::{Phase, Progress};
-use pyo3::exceptions::PyRuntimeWarning;
 use pyo3::prelude::*;
 
+use crate::error;
 use crate::run_options::RunOptions;
 
 /// The observer of a run. A run ends if a signal arrives, if the time limit has passed, or if the function of the user
@@ -43,15 +43,11 @@ impl<'a> RunObserver<'a> {
         self.is_canceled.store(true, Ordering::Relaxed);
     }
 
-    /// Issues a warning. A filter of warnings may make the warning an exception, which ends the run.
+    /// Issues a `MeshWarning`. A filter of warnings may make the warning an exception, which ends the run.
     pub(crate) fn warn(&self, text: &str) {
-        let text = std::ffi::CString::new(text.replace('\0', " ")).unwrap_or_default();
-        Python::attach(|py| {
-            let category = py.get_type::<PyRuntimeWarning>();
-            if let Err(raised) = PyErr::warn(py, &category, &text, 1) {
-                self.cancel(raised);
-            }
-        });
+        if let Err(raised) = Python::attach(|py| error::warn(py, text)) {
+            self.cancel(raised);
+        }
     }
 
     /// Returns the exception that ended the run, if there is one.

@@ -22,6 +22,7 @@ pub(crate) struct Outcome {
     prepared: Arc<Prepared>,
     base: Metric,
     engine: String,
+    remarks: Vec<String>,
 }
 
 impl Outcome {
@@ -30,6 +31,7 @@ impl Outcome {
         prepared: Arc<Prepared>,
         options: &Options,
         backend: &Backend,
+        of_run: Vec<String>,
     ) -> Self {
         let base = options.scheme.base();
         let engine = match backend {
@@ -37,12 +39,13 @@ impl Outcome {
             Backend::Gpu(_) if prepared.smoother.slides_on_cpu() => "cpu".to_owned(),
             Backend::Gpu(gpu) => gpu.adapter().name.clone(),
         };
-        Self { outcome, prepared, base, engine }
+        let remarks = [&prepared.remarks[..], &of_run].concat();
+        Self { outcome, prepared, base, engine, remarks }
     }
 
     fn quality(&self, py: Python<'_>, points: &[[f64; 2]]) -> PyResult<Quality> {
         let topology = self.prepared.smoother.topology();
-        let surface = self.prepared.options.surface;
+        let surface = self.prepared.options.surface();
         let quality = threads::detached(py, || MeshQuality::on(surface, points, topology))?;
         quality.map(Quality::of).map_err(|error| error::of_mesh(py, &error))
     }
@@ -140,6 +143,12 @@ impl Outcome {
     #[getter]
     fn fault(&self) -> Option<String> {
         self.outcome.device_fault.as_ref().map(|fault| fault.error.to_string())
+    }
+
+    /// Remarks on the mesh and the run.
+    #[getter]
+    fn remarks(&self) -> Vec<String> {
+        self.remarks.clone()
     }
 
     /// Number of sweeps done.

@@ -13,6 +13,8 @@ pub(crate) struct Prepared {
     pub(crate) layout: Layout,
     pub(crate) options: MeshOptions,
     pub(crate) form: PointsForm,
+    /// Remarks on the mesh.
+    pub(crate) remarks: Vec<String>,
 }
 
 impl Prepared {

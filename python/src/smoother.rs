@@ -4,21 +4,22 @@ use std::sync::Arc;
 
 use gpu_smooth::options::Feature;
 use gpu_smooth::plane::Plane;
-use gpu_smooth::{Backend, Checkpoint, Mesh, Options, Smoother as PreparedMesh};
-use gpu_smooth_job::{CheckpointFile, EngineRequest};
+use gpu_smooth::{Backend, Checkpoint, Mesh, MeshError, Options, Smoother as PreparedMesh};
+use gpu_smooth_job::{Adapted, CheckpointFile, EngineRequest};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{self, Points, PointsForm};
 use crate::engine;
 use crate::error;
-use crate::input::{Failure, Input};
+use crate::input::{Failure, Input, Layout};
 use crate::mesh_options::{CallOptions, MeshOptions, Target};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
 use crate::plane;
 use crate::prepared::{Prepared, given};
 use crate::recovery::{self, Recovery};
+use crate::remarks::Remarks;
 use crate::run_options::RunOptions;
 use crate::threads;
 
@@ -40,9 +41,10 @@ impl Smoother {
         let CallOptions { mesh: options, run } = options;
         let observer = RunObserver::new(&run);
         let prepared = threads::watched(py, &observer, || {
-            let input = Input::new(mesh, &options, form.precision(), &observer)?;
-            let (smoother, layout) = input.into_smoother(&options)?;
-            Ok(Prepared { smoother, layout, options, form })
+            let mut remarks = Remarks::new(&observer);
+            let input = Input::new(mesh, &options, form.precision(), &observer, &mut remarks)?;
+            let (smoother, layout) = input.into_smoother(&options, &mut remarks)?;
+            Ok(Prepared { smoother, layout, options, form, remarks: remarks.into_texts() })
         })?;
         let prepared = finished(py, &observer, prepared)?;
         Ok(Self(Arc::new(prepared)))
@@ -56,12 +58,19 @@ impl Smoother {
             run.set_named(&name, &value, "Smoother.run")?;
         }
         run.check(py)?;
-        let Prepared { smoother, options, form, .. } = &*self.0;
+        let Prepared { smoother, layout, options, form, .. } = &*self.0;
         let plan = RunPlan::new(py, &run, options, form, smoother)?;
         let observer = RunObserver::new(&run);
-        let outcome = threads::watched(py, &observer, || plan.run(smoother, &observer))?;
-        let outcome = finished(py, &observer, outcome)?;
-        Ok(Outcome::new(outcome, Arc::clone(&self.0), &plan.options, &plan.backend))
+        let done = threads::watched(py, &observer, || {
+            let mut remarks = Remarks::new(&observer);
+            let adapted = plan.adapted(smoother, layout, options)?;
+            adapted.into_iter().for_each(|adapted| remarks.adapted(adapted));
+            let outcome = plan.run(smoother, &observer)?;
+            remarks.outcome(&outcome);
+            Ok((outcome, remarks.into_texts()))
+        })?;
+        let (outcome, remarks) = finished(py, &observer, done)?;
+        Ok(Outcome::new(outcome, Arc::clone(&self.0), &plan.options, &plan.backend, remarks))
     }
 
     /// The flags of the vertices that are free: inside of the mesh and not fixed.
@@ -96,9 +105,9 @@ impl Call {
         let triangles = arrays::triangles("triangles", triangles, read.xy.len())?;
         let size = [read.xy.len(), triangles.len()];
         let mut options = CallOptions::of_call(py, options, size)?;
-        let CallOptions { mesh: MeshOptions { z, surface, target, .. }, .. } = &mut options;
-        let Points { xy, form } = plane::lay_out(py, "points", read, *z, *surface)?;
-        if let Target::Background { points, .. } = target {
+        let Points { xy, form } =
+            plane::lay_out(py, "points", read, options.mesh.z, options.mesh.surface())?;
+        if let Target::Background { points, .. } = &mut options.mesh.target {
             **points = plane::lay_out_likewise(py, "target[0]", std::mem::take(points), &form)?;
         }
         let mesh = Mesh { points: xy, triangles, fixed: Vec::new() };
@@ -143,6 +152,23 @@ impl<'a> RunPlan<'a> {
         Ok(Self { options, backend, falls_back, checkpoints, resumed, plane: form.plane() })
     }
 
+    /// Returns the adaptation of the mesh that the run will make less; `None` for a mesh that was untangled, or of which all
+    /// vertices stay.
+    fn adapted(
+        &self,
+        smoother: &PreparedMesh<'_>,
+        layout: &Layout,
+        mesh: &MeshOptions,
+    ) -> Result<Option<Adapted>, MeshError> {
+        let (topology, points) = (smoother.topology(), &smoother.mesh().points);
+        let is_all_kept = smoother.layers().have_all_free(topology);
+        if layout.tangled.is_some() || self.options.max_sweeps == 0 || is_all_kept {
+            return Ok(None);
+        }
+        let metric = self.options.scheme.base();
+        Adapted::before_run(topology, points, mesh.surface(), mesh.target_kind(), metric)
+    }
+
     fn run(
         &self,
         smoother: &PreparedMesh<'_>,
@@ -185,20 +211,25 @@ pub(crate) fn smooth<'py>(
     let Call { mesh, form, options } = Call::read(points, triangles, options)?;
     let CallOptions { mesh: options, run } = options;
     let observer = RunObserver::new(&run);
+    let remarks = &mut Remarks::new(&observer);
     let input = threads::watched(py, &observer, || {
-        Input::new(mesh, &options, form.precision(), &observer)
+        Input::new(mesh, &options, form.precision(), &observer, remarks)
     })?;
     let input = match input {
         Ok(input) => input,
         failed => finished(py, &observer, failed)?,
     };
-    let smoother = threads::watched(py, &observer, || input.smoother(&options))?;
+    let smoother = threads::watched(py, &observer, || input.smoother(&options, remarks))?;
     let smoother = match smoother {
         Ok(smoother) => smoother,
         failed => finished(py, &observer, failed)?,
     };
     let plan = RunPlan::new(py, &run, &options, &form, &smoother)?;
-    let outcome = threads::watched(py, &observer, || plan.run(&smoother, &observer))?;
+    let outcome = threads::watched(py, &observer, || {
+        let adapted = plan.adapted(&smoother, &input.layout, &options)?;
+        adapted.into_iter().for_each(|adapted| remarks.adapted(adapted));
+        plan.run(&smoother, &observer)
+    })?;
     let outcome = finished(py, &observer, outcome)?;
     drop(smoother);
     form.array(py, given(&input.layout, outcome.points))

@@ -86,5 +86,5 @@ def test_a_checkpoint_that_cannot_be_saved_is_a_warning(large: tuple[Points, Tri
         result = interrupted(large, missing)
     assert result.stop == "canceled"
     assert ["no checkpoint was saved" in str(warning.message) for warning in caught] == [True]
-    with pytest.raises(RuntimeWarning, match="no checkpoint was saved"):
+    with pytest.raises(gpu_smooth.MeshWarning, match="no checkpoint was saved"):
         interrupted(large, missing)

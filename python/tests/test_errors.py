@@ -190,6 +190,7 @@ def test_options_of_none_are_defaults() -> None:
     assert np.array_equal(smoothed, gpu_smooth.smooth(POINTS, TRIANGLES))
 
 
+@pytest.mark.filterwarnings("ignore::gpu_smooth.MeshWarning")
 def test_random_arguments_raise_exceptions_of_python() -> None:
     """Arrays of random types, shapes and values never end the process, nor raise anything else than these exceptions."""
     random = np.random.default_rng(7)

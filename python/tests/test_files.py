@@ -72,6 +72,7 @@ def test_a_file_is_read_and_written_with_moved_vertices_alone(tmp_path: Path) ->
         gpu_smooth.MeshFile(tmp_path / "none.msh")
 
 
+@pytest.mark.filterwarnings("ignore:points. the mesh is:gpu_smooth.MeshWarning")
 def test_the_ends_of_groups_stay_where_vertices_slide(tmp_path: Path) -> None:
     # The bottom of a square: an inlet up to x = 0.62, then a wall.
     x = [0, 0.15, 0.3, 0.45, 0.62, 0.7, 0.8, 0.9, 1]

@@ -29,6 +29,7 @@ def test_a_mesh_of_triangles_is_smoothed_as_its_arrays(mesh: Mesh) -> None:
     assert [block.type for block in smoothed.cells] == ["triangle", "triangle"]
 
 
+@pytest.mark.filterwarnings("ignore:points. the mesh is:gpu_smooth.MeshWarning")
 def test_layers_stay_above_groups_of_walls() -> None:
     points, triangles = lattice(12, by=0.0)
     points[:, 1] = 12.0 * (1.4 ** points[:, 1] - 1.0) / (1.4**12 - 1.0)

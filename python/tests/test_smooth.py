@@ -12,7 +12,7 @@ import pytest
 from conftest import Points, Triangles, command_line, lattice, written
 
 import gpu_smooth
-from gpu_smooth import MeshError, OptionError
+from gpu_smooth import MeshError, MeshWarning, OptionError
 
 Mesh = tuple[Points, Triangles]
 METRICS = [metric.name for metric in gpu_smooth.metrics()]
@@ -57,6 +57,7 @@ def test_points_have_the_bits_of_the_command_line(
         ({"derivatives": "finite-difference"}, ["--derivatives", "finite-difference"]),
     ],
 )
+@pytest.mark.filterwarnings("ignore:points. the mesh is:gpu_smooth.MeshWarning")
 def test_options_act_as_those_of_the_command_line(
     options: dict[str, Any], words: list[str], mesh: Mesh, tmp_path: Path
 ) -> None:
@@ -78,6 +79,7 @@ def test_options_act_as_those_of_the_command_line(
     assert not np.array_equal(smoothed, gpu_smooth.smooth(points, triangles))
 
 
+@pytest.mark.filterwarnings("ignore:points. the mesh is:gpu_smooth.MeshWarning")
 def test_layers_stay_above_the_walls_that_are_passed() -> None:
     points, triangles = lattice(12, by=0.0)
     points[:, 1] = 12.0 * (1.4 ** points[:, 1] - 1.0) / (1.4**12 - 1.0)
@@ -91,11 +93,11 @@ def test_layers_stay_above_the_walls_that_are_passed() -> None:
         gpu_smooth.smooth(points, triangles, keep_layers=("none", bottom))
     with pytest.raises(gpu_smooth.MeshError, match="keep_layers"):
         gpu_smooth.smooth(points, triangles, keep_layers=("rows=2", [999]))
-    with pytest.warns(RuntimeWarning, match="every free vertex is in a boundary layer"):
+    with pytest.warns(MeshWarning, match="every free vertex is in a boundary layer"):
         smoothed = gpu_smooth.smooth(points, triangles, keep_layers=("rows=12", bottom))
     assert np.array_equal(smoothed, points)
     even, triangles = lattice(12)
-    with pytest.warns(RuntimeWarning, match="no wall has such a layer"):
+    with pytest.warns(MeshWarning, match="no wall has such a layer"):
         gpu_smooth.smooth(even, triangles, keep_layers="rows=2")
 
 

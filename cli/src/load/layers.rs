@@ -2,6 +2,7 @@
 
 use gpu_smooth::Topology;
 use gpu_smooth::layers::{KeepLayers, Layers};
+use gpu_smooth_job::{is_at_wall, overlooks_boundary, overlooks_wall, vertices_in_rows};
 use mesh_io::Group;
 
 use crate::error::CliError;
@@ -9,10 +10,6 @@ use crate::kept_layers::KeptLayers;
 use crate::load::named::{named, refusal};
 use crate::load::walls::{is_of_lines, name};
 use crate::load::{LoadedMesh, explain};
-
-/// Number of vertices of a wall from which a group names the wall, and from which seeds without a layer are noted.
-const FEW: usize = 3;
-const MANY: usize = 8;
 
 /// Number of groups that a note names.
 const NAMED: usize = 4;
@@ -83,14 +80,10 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
 
 /// Returns the line on the layers that stay.
 fn note(file: &LoadedMesh, kept: &KeptLayers, layers: &Layers) -> Result<String, CliError> {
-    let walls = &layers.walls;
-    let is_wall = |v: &u32| walls.binary_search(v).is_ok();
-    let is_inner = |v: &u32| !is_wall(v) && layers.sides.binary_search(v).is_err();
-    let inner = layers.vertices.iter().filter(|v| is_inner(v)).count();
+    let inner = vertices_in_rows(layers);
     let mut names = Vec::new();
     for group in file.source.groups()?.iter().filter(|group| is_of_lines(group)) {
-        let common = group.vertices().iter().filter(|v| is_wall(v)).count();
-        if common >= FEW {
+        if is_at_wall(layers, group.vertices()) {
             names.push(name(group));
         }
     }
@@ -117,16 +110,9 @@ fn overlooked(
     kept: &KeptLayers,
     layers: &Layers,
 ) -> Result<Vec<String>, CliError> {
-    if kept.keep != KeepLayers::Auto || kept.groups.is_some() || layers.seeds.len() < MANY {
+    if kept.groups.is_some() || layers.seeds.is_empty() {
         return Ok(Vec::new());
     }
-    let count = |vertices: &[u32], of: &[u32]| {
-        vertices.iter().filter(|v| of.binary_search(v).is_ok()).count()
-    };
-    let is_overlooked = |vertices: &[u32]| {
-        let seeds = count(vertices, &layers.seeds);
-        seeds >= MANY && 2 * seeds >= vertices.len() && count(vertices, &layers.walls) < FEW
-    };
     let note = |wall: &str, group: &str| {
         format!(
             "the triangles at {wall} are flat like those of a boundary layer, but no layer was found: \
@@ -136,11 +122,11 @@ fn overlooked(
     let groups = file.source.groups()?;
     let lines: Vec<&Group> = groups.iter().filter(|group| is_of_lines(group)).collect();
     if lines.is_empty() {
-        let loops = topology.boundary_loops();
-        let has_one = loops.iter().any(|wall| is_overlooked(wall));
+        let has_one = overlooks_boundary(layers, kept.keep, topology);
         return Ok(has_one.then(|| note("the boundary", "")).into_iter().collect());
     }
-    let found = lines.into_iter().filter(|group| is_overlooked(group.vertices()));
+    let found =
+        lines.into_iter().filter(|group| overlooks_wall(layers, kept.keep, group.vertices()));
     let mut names: Vec<String> = found.map(name).collect();
     names.dedup();
     Ok(names.iter().take(NAMED).map(|name| note(name, &format!(",{name}"))).collect())

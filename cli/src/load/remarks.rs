@@ -1,15 +1,9 @@
 //! Remarks on a mesh after reading.
 
-use gpu_smooth::targets::Adaptation;
+use gpu_smooth_job::{Adapted, look_like_degrees};
 use mesh_io::{Format, Remark};
 
 use crate::load::LoadedMesh;
-
-/// Stretching above which a mesh counts as adapted. Averages of meshes that are merely poor stay below 2.
-const STRETCHED: f64 = 2.5;
-/// Gradation above which a mesh counts as graded. Sizes then change by up to a third of themselves in a run without
-/// targets.
-const GRADED: f64 = 4.0;
 
 /// Returns the remarks on a mesh, one line each. If `slides` is true, no remark says that vertices between regions stay
 /// fixed.
@@ -54,21 +48,18 @@ fn with_effect(remark: &Remark) -> String {
     }
 }
 
-/// Returns a remark on an adapted mesh, which a run without targets would make less adapted; `None` for other meshes.
-pub(crate) fn adapted(adaptation: Adaptation) -> Option<String> {
-    let Adaptation { stretching, gradation, .. } = adaptation;
-    if stretching > STRETCHED {
-        return Some(format!(
+/// Returns the remark on an adapted mesh.
+pub(crate) fn adapted(adapted: Adapted) -> String {
+    match adapted {
+        Adapted::Stretched(stretching) => format!(
             "the mesh is adapted: around one vertex in twenty, triangles are stretched {stretching:.1}-fold or more; they \
              become equilateral unless --target keep-shape keeps their stretching and sizes"
-        ));
-    }
-    (gradation > GRADED).then(|| {
-        format!(
+        ),
+        Adapted::Graded(gradation) => format!(
             "the mesh is graded: sizes differ {gradation:.0}-fold from fine to coarse parts; they become more even unless \
              --target keep-size keeps them"
-        )
-    })
+        ),
+    }
 }
 
 /// Returns a remark if a file says that its coordinates are longitude and latitude, or if a mesh in a format of coastal
@@ -90,10 +81,7 @@ pub(crate) fn degrees(file: &LoadedMesh) -> Option<String> {
             | Format::Selafin
             | Format::Ugrid
     );
-    let points = &file.mesh().points;
-    let fits = |&[x, y]: &[f64; 2]| x.abs() <= 360.0 && y.abs() < 90.0;
-    let middle = points.iter().map(|p| p[1]).sum::<f64>() / points.len() as f64;
-    (is_of_oceans && middle.abs() > 20.0 && points.iter().all(fits)).then(|| {
+    (is_of_oceans && look_like_degrees(&file.mesh().points, is_of_oceans)).then(|| {
         "the coordinates look like degrees: --surface sphere smooths them as longitude and latitude"
             .to_owned()
     })

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::time::Instant;
 
 use gpu_smooth::layers::Layers;
-use gpu_smooth::targets::{Adaptation, Surface};
+use gpu_smooth::targets::Surface;
 use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
-use gpu_smooth_job::{TargetFacts, TargetKind};
+use gpu_smooth_job::{Adapted, TargetFacts};
 
 use crate::error::CliError;
 use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, SlidingVertices};
@@ -128,13 +128,11 @@ pub(super) fn set_up<'a>(
     if let Some(remark) = remark {
         follow.remark(&remark);
     }
-    // A metric of sizes is chosen to make sizes even.
-    let is_of_shapes = request.scheme().base().is_scale_invariant();
-    let has_target = request.target.kind != TargetKind::Equilateral;
-    if is_of_shapes && !has_target && mended.is_none() && request.max_sweeps() > 0 {
-        let adaptation = Adaptation::of(smoother.topology(), points, surface)?;
-        if let Some(remark) = remarks::adapted(adaptation) {
-            follow.remark(&remark);
+    if mended.is_none() && request.max_sweeps() > 0 {
+        let (topology, kind) = (smoother.topology(), request.target.kind);
+        let adapted = Adapted::before_run(topology, points, surface, kind, base)?;
+        if let Some(adapted) = adapted {
+            follow.remark(&remarks::adapted(adapted));
         }
     }
     let mut sliding = None;

@@ -1,0 +1,188 @@
+//! Remarks on a mesh and a run, in words of Python's keywords.
+
+use gpu_smooth::layers::{KeepLayers, Layers};
+use gpu_smooth::outcome::Floored;
+use gpu_smooth::targets::OutsideReport;
+use gpu_smooth::{Outcome, Smoother};
+use gpu_smooth_job::{Adapted, TargetFacts, vertices_in_rows};
+
+use crate::observer::RunObserver;
+
+/// Collects the remarks on a mesh and a run. Remarks that a user must read are warnings too.
+pub(crate) struct Remarks<'a> {
+    observer: &'a RunObserver<'a>,
+    texts: Vec<String>,
+}
+
+impl<'a> Remarks<'a> {
+    pub(crate) fn new(observer: &'a RunObserver<'a>) -> Self {
+        Self { observer, texts: Vec::new() }
+    }
+
+    /// Returns all remarks, also those that were warnings.
+    pub(crate) fn into_texts(self) -> Vec<String> {
+        self.texts
+    }
+
+    fn add(&mut self, text: String) {
+        self.texts.push(text);
+    }
+
+    /// Adds a remark and issues it as a warning.
+    pub(crate) fn warn(&mut self, text: String) {
+        self.observer.warn(&text);
+        self.texts.push(text);
+    }
+
+    /// Remarks on vertices that are fixed because they lie between regions.
+    pub(crate) fn interfaces(&mut self, count: usize) {
+        if count > 0 {
+            let stay =
+                numbered(count, "vertex between regions stays", "vertices between regions stay");
+            self.add(format!("regions: {stay}. Pass slide=True to let them slide, or no regions"));
+        }
+    }
+
+    /// Remarks on boundary layers that stay.
+    pub(crate) fn layers(&mut self, layers: &Layers, keep: KeepLayers) {
+        if layers.vertices.is_empty() {
+            return;
+        }
+        let place = match (keep, layers.rows) {
+            (KeepLayers::Within(distance), _) => format!("within {distance} of walls"),
+            (_, 1) => "in 1 row at walls".to_owned(),
+            (_, rows) => format!("in {rows} rows at walls"),
+        };
+        let count = vertices_in_rows(layers);
+        let (vertices, stay) = if count == 1 { ("vertex", "stays") } else { ("vertices", "stay") };
+        self.add(format!(
+            "keep_layers: {count} {vertices} {place} {stay}. Pass keep_layers=\"none\" to let them move"
+        ));
+    }
+
+    /// Remarks on walls at which layers may begin, and none was found.
+    pub(crate) fn overlooked_layers(&mut self) {
+        self.add(
+            "keep_layers: the triangles at the boundary are flat like those of a boundary layer, but no layer was found. Pass \
+             keep_layers=\"rows=N\" to keep the first N rows"
+                .to_owned(),
+        );
+    }
+
+    /// Warns that the points seem to be longitudes and latitudes.
+    pub(crate) fn degrees(&mut self) {
+        self.warn(
+            "points: the coordinates look like degrees. Pass surface=\"sphere\" if they are longitude and latitude, or \
+             surface=\"plane\" if they are lengths"
+                .to_owned(),
+        );
+    }
+
+    /// Warns of an adapted mesh, which the run will make less adapted.
+    pub(crate) fn adapted(&mut self, adapted: Adapted) {
+        self.warn(match adapted {
+            Adapted::Stretched(stretching) => format!(
+                "points: the mesh is adapted: around one vertex in twenty, triangles are stretched {stretching:.1}-fold or \
+                 more. They become equilateral unless target=\"keep-shape\" keeps their stretching and sizes"
+            ),
+            Adapted::Graded(gradation) => format!(
+                "points: the mesh is graded: sizes differ {gradation:.0}-fold from fine to coarse parts. They become more \
+                 even unless target=\"keep-size\" keeps them"
+            ),
+        });
+    }
+
+    /// Remarks on vertices outside of a background, and on the weight of sizes.
+    pub(crate) fn targets(&mut self, facts: &TargetFacts) {
+        if let Some(OutsideReport { count: count @ 1.., most }) = facts.outside {
+            let are = numbered(count, "vertex is", "vertices are");
+            self.add(format!(
+                "target: {are} outside of the other mesh, by up to {most:.6}. These vertices take the target of the nearest \
+                 point of that mesh"
+            ));
+        }
+        if let Some(weight) = facts.size_weight.filter(|weight| *weight > 1.0) {
+            self.add(format!(
+                "target=\"keep-size\": the triangles are stretched, so that the metric's term of size has a weight of \
+                 {weight:.2}, which keeps the sizes. target=\"keep-shape\" keeps the stretching too"
+            ));
+        }
+    }
+
+    /// Remarks on the vertices that may slide, `count` in number. Warns of pairs that stay, and of a boundary that stays
+    /// because its pairs are lost.
+    pub(crate) fn sliding(&mut self, smoother: &Smoother<'_>, count: usize, has_lost_pairs: bool) {
+        let ([pairs, unlike], [together, alone]) = (smoother.pairs(), smoother.coincident());
+        let mut text = match count {
+            0 => "slide: no vertex can slide, as all on lines are corners or fixed".to_owned(),
+            _ => {
+                let may = numbered(count, "vertex", "vertices");
+                format!("slide: {may} on the boundary and other lines may slide")
+            }
+        };
+        let mut clause = |count: usize, one: &str, many: &str| {
+            if count > 0 {
+                text += &format!(", {} of them in {}", 2 * count, numbered(count, one, many));
+            }
+        };
+        clause(pairs, "periodic pair", "periodic pairs");
+        clause(together, "pair at the same place", "pairs at the same place");
+        if alone > 0 {
+            let stay = numbered(alone, "vertex", "vertices");
+            text += &format!("; of vertices at one place, {stay} cannot slide");
+        }
+        self.add(text);
+        if unlike > 0 {
+            let stay = numbered(unlike, "pair stays", "pairs stay");
+            self.warn(format!(
+                "periodic: {stay}, as the translation or rotation of the other pairs does not take one vertex to the other"
+            ));
+        }
+        if has_lost_pairs {
+            self.warn(
+                "slide: the boundary stays, as the model is periodic and the pairs of vertices are unknown. Pass them as \
+                 periodic"
+                    .to_owned(),
+            );
+        }
+    }
+
+    /// Remarks on the end of a run: vertices that were held back, worst triangles that were made better again, and a device
+    /// that failed.
+    pub(crate) fn outcome(&mut self, outcome: &Outcome) {
+        if outcome.held_back > 0 {
+            let held = numbered(outcome.held_back, "vertex", "vertices");
+            self.add(format!("a guard keeps {held} from moving on"));
+        }
+        if let Some(Floored { moved, returned, least_angle, worst_imr, .. }) = outcome.floored {
+            let (mut worse, mut ends) = (Vec::new(), Vec::new());
+            let [before, swept, end] = least_angle;
+            if swept < before {
+                worse.push(format!("a least angle of {swept:.2}° ({before:.2}° before)"));
+                ends.push(format!("{end:.2}°"));
+            }
+            let [before, swept, end] = worst_imr;
+            if swept > before {
+                worse.push(format!("a worst imr of {swept:.6} ({before:.6} before)"));
+                ends.push(format!("{end:.6}"));
+            }
+            let vertices = numbered(moved + returned, "vertex", "vertices");
+            self.add(format!(
+                "the sweeps left {}. {vertices} moved on or went back, to end at {}",
+                worse.join(" and "),
+                ends.join(" and ")
+            ));
+        }
+        if let Some(fault) = &outcome.device_fault {
+            let (sweep, error) = (fault.sweep, &fault.error);
+            self.add(format!(
+                "the GPU failed after sweep {sweep}, and the run continued on the CPU: {error}"
+            ));
+        }
+    }
+}
+
+/// Formats a count with words in the singular or plural.
+fn numbered(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
