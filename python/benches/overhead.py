@@ -35,14 +35,14 @@ def least(call: Callable[[], float], rounds: int) -> float:
     return float(np.median(sorted(call() for _ in range(rounds))[:10]))
 
 
-def overhead(side: int, rounds: int) -> tuple[float, float]:
-    """Return the time of `run` beyond that of the library, and the time of the library, in seconds."""
+def overhead(side: int, rounds: int, keep_layers: str) -> tuple[float, float]:
+    """Return the time of `run` beyond preparation and run of the library, and the time of both, in seconds."""
     points, triangles = lattice(side)
     spent = []
 
     def call() -> float:
         start = time.perf_counter()
-        result = gpu_smooth.run(points, triangles, engine="cpu")
+        result = gpu_smooth.run(points, triangles, engine="cpu", keep_layers=keep_layers)
         total = time.perf_counter() - start
         inside = result.prepare_seconds + result.seconds
         spent.append(inside)
@@ -69,10 +69,14 @@ def main() -> None:
     if is_large:
         sizes.append((999, 25))
     for side, rounds in sizes:
-        beyond, library = overhead(side, rounds)
+        beyond, library = overhead(side, rounds, "none")
+        layers = overhead(side, rounds, "auto")[0] - beyond
         vertices = (side + 1) ** 2
         share = 100 * beyond / library
-        print(f"| {vertices:,} vertices | {1e6 * library:,.0f} µs in the library, {1e6 * beyond:,.0f} µs beyond ({share:.1f} %) |")
+        print(
+            f"| {vertices:,} vertices | {1e6 * library:,.0f} µs in the library, {1e6 * beyond:,.0f} µs beyond ({share:.1f} %), "
+            f"{1e6 * layers:,.0f} µs to find boundary layers |"
+        )
 
 
 if __name__ == "__main__":
