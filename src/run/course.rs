@@ -45,7 +45,8 @@ impl Course {
         }
     }
 
-    /// Returns whether the host decides after each sweep whether the run ends, so that a device must not end the run.
+    /// Returns whether corrections let the host decide after each sweep whether the run ends, so that a device must not end the
+    /// run. A target field does so too, which the course does not know.
     pub(crate) fn is_judged_by_host(&self) -> bool {
         matches!(self, Self::Corrected(_))
     }
@@ -69,7 +70,7 @@ impl Course {
         }
     }
 
-    /// Returns the error of an engine without room for the coarser levels, with which the run makes no corrections.
+    /// Returns the error of an engine without room for the coarser levels. The run then makes no corrections.
     pub(crate) fn left_out(&self) -> Option<&GpuError> {
         match self {
             Self::Sweeps(_) => None,

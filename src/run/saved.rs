@@ -33,7 +33,7 @@ impl Saved {
     }
 }
 
-/// The state of the host and of the stage of a target field when a period began.
+/// The state of the stage of a target field when a period began.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PeriodState {
     /// Number of sweeps before the period.

@@ -1,4 +1,4 @@
-//! The engine of a run, which a failure of the device may replace by the CPU engine.
+//! The engine of a run, which the CPU engine may replace after a failure of the device, or where triangles are too flat for it.
 
 use std::borrow::Cow;
 
@@ -121,7 +121,7 @@ impl Engine for AnyEngine<'_> {
         let left = on!(self, engine => engine.remaining(step, request, goes_on).await)?;
         let AnyEngine::Device(engine) = self else { return Ok(left) };
         let most = 2.0 * request.least_gain * request.objective;
-        if left.is_some_and(|left| left <= most) {
+        if left.is_some_and(|left| left <= most) || !goes_on() {
             return Ok(left);
         }
         // In single precision, rounding looks like a gain or like negative curvature, and a device takes no steps on some meshes.

@@ -6,7 +6,8 @@ use crate::whole::end::RunEnd;
 use crate::whole::session::Session;
 use crate::whole::target_field::{Judgment, TargetFieldStage};
 
-/// Sweeps until the run ends. With a target field, its stage works after each period, and decides whether the run ends.
+/// Sweeps until the run ends. With a target field, its stage works after each period, and decides whether the run ends. A run of
+/// no sweeps has no period.
 pub(crate) async fn drive(
     mut run: Session<'_>,
     observe: &mut dyn Observer,

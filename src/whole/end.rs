@@ -17,7 +17,9 @@ pub(crate) struct RunEnd {
     /// The sliding vertices at these positions. `None` if no vertex slides.
     pub(crate) curves: Option<OnCurves>,
     pub(crate) counts: Counts,
+    /// Number of sweeps on the CPU before the device, or of all sweeps if the device was unfit from the start.
     pub(crate) opening_sweeps: u32,
+    /// Number of sweeps on the CPU after the device had become unfit.
     pub(crate) closing_sweeps: u32,
     pub(crate) remaining: Option<f64>,
     pub(crate) held_back: usize,

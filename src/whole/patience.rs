@@ -13,13 +13,15 @@ const QUESTION: Duration = Duration::from_millis(100);
 pub(super) struct Patience<'p> {
     now: Progress,
     observe: &'p mut dyn Observer,
-    policy: &'p mut dyn CheckpointPolicy,
+    /// The policy of a run that can save checkpoints.
+    policy: Option<&'p mut dyn CheckpointPolicy>,
     /// Time of the last question.
     asked: Instant,
-    /// Whether the policy wants a checkpoint at the end of the run, which therefore ends between two sweeps: a checkpoint in
-    /// the middle of a step would not continue with the bits of an uninterrupted run.
-    ends_between_sweeps: bool,
-    is_canceled: bool,
+    /// Whether the observer has ended the run.
+    has_ended: bool,
+    /// Whether the policy wants a checkpoint at the end, so that the step is finished: a checkpoint in the middle of a step
+    /// would not continue with the bits of an uninterrupted run.
+    finishes_step: bool,
 }
 
 impl<'p> Patience<'p> {
@@ -27,29 +29,32 @@ impl<'p> Patience<'p> {
     pub(super) fn new(
         now: Progress,
         observe: &'p mut dyn Observer,
-        policy: &'p mut dyn CheckpointPolicy,
+        policy: Option<&'p mut dyn CheckpointPolicy>,
     ) -> Self {
         let asked = Instant::now();
-        Self { now, observe, policy, asked, ends_between_sweeps: false, is_canceled: false }
+        Self { now, observe, policy, asked, has_ended: false, finishes_step: false }
     }
 
-    /// Returns whether the run goes on. Asks the observer if the last question was [`QUESTION`] ago.
+    /// Returns whether the step in progress goes on. Asks the observer if the last question was [`QUESTION`] ago.
     #[cfg_attr(target_family = "wasm", expect(dead_code))]
     pub(super) fn goes_on(&mut self) -> bool {
-        if self.is_canceled || self.ends_between_sweeps || self.asked.elapsed() < QUESTION {
-            return !self.is_canceled;
+        if !self.has_ended && self.asked.elapsed() >= QUESTION {
+            self.has_ended = (self.observe)(&self.now).is_break();
+            let policy = self.policy.as_mut().filter(|_| self.has_ended);
+            self.finishes_step = policy.is_some_and(|policy| policy.wants_checkpoint(true));
+            self.asked = Instant::now();
         }
-        if (self.observe)(&self.now).is_break() {
-            self.ends_between_sweeps = self.policy.wants_checkpoint(true);
-            self.is_canceled = !self.ends_between_sweeps;
-        }
-        self.asked = Instant::now();
-        !self.is_canceled
+        !self.is_canceled()
+    }
+
+    /// Returns whether the observer has ended the run.
+    pub(super) fn has_ended(&self) -> bool {
+        self.has_ended
     }
 
     /// Returns whether the run has ended in the middle of a step.
     pub(super) fn is_canceled(&self) -> bool {
-        self.is_canceled
+        self.has_ended && !self.finishes_step
     }
 }
 
@@ -80,13 +85,13 @@ mod tests {
             };
             let now = Progress { phase: Phase::Smoothing, sweep: 3, f: 1.5 };
             let mut policy = Wants(wants);
-            let mut patience = Patience::new(now, &mut observe, &mut policy);
+            let mut patience = Patience::new(now, &mut observe, Some(&mut policy));
             let mut ask = || {
                 patience.asked -= QUESTION;
                 patience.goes_on()
             };
             assert_eq!([ask(), ask(), ask()], [true, wants, wants]);
-            assert_eq!(patience.is_canceled(), !wants);
+            assert_eq!((patience.has_ended(), patience.is_canceled()), (true, !wants));
             assert_eq!(questions, 2);
         }
     }
@@ -95,8 +100,7 @@ mod tests {
     fn the_observer_is_not_asked_between_two_quick_iterations() {
         let mut observe = |_: &Progress| -> ControlFlow<()> { panic!("asked too soon") };
         let now = Progress { phase: Phase::Smoothing, sweep: 0, f: 1.0 };
-        let mut policy = Wants(false);
-        let mut patience = Patience::new(now, &mut observe, &mut policy);
+        let mut patience = Patience::new(now, &mut observe, None);
         // A question would be due only if the test itself took longer than the time between two questions.
         patience.asked += QUESTION;
         assert!(patience.goes_on() && !patience.is_canceled());

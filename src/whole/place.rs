@@ -1,4 +1,4 @@
-//! The engine on which a run sweeps, and every decision between a device and the CPU.
+//! The engine on which a run sweeps, and the decisions at which the engine changes.
 
 use std::cmp::Ordering;
 
@@ -28,17 +28,18 @@ pub(crate) enum Place<'s> {
 /// The reason why a run sweeps on the CPU.
 #[derive(Clone)]
 pub(crate) enum OnCpu {
-    /// No device was given, a device has nothing to do, or the run continues from a checkpoint of the CPU.
+    /// No device was given, the run has no use for a device (no vertex is free, or vertices slide in a projection), or the run
+    /// continues from a checkpoint of the CPU.
     Begun,
-    /// The device cannot represent the mesh: triangles are too flat or too small, sums too large, or a vertex has more maps
-    /// than a device stores. The run had done `from` sweeps on the device.
+    /// The device cannot represent the mesh: triangles are too flat or too small, sums too large, a vertex has more maps than
+    /// a device stores, or bounds lie in a projection. The run had done `from` sweeps on the device, without opening sweeps.
     Unfit { from: u32 },
     /// The device failed.
     Failed(DeviceFault),
 }
 
 impl<'s> Place<'s> {
-    /// Returns the place of all runs of a mesh: the device, if one is given and `is_useful`, after checks that the mesh fits
+    /// Returns the place of a run, and of the search runs for its goal, before the mesh is examined: the device, if one is given and `is_useful`, after checks that the mesh fits
     /// the device and that its arithmetic keeps all digits. If the device drops digits, `policy` may let runs begin on the
     /// CPU.
     pub(crate) async fn given(
@@ -95,7 +96,7 @@ impl<'s> Place<'s> {
     }
 
     /// Returns the place after the host has moved vertices to `positions`, at the end of `sweeps` sweeps: a device cannot sweep
-    /// triangles that are too flat.
+    /// triangles that are too flat or too small.
     pub(crate) async fn after_move(
         self,
         problem: &Problem,
@@ -134,7 +135,8 @@ impl<'s> Place<'s> {
         }
     }
 
-    /// Returns the number of sweeps on a device that cannot represent the mesh. `None` without such a device.
+    /// Returns the number of sweeps after which the CPU replaced a device that cannot represent the mesh: 0 if the CPU did all
+    /// sweeps. `None` without such a change.
     pub(crate) fn unfit_from(&self) -> Option<u32> {
         match self {
             Self::Cpu(OnCpu::Unfit { from }) => Some(*from),

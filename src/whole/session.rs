@@ -1,4 +1,4 @@
-//! A run in progress: the only owner of the engine, history, present targets and point of return.
+//! A run in progress: engine, history, course, targets and point of return have no other owner.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -14,8 +14,8 @@ use crate::parallel::paced;
 use crate::resume;
 use crate::run::opening::DoublePrelude;
 use crate::run::{
-    Checkpoint, Checkpointer, Course, Engine, History, Objectives, Observer, Phase, Plan, Progress,
-    Saved, Stop,
+    Checkpoint, CheckpointPolicy, Checkpointer, Course, Engine, History, Objectives, Observer,
+    Phase, Plan, Progress, Saved, Stop,
 };
 use crate::slide::OnCurves;
 use crate::whole::any_engine::AnyEngine;
@@ -51,8 +51,8 @@ struct Point<'s> {
 }
 
 impl Point<'_> {
-    /// Begins the first period of a target field at this state, or at the period of a checkpoint, to which this state then
-    /// returns.
+    /// Begins the first period of a target field at this state. With a checkpoint, this state becomes that at the start of the
+    /// checkpoint's period.
     async fn begin_field(
         &mut self,
         field: &mut TargetFieldStage<'_>,
@@ -141,7 +141,9 @@ impl<'s> Session<'s> {
             problem = with_local_maps(&spec, &from).await;
         }
         let (place, opened) = match resumed {
-            Some(from) => (place.of_checkpoint(&problem, from), from.about.opened.clone()),
+            Some(checkpoint) => {
+                (place.of_checkpoint(&problem, checkpoint), checkpoint.about.opened.clone())
+            }
             None => place.at_start(spec.problem, &problem, &plan, &from).await?,
         };
         if let Some(opened) = &opened {
@@ -156,7 +158,8 @@ impl<'s> Session<'s> {
         checkpointer.last = resumed.map(|resumed| resumed.saved.clone());
         if let Some(about) = &mut checkpointer.about {
             about.opened.clone_from(&opened);
-            about.on_cpu_from = place.unfit_from();
+            let before = resumed.and_then(|resumed| resumed.about.on_cpu_from);
+            about.on_cpu_from = place.unfit_from().or(before);
         }
         Ok(Self {
             spec,
@@ -183,7 +186,7 @@ impl<'s> Session<'s> {
         self.history = History::resumed(plan, &last.log, None);
         self.batch = 1;
         if let Some(about) = &mut self.checkpointer.about {
-            about.on_cpu_from = self.place.unfit_from();
+            about.on_cpu_from = self.place.unfit_from().or(about.on_cpu_from);
         }
     }
 
@@ -288,15 +291,19 @@ impl<'s> Session<'s> {
             let sweeps = (*batch).min(left);
             let now =
                 Progress { phase: spec.phase, sweep: done + history.sweeps(), f: history.last() };
+            let policy: Option<&mut dyn CheckpointPolicy> = match checkpointer.about {
+                Some(_) => Some(&mut *checkpointer.policy),
+                None => None,
+            };
             #[cfg_attr(target_family = "wasm", expect(unused_mut))]
-            let mut patience = Patience::new(now, observe, checkpointer.policy);
+            let mut patience = Patience::new(now, observe, policy);
             #[cfg(not(target_family = "wasm"))]
             let mut goes_on = || patience.goes_on();
             // The observers of browsers are not `Send`, and futures of engines are.
             #[cfg(target_family = "wasm")]
             let mut goes_on = || true;
             course.advance(engine, plan, history, sweeps, &mut goes_on).await?;
-            let is_canceled = patience.is_canceled();
+            let (has_ended, is_canceled) = (patience.has_ended(), patience.is_canceled());
             *batch = next_batch(sweeps.max(1), start.elapsed());
             if let Some(sweep) = history.first_not_finite(known) {
                 return Err(Failure::NotFinite { sweep: done + sweep });
@@ -311,7 +318,8 @@ impl<'s> Session<'s> {
                 return Ok(Some(stop));
             }
             let (sweep, f) = (done + history.sweeps(), history.last());
-            let is_ending = observe(&Progress { phase: spec.phase, sweep, f }).is_break();
+            let is_ending =
+                has_ended || observe(&Progress { phase: spec.phase, sweep, f }).is_break();
             let period = || field.as_ref().map(TargetFieldStage::save);
             checkpointer.after_sweeps(engine, history, || course.save(), period, is_ending).await?;
             if is_ending {

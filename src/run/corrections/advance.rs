@@ -69,7 +69,7 @@ impl Corrections {
             self.record(engine, start, history, goes_on).await?;
         }
         for _ in 0..sweeps {
-            if history.stop().is_some() {
+            if history.stop().is_some() || !goes_on() {
                 break;
             }
             let objectives = match self.stage {
