@@ -31,7 +31,7 @@ impl ColorScale {
     /// Returns the scale between two values of a measure.
     ///
     /// # Errors
-    /// A sentence if the first value is not below the second, or if the measure has no such values.
+    /// The reason as a sentence: the first value is not below the second, or a value is outside of the range of the measure.
     pub fn new(measure: Measure, [low, high]: [f64; 2]) -> Result<Self, String> {
         let definition = measure.definition();
         let [least, most] = definition.range;

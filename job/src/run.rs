@@ -49,7 +49,7 @@ pub struct RunRequest {
     pub guard: Guard,
     /// Largest distance that a vertex may move, in lengths of an edge.
     pub max_move: Option<f64>,
-    /// Whether no altitude may fall below the least of the mesh.
+    /// Whether the least altitude of the mesh is a lower limit for the altitudes of all triangles.
     pub keep_altitude: bool,
     /// The measure by which the worst triangles are improved after the sweeps.
     pub improve_worst: Option<WorstBy>,
@@ -125,7 +125,7 @@ pub enum EngineRequest {
     Cpu,
     /// The first GPU adapter with the text `adapter` in its name, or the best adapter if that is `None`.
     Gpu {
-        /// A part of the name of the adapter.
+        /// Text that the name of the adapter contains.
         adapter: Option<String>,
     },
 }

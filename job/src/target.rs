@@ -149,7 +149,7 @@ impl TargetRequest {
     /// longitudes are continued. A mesh on a sphere must have its projection.
     ///
     /// # Errors
-    /// [`MeshError`] if a number makes no target, or if there is another count of numbers than vertices.
+    /// [`MeshError`] if a number is no valid size or part of a tensor, or if the count of numbers does not fit the vertices.
     pub fn set(
         self,
         smoother: &mut Smoother<'_>,

@@ -46,7 +46,7 @@ impl Course {
     }
 
     /// Returns whether corrections let the host decide after each sweep whether the run ends, so that a device must not end the
-    /// run. A target field does so too, which the course does not know.
+    /// run. In a run with a target field, the host decides too, by the session.
     pub(crate) fn is_judged_by_host(&self) -> bool {
         matches!(self, Self::Corrected(_))
     }

@@ -88,7 +88,7 @@ pub(crate) trait Engine: Send {
     ) -> impl Future<Output = Result<Proposal, GpuError>> + Send;
 
     /// Sweeps once, and then takes a Newton step of all vertices from there: derivatives, conjugate gradients and a line
-    /// search. The engine asks `goes_on` between two iterations; if not, it takes no step after the sweep. `None`, and nothing
+    /// search. The engine calls `goes_on` between two iterations. If `goes_on` returns false, no step follows the sweep. `None`, and nothing
     /// happens, if the engine takes no such steps.
     fn sweep_and_step(
         &mut self,

@@ -25,7 +25,7 @@ pub(crate) struct Sweeping {
     /// Whether the end of the run is measured.
     is_measured: bool,
     /// Whether a measured gain above the tolerance refuses the end of the run.
-    goes_on: bool,
+    may_refuse_end: bool,
 }
 
 impl Sweeping {
@@ -41,7 +41,7 @@ impl Sweeping {
         Self {
             tolerance: plan.stop.tolerance,
             is_measured: base.curved().is_some() && !is_held,
-            goes_on: !plan.scheme.alternates()
+            may_refuse_end: !plan.scheme.alternates()
                 && !is_guarded
                 && !matches!(method, Method::Paper(_)),
         }
@@ -67,7 +67,7 @@ impl Sweeping {
         };
         let left = (left / f).max(NOISE);
         let decays = history.remaining().is_some_and(|left| left <= self.tolerance);
-        if left <= plan.stop.tolerance || !decays || !self.goes_on {
+        if left <= plan.stop.tolerance || !decays || !self.may_refuse_end {
             history.end(history.stop(), Some(left));
             return Ok(());
         }

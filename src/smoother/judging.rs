@@ -82,7 +82,7 @@ struct Stored {
     /// f before rounding, as the engine of the last sweep computed it, and in double precision.
     swept: f64,
     exact: f64,
-    /// f at the points, before the floor and with it.
+    /// f at the points before the floor, and at the points that the floor has raised.
     rounded: f64,
     written: f64,
 }

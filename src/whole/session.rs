@@ -75,9 +75,10 @@ impl Point<'_> {
 pub(crate) struct Session<'s> {
     pub(super) spec: Spec<'s>,
     pub(super) plan: Plan,
-    /// Whether sweeps are on the device or on the CPU.
+    /// The processor of the sweeps: the device or the CPU.
     pub(super) place: Place<'s>,
-    /// The engine with the present positions, targets and maps. `None` before the first sweep, and after a change of the place.
+    /// The engine with the present positions, targets and maps. `None` before the first sweep, and after the run
+    /// has left an engine.
     engine: Option<AnyEngine<'s>>,
     pub(super) course: Course,
     pub(super) history: History,
@@ -228,18 +229,19 @@ impl<'s> Session<'s> {
         until: u32,
         observe: &mut dyn Observer,
     ) -> Result<(Vec<DVec2>, Option<Stop>), Failure> {
-        if self.engine.is_none() {
-            self.begin_engine().await?;
-        }
-        let stop = self.advance(until, observe).await?;
-        let Some(engine) = &mut self.engine else { return Err(Failure::Foreign) };
+        let mut engine = match self.engine.take() {
+            Some(engine) => engine,
+            None => self.begun_engine().await?,
+        };
+        let stop = self.advance(&mut engine, until, observe).await?;
         let positions = engine.best_positions().await?;
         self.curves = engine.best_curves().await?;
+        self.engine = Some(engine);
         Ok((positions, stop))
     }
 
     /// Creates an engine in the last saved state, or else at the point of return.
-    async fn begin_engine(&mut self) -> Result<(), Failure> {
+    async fn begun_engine(&mut self) -> Result<AnyEngine<'s>, Failure> {
         let Self { plan, course, last, .. } = self;
         let Point { problem, positions, curves, .. } = last;
         let mut engine = match &self.place {
@@ -266,20 +268,19 @@ impl<'s> Session<'s> {
                 return Err(Failure::Foreign);
             }
         }
-        self.engine = Some(engine);
-        Ok(())
+        Ok(engine)
     }
 
-    /// Sweeps in batches, with a call of the observer after each. Returns the reason if the run ends, and `None` after `until`
-    /// sweeps.
+    /// Sweeps in batches, and calls the observer after each batch. Returns the reason if the run ends, and `None` after
+    /// `until` sweeps.
     async fn advance(
         &mut self,
+        engine: &mut AnyEngine<'s>,
         until: u32,
         observe: &mut dyn Observer,
     ) -> Result<Option<Stop>, Failure> {
         let done = self.opening_sweeps();
         let Self { spec, plan, course, history, field, batch, checkpointer, .. } = self;
-        let Some(engine) = &mut self.engine else { return Err(Failure::Foreign) };
         // A device without room for the coarser levels is an error if the method requires them.
         let requires_levels = spec.options.method == Method::Multilevel;
         loop {

@@ -38,7 +38,7 @@ impl TargetRequest {
         Ok((facts, outside.or_else(|| stretched(facts.size_weight?))))
     }
 
-    /// Reads the numbers of the targets. Returns the path of the background too, if there is any.
+    /// Reads the numbers of the targets. Also returns the path of a background mesh or view.
     fn read(
         &self,
         file: &LoadedMesh,

@@ -39,17 +39,21 @@ struct SweepClock<'a> {
 }
 
 impl SweepClock<'_> {
-    /// Returns whether the observer is called in the middle of a long step: nothing has changed since the last call.
-    fn is_within_step(&self, progress: &Progress) -> bool {
-        let is_last = self.times.last().is_some_and(|&(sweep, _)| sweep == progress.sweep);
-        progress.phase == Phase::Smoothing && is_last
-    }
-
-    /// Records the time of a sweep. Breaks if the user interrupts the run or the time limit has passed.
-    fn sweep(&mut self, progress: &Progress) -> ControlFlow<()> {
-        if progress.phase == Phase::Smoothing && !self.is_within_step(progress) {
+    /// Records the time of a sweep. Returns false if the run calls its observer in the middle of a long step, after a sweep that
+    /// is recorded already.
+    fn record(&mut self, progress: &Progress) -> bool {
+        if progress.phase != Phase::Smoothing {
+            return true;
+        }
+        let is_new = self.times.last().is_none_or(|&(sweep, _)| sweep != progress.sweep);
+        if is_new {
             self.times.push((progress.sweep, self.start.elapsed().as_secs_f64()));
         }
+        is_new
+    }
+
+    /// Breaks if the user interrupts the run or the time limit has passed.
+    fn goes_on(&mut self) -> ControlFlow<()> {
         let limit = self.input.request().time_limit;
         self.out_of_time = limit.is_some_and(|limit| self.input.began.elapsed() >= limit);
         match interrupt::is_requested() || self.out_of_time {
@@ -81,10 +85,10 @@ pub(super) fn smooth(
     let mut kept = CheckpointSaver::new(request.outputs.checkpoint.as_ref(), &follow);
     let mut run = |backend: &Backend| {
         let mut observe = |progress: &Progress| {
-            if !clock.is_within_step(progress) {
+            if clock.record(progress) {
                 follow.lock().unwrap_or_else(PoisonError::into_inner).sweep(progress);
             }
-            clock.sweep(progress)
+            clock.goes_on()
         };
         ready
             .smoother

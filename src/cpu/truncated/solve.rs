@@ -127,8 +127,8 @@ impl<T: Scalar> Solver<T> {
         levels.update().await;
     }
 
-    /// Computes the step, and gives it up if the run does not go on: the model then gains nothing. `least_gain` is the sum over
-    /// triangles of the request's least gain.
+    /// Computes the step. If `goes_on` returns false, the solver stops, and its solution has no gain. `least_gain` is the sum
+    /// over triangles of the request's least gain.
     pub(super) async fn solve(
         &mut self,
         request: &StepRequest,

@@ -179,7 +179,7 @@ fn long_steps_take_several_submissions() {
     assert!((cpu.excess - device.excess).abs() <= 1e-2 * cpu.excess, "{cpu:?}\n{device:?}");
 }
 
-/// A run that does not go on gives up its step in the middle of the iterations. The sweep before the step counts.
+/// An engine stops in the middle of the iterations if `goes_on` returns false. The sweep before the step counts.
 #[test]
 fn a_step_that_is_given_up_leaves_the_vertices_where_the_sweep_has_moved_them() {
     let gpu = Gpu::open(None).unwrap();
