@@ -206,14 +206,6 @@ pub enum ResumeError {
         /// The option of this run, as `name = value`.
         now: String,
     },
-    /// Another version of the library wrote the checkpoint, without an option of this version.
-    #[error(
-        "the checkpoint lacks the option {name}: continue with the version of gpu-smooth that wrote the checkpoint"
-    )]
-    MissingOption {
-        /// The name of the option.
-        name: String,
-    },
     /// Another version of the library wrote the checkpoint, with an option that this version lacks.
     #[error(
         "the run of the checkpoint has {then}, an option that this version of gpu-smooth lacks: continue with the version that wrote the checkpoint"

@@ -51,19 +51,18 @@ pub(crate) fn check(
 }
 
 /// Returns the first option in which a checkpoint differs from the run that continues. Both texts have a line `name = value`
-/// for each option. A checkpoint of another version of the library may have other options.
+/// for each option. A checkpoint of another version of the library may have other options. An option that the checkpoint lacks
+/// had its default, as the library of the checkpoint did not have the option.
 fn difference(checkpoint: &str, run: &str) -> Option<ResumeError> {
     fn name(line: &str) -> &str {
         line.split(" = ").next().unwrap_or(line)
     }
+    let defaults = Options::default().lines();
     for now in run.lines() {
-        match checkpoint.lines().find(|then| name(then) == name(now)) {
-            Some(then) if then == now => {}
-            Some(then) => {
-                let (then, now) = (then.to_owned(), now.to_owned());
-                return Some(ResumeError::OtherOption { then, now });
-            }
-            None => return Some(ResumeError::MissingOption { name: name(now).to_owned() }),
+        let mut all = checkpoint.lines().chain(defaults.lines());
+        if let Some(then) = all.find(|then| name(then) == name(now)).filter(|then| *then != now) {
+            let (then, now) = (then.to_owned(), now.to_owned());
+            return Some(ResumeError::OtherOption { then, now });
         }
     }
     let unknown = checkpoint.lines().find(|then| run.lines().all(|now| name(now) != name(then)))?;
@@ -105,7 +104,7 @@ mod tests {
     use crate::parallel::pace::now;
     use crate::run::checksum::crc32;
     use crate::run::{CheckpointPolicy, Stop};
-    use crate::{Backend, GpuError, Outcome, Quality, Slide, Smoother, topology};
+    use crate::{Backend, GpuError, Guard, Outcome, Quality, Slide, Smoother, topology};
 
     /// A policy that takes the first checkpoint, and continues on the CPU if asked.
     #[derive(Default)]
@@ -284,7 +283,19 @@ mod tests {
         assert!(matches!(error, SmoothError::Checkpoint(_)), "{error}");
     }
 
-    /// A checkpoint of another version of the library may have more options, fewer options or other values.
+    /// A checkpoint of an earlier version of the library lacks the options that came later.
+    #[test]
+    fn an_option_that_a_checkpoint_lacks_had_its_default() {
+        let of = |guard| Options::default().guard(guard).lines();
+        let earlier = Options::default().lines().replace("guard = by-metric\n", "");
+        assert_eq!(difference(&earlier, &of(Guard::ByMetric)), None);
+        let then = "guard = by-metric".to_owned();
+        let now = "guard = worst".to_owned();
+        let other = ResumeError::OtherOption { then, now };
+        assert_eq!(difference(&earlier, &of(Guard::Worst)), Some(other));
+    }
+
+    /// A checkpoint of another version of the library may have more options or other values.
     #[test]
     fn the_error_on_other_options_in_a_checkpoint_names_the_option() {
         let mesh = lattice(6);
@@ -296,7 +307,6 @@ mod tests {
         let own = &checkpoint.about.options;
         for (changed, part) in [
             (format!("{own}\nsmoothness = 2"), "has smoothness = 2, an option that this version"),
-            (own.replace("guard = by-metric\n", ""), "lacks the option guard: "),
             (own.replace("max sweeps = 1000", "max sweeps = 7"), "has max sweeps = 7, and this"),
         ] {
             let mut other = checkpoint.clone();

@@ -7,7 +7,7 @@ use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::slide::Periodic;
-use gpu_smooth::{Mesh, MeshError, Slide, Topology};
+use gpu_smooth::{Mesh, MeshError, Slide, Topology, select};
 use mesh_io::{Affine, Constraints, MeshFile, edges_between_regions};
 
 /// A mesh with the vertices that stay, the lines along which vertices slide, and the surface of its coordinates, from the
@@ -247,6 +247,19 @@ impl Domain {
         let held = self.marked(vertices)?;
         self.hold(held);
         Ok(())
+    }
+
+    /// Fixes the vertices that are far from bad triangles, those with an inverse mean ratio above `limit`. Vertices within
+    /// `rings` rings of triangles around a bad triangle are near.
+    ///
+    /// # Errors
+    /// [`MeshError`] if the mesh cannot be smoothed; see [`Topology::new`].
+    pub fn fix_far_from_bad(&mut self, limit: f64, rings: u32) -> Result<(), MeshError> {
+        let topology = Topology::new(self.mesh())?;
+        let bad = select::triangles_above(&self.mesh().points, &topology, limit);
+        let near = select::vertices_near(&topology, &bad, rings);
+        drop(topology);
+        self.fix_all_but(&near)
     }
 
     /// Fixes all vertices except `vertices`. A listed vertex stays fixed if it was fixed before.

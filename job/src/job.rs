@@ -14,6 +14,7 @@ use mesh_io::MeshFile;
 
 use crate::domain::{Domain, SlideBy};
 use crate::error::JobError;
+use crate::options::Settings;
 use crate::plane::{plane_of_file, z_field};
 use crate::precision::smoother_precision;
 use crate::run::RunRequest;
@@ -78,6 +79,28 @@ impl<'f> Job<'f> {
     /// stay.
     pub fn slide(self, by: SlideBy) -> Self {
         Self { slide: Some(by), ..self }
+    }
+
+    /// Sets the options of the mesh by the words that the command line and the Python package share, such as `slide`. The options
+    /// of the run are in [`Settings::run`], which [`options`](Self::options) takes. A target is set before its settings.
+    ///
+    /// # Errors
+    /// [`JobError::Smooth`] with `only-bad` if the mesh cannot be smoothed.
+    pub fn settings(mut self, settings: &Settings) -> Result<Self, JobError> {
+        if let Some(limit) = settings.only_bad {
+            let fixed = self.domain.fix_far_from_bad(limit, settings.rings_of_bad());
+            fixed.map_err(|error| self.error(error))?;
+        }
+        let by = SlideBy::default();
+        let corner_angle = settings.corner_angle.unwrap_or(by.corner_angle);
+        let by = SlideBy { corner_angle, hausdorff: settings.hausdorff, ..by };
+        let target = TargetRequest {
+            rings: settings.target_rings,
+            of_places: settings.of_places,
+            ..self.target
+        };
+        let slide = settings.slides.then_some(by);
+        Ok(Self { slide, target, untangles: settings.untangles, ..self })
     }
 
     /// Untangles the mesh before the run, if triangles are inverted or flat; see [`gpu_smooth::untangle()`].

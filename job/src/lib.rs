@@ -3,19 +3,21 @@
 //!
 //! The crate joins `gpu-smooth`, which reads no files, and `mesh-io`, which knows no smoother. It is the set-up of a run that the
 //! command line, the Python package and Rust programs share: a [`Domain`] has the vertices that stay or slide, a
-//! [`TargetRequest`] the desired elements, and a [`RunRequest`] the options of a run as users give them. With equal options, a
-//! job writes the bytes that the command line writes:
+//! [`TargetRequest`] the desired elements, and [`GivenOptions`](options::GivenOptions) the options as users give them. With equal
+//! options, a job writes the bytes that the command line writes:
 //!
 //! ```no_run
 //! # use std::path::Path;
 //! # use gpu_smooth::Backend;
-//! # use gpu_smooth_job::{Job, RunRequest, SlideBy, TargetKind, TargetRequest};
+//! # use gpu_smooth_job::options::GivenOptions;
+//! # use gpu_smooth_job::{Job, TargetKind, TargetRequest};
 //! # use mesh_io::MeshFile;
 //! // gpu-smooth in.msh out.msh --engine cpu --slide --target keep-size --max-sweeps 50
 //! let file = MeshFile::read(Path::new("in.msh"))?;
 //! let target = TargetRequest { kind: TargetKind::KeepSize, ..TargetRequest::default() };
-//! let job = Job::of_file(&file)?.slide(SlideBy::default()).target(target);
-//! let options = job.options(&RunRequest { max_sweeps: Some(50), ..RunRequest::default() });
+//! let given = GivenOptions::of(&[("slide", "true"), ("max-sweeps", "50")])?;
+//! let job = Job::of_file(&file)?.target(target).settings(given.settings())?;
+//! let options = job.options(&given.settings().run);
 //! job.smooth(&options, &Backend::Cpu)?.write(Path::new("out.msh"))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -38,6 +40,7 @@ mod domain;
 mod error;
 mod facts;
 mod job;
+pub mod options;
 mod plane;
 mod precision;
 mod run;

@@ -1,8 +1,8 @@
 //! The options of a run as users give them, by the words of all front ends.
 
-use gpu_smooth::options::{Derivatives, PNormExponent, Paper, Relaxed, WorstBy};
+use gpu_smooth::options::{Derivatives, PNormExponent, Paper, Relaxed};
 use gpu_smooth::precision::Precision;
-use gpu_smooth::{Goal, Guard, Method, Metric, Options, Scheme, Stopping};
+use gpu_smooth::{Goal, Method, Metric, Options, Scheme, Stopping};
 
 /// The share of the way to the desired f at which a run with a goal ends, if the user gives none.
 const FRACTION: f64 = 0.95;
@@ -43,18 +43,8 @@ pub struct RunRequest {
     pub fraction: Option<f64>,
     /// The desired f of a goal; `Some(None)` to search for it.
     pub desired: Option<Option<f64>>,
-    /// Largest number of sweeps.
-    pub max_sweeps: Option<u32>,
-    /// The guard of triangles.
-    pub guard: Guard,
-    /// Largest distance that a vertex may move, in lengths of an edge.
-    pub max_move: Option<f64>,
-    /// Whether the least altitude of the mesh is a lower limit for the altitudes of all triangles.
-    pub keep_altitude: bool,
-    /// The measure by which the worst triangles are improved after the sweeps.
-    pub improve_worst: Option<WorstBy>,
-    /// Whether the history has the objectives of all metrics.
-    pub track_all: bool,
+    /// The options that stand as they are: all but the scheme, the method, the end of the run, the precision and EDGE's norm.
+    pub options: Options,
 }
 
 impl RunRequest {
@@ -68,24 +58,18 @@ impl RunRequest {
     pub fn options(&self, default: Metric, stored: Precision) -> Options {
         let fraction = self.fraction.unwrap_or(FRACTION);
         let goal = Goal { fraction, desired: self.desired.flatten() };
-        let usual = Options::default();
         let stopping = match (self.has_goal(), self.tolerance) {
             (true, _) => Stopping::Goal(goal),
             (false, Some(tolerance)) => Stopping::Tolerance(tolerance),
-            (false, None) => usual.stopping,
+            (false, None) => Stopping::default(),
         };
-        let max_sweeps = self.max_sweeps.unwrap_or(usual.max_sweeps);
-        let options = usual
+        let options = self
+            .options
+            .clone()
             .scheme(self.scheme.clone().unwrap_or_else(|| default.into()))
             .method(self.method())
             .stopping(stopping)
-            .max_sweeps(max_sweeps)
-            .guard(self.guard)
-            .max_move(self.max_move)
-            .keep_altitude(self.keep_altitude)
-            .improve_worst(self.improve_worst)
-            .stored(stored)
-            .track_all(self.track_all);
+            .stored(stored);
         // By default, the exponent of runs with corrections doubles as far as the tolerance requires.
         let doubles_anyway = options.is_multilevel() && options.scheme.base() == Metric::Edge;
         let edge_norm = match self.doubles_exponent {

@@ -47,8 +47,8 @@ class MeshOptions(TypedDict, total=False):
     target: Target | None
     target_rings: int | None
     target_of: Literal["vertex", "place"] | None
-    surface: Surface | None
-    z: ThirdCoordinate | None
+    surface: Literal["plane", "sphere"] | None
+    z: Literal["coordinate", "data"] | None
     untangle: bool | None
 
 
@@ -56,7 +56,7 @@ class RunOptions(TypedDict, total=False):
     """Options of a run; `smooth` describes each."""
 
     scheme: str | Sequence[str] | None
-    engine: Literal["auto", "cpu", "gpu"] | None
+    engine: Literal["auto", "gpu", "cpu"] | None
     adapter: str | None
     max_sweeps: int | None
     tolerance: float | None

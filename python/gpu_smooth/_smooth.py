@@ -137,13 +137,14 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     regions : array_like of int, shape (m,), optional
         Region of each triangle. Vertices between regions stay, or slide along the lines between regions.
     slide : bool, default False
-        Let vertices of the boundary, of `lines` and between regions slide along them, from corner to corner. Two vertices
-        with equal coordinates, as on both sides of a crack, slide together.
+        Let vertices of the boundary, between regions and on lines slide along them, from corner to corner. Straight
+        lines stay straight; on other lines, vertices follow a cubic through the vertices of the given mesh. Two
+        vertices with equal coordinates, as on both sides of a crack, slide together.
     corner_angle : float, default 40
-        With `slide`: a vertex where a line turns by more degrees is a corner, and stays.
+        A vertex where a line turns by more than this angle is a corner, and stays where it is.
     hausdorff : float, optional
-        With `slide`: the largest distance of the new lines from the given ones, in the unit of the points. The default is
-        a tenth of the local edge length.
+        Largest distance of lines from the lines of the given mesh, in the unit of the mesh. The default is a tenth of
+        the local edge length.
     periodic : array_like of int, shape (k, 2), optional
         With `slide`: pairs of vertices that slide together.
     keep_layers : str or tuple of str and array_like, default "auto"
@@ -153,9 +154,9 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         the only walls that count, as `fixed` takes vertices. For a `meshio.Mesh`, `"rows=3,GROUP"` names groups of walls.
         If no other vertex is free, the points do not move, and a warning says so.
     only_bad : float, optional
-        Let only vertices move that are near a triangle with a larger inverse mean ratio.
+        Let only vertices move that are near a triangle with an inverse mean ratio above this number.
     rings : int, default 2
-        With `only_bad`: number of rings of triangles that count as near.
+        Number of rings of triangles, around the bad triangles of `only_bad`, that count as near.
     target : str, array_like or tuple, default "equilateral"
         Wanted elements: `"equilateral"` of any size, `"keep-size"` or `"keep-shape"` as in the given mesh (with
         `"keep-size"`, sizes weigh more on stretched meshes); an array of
@@ -163,66 +164,81 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         with edges of length 1 (x and y are `Result.axes` in other planes); or a tuple (points, triangles, array) with such an array on another mesh. Only ratios of
         sizes matter.
     target_rings : int, optional
-        With `"keep-size"` and `"keep-shape"`: number of rings over which sizes and shapes are averaged. The default is 0
-        for sizes and 1 for shapes.
+        Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise.
+        The default is 1 for keep-shape, 0 for keep-size.
     target_of : {"vertex", "place"}, optional
-        Whether targets move with the vertices, or belong to places. The default is "place" for targets of another mesh,
-        else "vertex".
+        Owner of targets: vertices, which carry them along, or places, so that targets are evaluated again at the new
+        positions of vertices. The default is place for targets on another mesh, else vertex.
     surface : {"plane", "sphere"}, default "plane"
-        Meaning of the coordinates: lengths, or longitude and latitude in degrees.
+        Meaning of coordinates: lengths in the plane, or longitude and latitude in degrees on a sphere, continued across
+        the meridian at which longitudes wrap.
     z : {"coordinate", "data"}, default "coordinate"
-        Meaning of third coordinates that differ. "coordinate": the mesh lies in a plane of any orientation, is smoothed in
-        it, and a curved surface is refused. "data": z is data of a mesh in x and y, such as depths, and each vertex keeps
-        its z. On the sphere, z is data.
+        Meaning of third coordinates that differ: a coordinate of a mesh that lies in any plane and is smoothed in it,
+        or data of a mesh in x and y, such as depths. A mesh on a curved surface is refused unless z is data. Each
+        vertex keeps its z if z is data, as it is on the sphere.
     untangle : bool, default False
-        Untangle the mesh first if triangles are inverted or flat.
+        Untangle the mesh first if triangles are inverted or flat: move free vertices until no triangle is. Done on the
+        CPU.
     scheme : str or sequence of str, optional
-        A metric, or several metrics in turn, such as `"imr"` or `"edge+imr"`; `metrics` lists them. The default is
-        `"imr"`, `"tmop-94"` for `"keep-size"`, and `"soft-size"` for given sizes.
-    engine : {"auto", "cpu", "gpu"}, default "auto"
-        Where to compute. "auto" takes a GPU if the run is estimated to end sooner, and never a software adapter.
+        The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first
+        judges convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94. Several metrics
+        may also be a list. `metrics` describes each. The default is imr, tmop-94 for `target="keep-size"`, and
+        soft-size for given sizes.
+    engine : {"auto", "gpu", "cpu"}, default "auto"
+        Where to compute: on a GPU adapter, even if it is software (gpu), on the CPU (cpu), or where the run is
+        estimated to be done first, but not on a software adapter (auto).
     adapter : str, optional
-        Text in the name of the GPU adapter; `adapters` lists them.
+        Take the first GPU adapter with this text in its name. `adapters` lists them.
     max_sweeps : int, default 1000
-        Largest number of sweeps.
+        Stop after this many sweeps at the latest.
     tolerance : float, default 1e-6
-        The run ends when the estimated distance of f to its limit, relative to f, is below.
+        Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep.
     fraction : float, optional
-        In place of `tolerance`: share of the way from the initial to the desired f, above 0 and at most 1.
+        Stop after this fraction of the reduction from the initial f to the desired f, instead of at the tolerance. Park
+        & Shontz use 0.95. The default is 0.95 with `desired`.
     desired : float or "auto", optional
-        The desired f; "auto" finds it by a run before. `fraction` is 0.95 by default with `desired`.
+        The desired f by the first metric; auto finds the optimum before the run, in tries of up to 5000 sweeps. The
+        default is auto with `fraction`.
     time_limit : float, optional
-        Seconds after which the run ends with the best points so far.
+        Stop after this many seconds, with the best mesh so far.
     method : {"auto", "multilevel", "relaxed", "paper"}, default "auto"
-        Sweeps with Newton steps of all vertices (CPU) or corrections from coarser levels (GPU), over-relaxed sweeps, or the
-        method of Park & Shontz.
+        Sweeps with Newton steps of all vertices or corrections from coarser levels of the mesh, by all metrics but area
+        (multilevel), over-relaxed sweeps (relaxed), or the plain sweeps of Park & Shontz (paper). auto takes relaxed
+        with `omega`, paper with `inner` or `derivatives`, and otherwise multilevel where the scheme allows corrections.
     omega : float, optional
-        Factor of over-relaxation, above 0 and below 2.
+        Over-relaxation factor of `method="relaxed"`, above 0 and below 2. The default is by metric; 1 if metrics
+        alternate.
     inner : int, default 1
-        Newton steps per visit of a vertex, from 1 to 1000, by method "paper".
+        Newton steps per visit of a vertex, by `method="paper"`.
     derivatives : {"analytic", "finite-difference"}, default "analytic"
-        Derivatives of the metrics, by method "paper".
+        How `method="paper"` differentiates metrics; finite differences only serve to test the paper's cost model.
     edge_norm : {"fixed", "continued"}, optional
-        Exponent of the p-norm that replaces the metric edge.
+        Exponent of the p-norm that replaces edge in Newton steps: 16 throughout (fixed), or doubled from 2 up to 8192
+        (continued; 512 without corrections from coarser levels), which reaches a lower f. The default is continued with
+        corrections, fixed without.
     guard : {"by-metric", "worst"}, default "by-metric"
-        "worst" lets no triangle become worse than the worst one before the run.
+        Bound on the inverse mean ratio of triangles after a step, measured under the `target`: by-metric bounds only
+        metrics without a barrier; worst lets no triangle exceed the initial maximum of the triangles with a free
+        vertex.
     improve_worst : bool or {"imr", "min-angle", "altitude"}, default False
-        Improve the worst triangles after the last sweep, by the inverse mean ratio (also True), angle or altitude.
-        "min-angle" is not for solvers that need orthogonal meshes, as angles above 90 degrees become more.
+        Improve the worst triangles after the last sweep, at a small cost in f: move the vertices around the worst
+        thousandth of the triangles until the largest imr is as small as it can be made, or the least angle or altitude
+        as large. Least angles grow at the cost of angles above 90 degrees, so min-angle is not for solvers that need
+        orthogonal meshes. True stands for imr.
     max_move : float, optional
-        Largest distance of a vertex from its place, in mean lengths of its edges.
+        Let no vertex move farther than this many times the mean length of the edges around it before the run.
     keep_altitude : bool, default False
-        Let no altitude fall below the least one before the run, which bounds the time step of explicit solvers.
+        Let no triangle's altitude fall below the least altitude of the given mesh, which bounds the time step of
+        explicit solvers.
     history : {"base", "all"}, default "base"
-        Whether the history of a result has f by the first metric, or by all metrics.
+        Which f the history of a run has: that of the first metric (base), or those of all metrics (all).
     on_sweep : callable, optional
         Called with a `Progress` between sweeps, about ten times a second. A true result or `StopIteration` ends the run
         with the best points so far; any other exception ends the run and is raised.
     checkpoint : str, bytes or path-like, optional
         File to which the state of the run is saved, from which `resume` continues. A completed run removes the file.
     checkpoint_every : float, default 300
-        With `checkpoint` or `resume`: seconds between two checkpoints. A run that is ended by `time_limit`, `on_sweep` or
-        an exception saves its state too.
+        The time between two checkpoints. A run that is ended early saves its state too.
     resume : str, bytes or path-like, optional
         Continue the run that saved this checkpoint, on the same mesh with the same options. The state is saved to the
         same file, unless `checkpoint` names another. On the CPU, or on the GPU of the saved run, the new points have the

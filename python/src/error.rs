@@ -1,9 +1,9 @@
 //! Exceptions and warnings: the classes of `gpu_smooth/_errors.py`, raised with messages that name the argument, the index
 //! and a remedy.
 
-use gpu_smooth::options::{Feature, OptionError};
 use gpu_smooth::plane::NotPlanar;
 use gpu_smooth::{GpuError, MeshError, SmoothError};
+use gpu_smooth_job::options::{GivenOptions, Spelling};
 use mesh_io::{ReadError, WriteError};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -73,7 +73,9 @@ pub(crate) fn of_writing(py: Python<'_>, error: &WriteError) -> PyErr {
 pub(crate) fn of_run(py: Python<'_>, error: &SmoothError) -> PyErr {
     match error {
         SmoothError::Mesh(error) => of_mesh(py, error),
-        SmoothError::Option(error) => of_option(py, error),
+        SmoothError::Option(error) => {
+            option(py, &GivenOptions::default().refusal(error, Spelling::Python))
+        }
         SmoothError::Gpu(error) => of_gpu(py, error),
         SmoothError::Checkpoint(error) => option(py, &format!("resume: {error}")),
         _ => option(py, &error.to_string()),
@@ -91,45 +93,6 @@ pub(crate) fn of_gpu(py: Python<'_>, error: &GpuError) -> PyErr {
         _ => "Pass engine=\"cpu\" to compute on the CPU",
     };
     device(py, &format!("engine: {error}. {remedy}"))
-}
-
-/// Returns the exception of options that the library refuses, with the names of Python's arguments.
-pub(crate) fn of_option(py: Python<'_>, error: &OptionError) -> PyErr {
-    let text = match error {
-        OptionError::OutOfRange { option, value, range } => {
-            let option = match *option {
-                "newton steps" => "inner".to_owned(),
-                "scheme length" => "scheme".to_owned(),
-                name => name.replace(' ', "_"),
-            };
-            format!("{option}: the value is {value}, and must be {range}")
-        }
-        OptionError::Conflict { features: [a, b], why } => {
-            format!("{} does not go with {}: {why}", argument(*a), argument(*b))
-        }
-        _ => error.to_string(),
-    };
-    option(py, &text)
-}
-
-/// Returns the argument that selects a feature of a run.
-fn argument(feature: Feature) -> String {
-    match feature {
-        Feature::UnevenScheme => "scheme (of several metrics, or of edge)".to_owned(),
-        Feature::UncorrectedScheme => "scheme (without corrections, such as area)".to_owned(),
-        Feature::Multilevel => "method=\"multilevel\"".to_owned(),
-        Feature::FiniteDifferences => "derivatives=\"finite-difference\"".to_owned(),
-        Feature::Goal => "fraction or desired".to_owned(),
-        Feature::WorstGuard => "guard=\"worst\"".to_owned(),
-        Feature::MaxMove => "max_move".to_owned(),
-        Feature::KeepAltitude => "keep_altitude".to_owned(),
-        Feature::ImproveWorst => "improve_worst".to_owned(),
-        Feature::Slide => "slide".to_owned(),
-        Feature::Targets => "target".to_owned(),
-        Feature::TargetField => "target (of places)".to_owned(),
-        Feature::Untangle => "untangle".to_owned(),
-        other => other.to_string(),
-    }
 }
 
 /// Returns the exception of a mesh that cannot be untangled.

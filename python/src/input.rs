@@ -76,16 +76,19 @@ impl Input {
         if options.surface() == Surface::Sphere {
             domain.lay_out_on_sphere(stored)?;
         }
-        movement::fix_far_from_bad(&mut domain, options)?;
+        let settings = options.settings();
+        if let Some(limit) = settings.only_bad {
+            domain.fix_far_from_bad(limit, settings.rings_of_bad())?;
+        }
         let layers = movement::keep_layers(&mut domain, options, remarks)?;
-        if !options.slides {
+        if !options.settings().slides {
             remarks.interfaces(domain.interface_vertices().len());
         }
-        if options.surface.is_none() && look_like_degrees(&domain.mesh().points, false) {
+        if !options.has("surface") && look_like_degrees(&domain.mesh().points, false) {
             remarks.degrees();
         }
         let mut tangled = None;
-        if options.untangles
+        if options.settings().untangles
             && let Some(points) = untangled(domain.mesh(), stored, observer)?
         {
             tangled = Some(domain.replace_points(points));
@@ -133,7 +136,7 @@ impl Layout {
         }
         let metric = options.target_kind().default_metric();
         remarks.targets(&targets.set(smoother, self.domain.chart(), metric)?);
-        if options.slides {
+        if options.settings().slides {
             movement::slide(options, &self.domain, smoother, remarks)?;
         }
         Ok(())

@@ -48,7 +48,7 @@ mod _native {
     use crate::smoother::{Smoother, smooth};
     #[pymodule_export]
     use crate::tables::{
-        adapters, check_option_names, measures, mesh_options, metrics, run_options,
+        adapters, check_option_names, measures, mesh_options, metrics, options, run_options,
     };
 
     #[pymodule_init]

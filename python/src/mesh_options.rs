@@ -1,9 +1,11 @@
 //! The options that belong to a mesh: vertices that may move, targets and the surface of coordinates.
 
+use std::ops::Deref;
+
 use gpu_smooth::layers::KeepLayers;
-use gpu_smooth::options::OptionRange;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::{Mesh, MeshError};
+use gpu_smooth_job::options::{Belongs, GivenOptions, Settings, Spelling};
 use gpu_smooth_job::{TargetKind, TargetRequest, TargetSource};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
@@ -13,25 +15,14 @@ use crate::error;
 use crate::run_options::{self, RunOptions};
 use crate::values::{self, Given, ThirdCoordinate};
 
-/// Names of the options of a mesh.
-pub(crate) const NAMES: &[&str] = &[
-    "fixed",
-    "lines",
-    "regions",
-    "slide",
-    "corner_angle",
-    "hausdorff",
-    "periodic",
-    "keep_layers",
-    "only_bad",
-    "rings",
-    "target",
-    "target_rings",
-    "target_of",
-    "surface",
-    "z",
-    "untangle",
-];
+/// Names of the options of a mesh that are not in the table.
+const OWN: [&str; 6] = ["fixed", "lines", "regions", "periodic", "keep_layers", "target"];
+
+/// Returns the names of the options of a mesh.
+pub(crate) fn names() -> Vec<String> {
+    let own = OWN.into_iter().map(str::to_owned);
+    own.chain(run_options::of_table(Belongs::ToMesh)).collect()
+}
 
 /// The target shape and size of elements.
 pub(crate) enum Target {
@@ -50,55 +41,41 @@ pub(crate) enum Target {
 
 /// The options that belong to a mesh.
 pub(crate) struct MeshOptions {
+    given: GivenOptions,
     /// Vertices that neither move nor slide.
     pub(crate) fixed: Vec<u32>,
     /// Edges whose vertices stay, or slide along the edges.
     pub(crate) lines: Vec<[u32; 2]>,
     /// Region of each triangle; empty without regions.
     pub(crate) regions: Vec<i64>,
-    pub(crate) slides: bool,
-    pub(crate) corner_angle: Option<f64>,
-    pub(crate) hausdorff: Option<f64>,
     /// Pairs of vertices that slide together.
     pub(crate) periodic: Vec<[u32; 2]>,
     /// Boundary layers that stay.
     pub(crate) keep_layers: KeepLayers,
     /// Vertices of the walls of these layers; `None` for all walls.
     pub(crate) walls: Option<Vec<u32>>,
-    /// Inverse mean ratio of bad triangles; only vertices near bad triangles move.
-    pub(crate) only_bad: Option<f64>,
-    pub(crate) rings: Option<u32>,
     pub(crate) target: Target,
-    pub(crate) target_rings: Option<u32>,
-    /// Whether targets belong to places.
-    pub(crate) of_places: Option<bool>,
-    /// Surface of the coordinates; `None` if the caller does not name it.
-    pub(crate) surface: Option<Surface>,
-    /// Meaning of third coordinates.
-    pub(crate) z: ThirdCoordinate,
-    pub(crate) untangles: bool,
+}
+
+impl Deref for MeshOptions {
+    type Target = GivenOptions;
+
+    fn deref(&self) -> &GivenOptions {
+        &self.given
+    }
 }
 
 impl MeshOptions {
     fn new() -> Self {
         Self {
+            given: GivenOptions::default(),
             fixed: Vec::new(),
             lines: Vec::new(),
             regions: Vec::new(),
-            slides: false,
-            corner_angle: None,
-            hausdorff: None,
             periodic: Vec::new(),
             keep_layers: KeepLayers::Auto,
             walls: None,
-            only_bad: None,
-            rings: None,
             target: Target::Equilateral,
-            target_rings: None,
-            of_places: None,
-            surface: None,
-            z: ThirdCoordinate::Coordinate,
-            untangles: false,
         }
     }
 
@@ -106,13 +83,14 @@ impl MeshOptions {
     fn set(&mut self, given: Given<'_, '_>, size: [usize; 2]) -> PyResult<bool> {
         let Given { name, value } = given;
         let [vertices, triangles] = size;
+        if let Some(row) = GivenOptions::row(name).filter(|row| row.belongs == Belongs::ToMesh) {
+            given.set(row, &mut self.given)?;
+            return Ok(true);
+        }
         match name {
             "fixed" => self.fixed = arrays::vertex_set(name, value, vertices)?,
             "lines" => self.lines = arrays::pairs(name, value, vertices)?,
             "regions" => self.regions = arrays::labels(name, value, triangles)?,
-            "slide" => self.slides = given.flag()?,
-            "corner_angle" => self.corner_angle = Some(given.number(OptionRange::CORNER_ANGLE)?),
-            "hausdorff" => self.hausdorff = Some(given.number(OptionRange::HAUSDORFF)?),
             "periodic" => self.periodic = arrays::pairs(name, value, vertices)?,
             "keep_layers" => {
                 let words = "\"auto\", \"none\", \"rows=N\" with N from 1 to 1000, or \"within=DISTANCE\", alone or in a \
@@ -132,59 +110,37 @@ impl MeshOptions {
                     self.walls = Some(arrays::vertex_set("keep_layers[1]", &walls, vertices)?);
                 }
             }
-            "only_bad" => {
-                let is_ratio = |ratio: f64| ratio >= 1.0 && ratio.is_finite();
-                self.only_bad =
-                    Some(given.number_in("an inverse mean ratio, 1 or above", is_ratio)?);
-            }
-            "rings" => self.rings = Some(given.count(0, u32::MAX)?),
             "target" => self.target = target(given, vertices)?,
-            "target_rings" => self.target_rings = Some(given.count(0, 1000)?),
-            "target_of" => {
-                self.of_places = Some(given.word(&[("vertex", false), ("place", true)])?)
-            }
-            "surface" => {
-                let surfaces = [("plane", Surface::Plane), ("sphere", Surface::Sphere)];
-                self.surface = Some(given.word(&surfaces)?);
-            }
-            "z" => self.z = given.third_coordinate()?,
-            "untangle" => self.untangles = given.flag()?,
             _ => return Ok(false),
         }
         Ok(true)
     }
 
-    /// Checks for options that need another option.
-    fn check(&self, py: Python<'_>) -> PyResult<()> {
-        let has_slide_option =
-            self.corner_angle.is_some() || self.hausdorff.is_some() || !self.periodic.is_empty();
-        let refusals = [
-            (
-                has_slide_option && !self.slides,
-                "corner_angle, hausdorff and periodic need slide=True. Drop them, or pass it",
-            ),
-            (
-                self.rings.is_some() && self.only_bad.is_none(),
-                "rings needs only_bad. Drop it, or pass it",
-            ),
-            (
-                self.target_rings.is_some() && !self.target_kind().keeps(),
-                "target_rings needs target=\"keep-size\" or \"keep-shape\". Drop it, or pass one of them",
-            ),
-            (
-                self.of_places == Some(true) && matches!(self.target, Target::Equilateral),
-                "target_of needs a target. Drop it, or pass one",
-            ),
-        ];
-        match refusals.iter().find(|(is_refused, _)| *is_refused) {
-            Some((_, text)) => Err(error::option(py, text)),
-            None => Ok(()),
+    /// Checks the options of the mesh, and the options of a run on the mesh, for contradictions.
+    pub(crate) fn check(&self, py: Python<'_>, run: &RunOptions) -> PyResult<()> {
+        if !self.periodic.is_empty() && !self.has("slide") {
+            let text = "periodic needs slide=True. Drop it, or pass slide=True";
+            return Err(error::option(py, text));
         }
+        let kind = self.target_kind();
+        let is_on_background = matches!(self.target, Target::Background { .. });
+        let is_of_places = self.settings().of_places.unwrap_or(is_on_background);
+        let features = self.features(kind, is_of_places && kind != TargetKind::Equilateral);
+        let checked = self.and(run).check(kind, &features, Spelling::Python);
+        checked.map_err(|text| error::option(py, &text))
     }
 
     /// Returns the surface of the coordinates.
     pub(crate) fn surface(&self) -> Surface {
-        self.surface.unwrap_or(Surface::Plane)
+        self.settings().surface
+    }
+
+    /// Returns the meaning of third coordinates.
+    pub(crate) fn z(&self) -> ThirdCoordinate {
+        match self.settings().z_is_data {
+            true => ThirdCoordinate::Data,
+            false => ThirdCoordinate::Coordinate,
+        }
     }
 
     /// Returns the kind of the target.
@@ -213,7 +169,7 @@ impl MeshOptions {
                 TargetSource::Background(Box::new(field))
             }
         };
-        let (rings, of_places) = (self.target_rings, self.of_places);
+        let Settings { target_rings: rings, of_places, .. } = *self.settings();
         Ok(TargetRequest { kind, source, rings, of_places, surface })
     }
 }
@@ -257,6 +213,11 @@ fn checked(name: &str, values: PerVertex, value: &Bound<'_, PyAny>) -> PyResult<
     }
 }
 
+/// Returns the names of all options of smoothing.
+pub(crate) fn all_names() -> Vec<String> {
+    [names(), run_options::names()].concat()
+}
+
 /// The options of a call.
 pub(crate) struct CallOptions {
     pub(crate) mesh: MeshOptions,
@@ -275,16 +236,15 @@ impl CallOptions {
             let name: String = name.extract()?;
             let given = Given { name: &name, value: &value };
             let is_known = match value.is_none() {
-                true => NAMES.contains(&&*name) || run_options::NAMES.contains(&&*name),
+                true => all_names().contains(&name),
                 false => all.mesh.set(given, size)? || all.run.set(given)?,
             };
             if !is_known {
-                let names: Vec<&str> = NAMES.iter().chain(run_options::NAMES).copied().collect();
-                return Err(values::unknown(py, &name, "smoothing", &names));
+                return Err(values::unknown(py, &name, "smoothing", &all_names()));
             }
         }
-        all.mesh.check(py)?;
         all.run.check(py)?;
+        all.mesh.check(py, &all.run)?;
         Ok(all)
     }
 }

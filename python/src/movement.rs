@@ -1,7 +1,7 @@
 //! The vertices of a mesh that stay, slide or move, by the options of the mesh.
 
 use gpu_smooth::layers::{KeepLayers, Layers};
-use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, select};
+use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology};
 use gpu_smooth_job::{Domain, SlideBy, overlooks_boundary};
 
 use crate::mesh_options::MeshOptions;
@@ -16,19 +16,6 @@ pub(crate) fn domain(mesh: Mesh, options: &MeshOptions) -> Result<Domain, MeshEr
         domain.pair(options.periodic.clone());
     }
     Ok(domain)
-}
-
-/// Fixes the vertices that are far from bad triangles, if the options ask for that.
-pub(crate) fn fix_far_from_bad(
-    domain: &mut Domain,
-    options: &MeshOptions,
-) -> Result<(), MeshError> {
-    let Some(limit) = options.only_bad else { return Ok(()) };
-    let topology = Topology::new(domain.mesh())?;
-    let bad = select::triangles_above(&domain.mesh().points, &topology, limit);
-    let near = select::vertices_near(&topology, &bad, options.rings.unwrap_or(2));
-    drop(topology);
-    domain.fix_all_but(&near)
 }
 
 /// Returns the boundary layers that stay. Fixes their vertices, which untangling leaves alone too, unless no other vertex
@@ -78,8 +65,8 @@ pub(crate) fn slide(
     remarks: &mut Remarks<'_>,
 ) -> Result<(), SmoothError> {
     let mut by = SlideBy::default();
-    by.corner_angle = options.corner_angle.unwrap_or(by.corner_angle);
-    by.hausdorff = options.hausdorff;
+    by.corner_angle = options.settings().corner_angle.unwrap_or(by.corner_angle);
+    by.hausdorff = options.settings().hausdorff;
     let curves = domain.curves(&smoother.mesh().points, smoother.topology(), &by);
     let count = smoother.set_slide(Some(&curves.slide))?;
     remarks.sliding(smoother, count, curves.has_lost_pairs);

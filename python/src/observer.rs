@@ -24,7 +24,7 @@ pub(crate) struct RunObserver<'a> {
 impl<'a> RunObserver<'a> {
     /// Makes the observer of a run that begins now.
     pub(crate) fn new(options: &'a RunOptions) -> Self {
-        let end = options.time_limit().and_then(|limit| Instant::now().checked_add(limit));
+        let end = options.settings().time_limit.and_then(|limit| Instant::now().checked_add(limit));
         Self {
             on_sweep: options.on_sweep(),
             end,

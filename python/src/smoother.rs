@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use gpu_smooth::options::Feature;
 use gpu_smooth::plane::Plane;
 use gpu_smooth::{Backend, Checkpoint, Mesh, MeshError, Options, Smoother as PreparedMesh};
 use gpu_smooth_job::{Adapted, CheckpointFile, EngineRequest};
@@ -11,7 +10,6 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{self, Points, PointsForm};
 use crate::engine;
-use crate::error;
 use crate::input::{Failure, Input, Layout};
 use crate::mesh_options::{CallOptions, MeshOptions, Target};
 use crate::observer::RunObserver;
@@ -59,6 +57,7 @@ impl Smoother {
         }
         run.check(py)?;
         let Prepared { smoother, layout, options, form, .. } = &*self.0;
+        options.check(py, &run)?;
         let plan = RunPlan::new(py, &run, options, form, smoother)?;
         let observer = RunObserver::new(&run);
         let done = threads::watched(py, &observer, || {
@@ -106,7 +105,7 @@ impl Call {
         let size = [read.xy.len(), triangles.len()];
         let mut options = CallOptions::of_call(py, options, size)?;
         let Points { xy, form } =
-            plane::lay_out(py, "points", read, options.mesh.z, options.mesh.surface())?;
+            plane::lay_out(py, "points", read, options.mesh.z(), options.mesh.surface())?;
         if let Target::Background { points, .. } = &mut options.mesh.target {
             **points = plane::lay_out_likewise(py, "target[0]", std::mem::take(points), &form)?;
         }
@@ -135,15 +134,14 @@ impl<'a> RunPlan<'a> {
         form: &'a PointsForm,
         smoother: &PreparedMesh<'_>,
     ) -> PyResult<Self> {
-        let options = run.library(form.precision(), mesh.target_kind().default_metric());
-        let untangle = if mesh.untangles { &[Feature::Untangle][..] } else { &[] };
-        options.check_with(untangle).map_err(|error| error::of_option(py, &error))?;
+        let request = &run.settings().run;
+        let options = request.options(mesh.target_kind().default_metric(), form.precision());
         let checkpoints = run.checkpoint_file();
         let resumed = run.resume().map(|path| recovery::resumed(py, path)).transpose()?;
         if let Some(plan) = &checkpoints {
             recovery::check(py, plan, run.resume())?;
         }
-        let engine = run.engine();
+        let engine = run.settings().engine();
         let backend = match (&resumed, &engine) {
             (Some(checkpoint), EngineRequest::Auto) => engine::of_checkpoint(py, checkpoint)?,
             _ => engine::open(py, &engine, smoother.size(), &options)?,

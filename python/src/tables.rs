@@ -2,6 +2,7 @@
 
 use gpu_smooth::measure::{Better, Measure};
 use gpu_smooth::{Metric, gpu};
+use gpu_smooth_job::options::{Belongs, Kind, OPTIONS, OptionRow, Spelling};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -12,21 +13,65 @@ use crate::{mesh_options as of_mesh, run_options as of_run};
 
 /// Returns the names of the options that belong to a mesh.
 #[pyfunction]
-pub(crate) fn mesh_options() -> Vec<&'static str> {
-    of_mesh::NAMES.to_vec()
+pub(crate) fn mesh_options() -> Vec<String> {
+    of_mesh::names()
 }
 
 /// Returns the names of the options of a run.
 #[pyfunction]
-pub(crate) fn run_options() -> Vec<&'static str> {
-    of_run::NAMES.to_vec()
+pub(crate) fn run_options() -> Vec<String> {
+    of_run::names()
+}
+
+/// Returns the options of the table, as a dict each: the name, whether it belongs to a mesh, its type as in docstrings, its type
+/// as an annotation, its default, and its description.
+#[pyfunction]
+pub(crate) fn options(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |row: &OptionRow| {
+        let quoted = |words: &[&str]| {
+            words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
+        };
+        let (kind, annotation) = match row.kind {
+            Kind::Flag(_) => ("bool".to_owned(), "bool".to_owned()),
+            Kind::Count(..) => ("int".to_owned(), "int".to_owned()),
+            Kind::Number(..) | Kind::Seconds(_) => ("float".to_owned(), "float".to_owned()),
+            Kind::NumberOrAuto(..) => {
+                ("float or \"auto\"".to_owned(), "float | Literal[\"auto\"]".to_owned())
+            }
+            Kind::Word(words, _) => {
+                (format!("{{{}}}", quoted(words)), format!("Literal[{}]", quoted(words)))
+            }
+            Kind::WordOrFlag(words, _) => (
+                format!("bool or {{{}}}", quoted(words)),
+                format!("bool | Literal[{}]", quoted(words)),
+            ),
+            Kind::Scheme(_) => {
+                ("str or sequence of str".to_owned(), "str | Sequence[str]".to_owned())
+            }
+            _ => ("str".to_owned(), "str".to_owned()),
+        };
+        let default = match row.kind {
+            Kind::Flag(_) | Kind::WordOrFlag(..) => "False".to_owned(),
+            Kind::Word(..) if !row.default.is_empty() => quoted(&[row.default]),
+            _ => row.default.to_owned(),
+        };
+        let described = PyDict::new(py);
+        described.set_item("name", row.name.replace('-', "_"))?;
+        described.set_item("is_of_mesh", row.belongs == Belongs::ToMesh)?;
+        described.set_item("type", kind)?;
+        described.set_item("annotation", annotation)?;
+        described.set_item("default", default)?;
+        described.set_item("description", row.help(Spelling::Python))?;
+        Ok(described)
+    };
+    OPTIONS.iter().map(row).collect()
 }
 
 /// Fails if smoothing has no option of one of these names.
 #[pyfunction]
 pub(crate) fn check_option_names(py: Python<'_>, given: Vec<String>) -> PyResult<()> {
-    let names = [of_mesh::NAMES, of_run::NAMES].concat();
-    match given.iter().find(|name| !names.contains(&name.as_str())) {
+    let names = of_mesh::all_names();
+    match given.iter().find(|name| !names.contains(name)) {
         Some(name) => Err(values::unknown(py, name, "smoothing", &names)),
         None => Ok(()),
     }

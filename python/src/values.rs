@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use gpu_smooth::options::OptionRange;
+use gpu_smooth_job::options::{GivenOptions, Kind, OptionRow};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
@@ -86,10 +87,50 @@ impl Given<'_, '_> {
         self.word(&[("coordinate", ThirdCoordinate::Coordinate), ("data", ThirdCoordinate::Data)])
     }
 
-    /// Returns a duration that is given in seconds.
-    pub(crate) fn seconds(&self) -> PyResult<Duration> {
-        let range = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
-        self.number_in("a number of seconds, 0 or above", range).map(Duration::from_secs_f64)
+    /// Sets an option of the table. A flag that is False is left out.
+    pub(crate) fn set(&self, row: &OptionRow, to: &mut GivenOptions) -> PyResult<()> {
+        let word = |words: &'static [&'static str]| {
+            let words: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
+            self.word(&words).map(str::to_owned)
+        };
+        let is = |text: &str| self.value.extract::<&str>().is_ok_and(|value| value == text);
+        let text = match row.kind {
+            Kind::Flag(_) if !self.flag()? => return Ok(()),
+            Kind::Flag(_) => "true".to_owned(),
+            Kind::Count([least, most], _) => self.count(least, most)?.to_string(),
+            Kind::Number(range, _) => self.number(range)?.to_string(),
+            Kind::NumberOrAuto(..) if is("auto") => "auto".to_owned(),
+            Kind::NumberOrAuto(range, _) => {
+                let words = format!("{} or \"auto\"", range.words);
+                self.number_in(&words, |number| range.contains(number))?.to_string()
+            }
+            Kind::Seconds(_) => {
+                let is_duration = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok();
+                self.number_in(&row.wanted(), is_duration)?.to_string()
+            }
+            Kind::Word(words, _) => word(words)?,
+            Kind::WordOrFlag(words, _) => match self.value.extract::<bool>() {
+                Ok(false) => return Ok(()),
+                Ok(true) => words[0].to_owned(),
+                Err(_) => word(words)?,
+            },
+            Kind::Scheme(_) => self.scheme()?,
+            _ => self.text()?,
+        };
+        to.set(row, &text)
+            .map_err(|refused| error::option(self.value.py(), &format!("{}: {refused}", self.name)))
+    }
+
+    /// Returns the text of a scheme such as `edge+imr`, or of a list of metrics.
+    fn scheme(&self) -> PyResult<String> {
+        let names: String = match self.value.extract::<Vec<String>>() {
+            Ok(names) if !self.value.is_instance_of::<PyString>() => names.join("+"),
+            _ => self
+                .value
+                .extract()
+                .map_err(|_| self.refused("a text such as \"imr\" or \"edge+imr\""))?,
+        };
+        Ok(names.replace('_', "-"))
     }
 
     /// Returns a path that is given as a text or a path-like object.
@@ -106,7 +147,7 @@ impl Given<'_, '_> {
 }
 
 /// Returns the `TypeError` for an option that `function` lacks. The message has the most similar of `names`.
-pub(crate) fn unknown(py: Python<'_>, name: &str, function: &str, names: &[&str]) -> PyErr {
+pub(crate) fn unknown(py: Python<'_>, name: &str, function: &str, names: &[String]) -> PyErr {
     let similar = py
         .import("difflib")
         .and_then(|difflib| difflib.call_method1("get_close_matches", (name, names.to_vec(), 1)))

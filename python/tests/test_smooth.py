@@ -12,7 +12,7 @@ import pytest
 from conftest import Points, Triangles, command_line, lattice, written
 
 import gpu_smooth
-from gpu_smooth import MeshError, MeshWarning, OptionError
+from gpu_smooth import MeshError, MeshWarning, OptionError, _native
 
 Mesh = tuple[Points, Triangles]
 METRICS = [metric.name for metric in gpu_smooth.metrics()]
@@ -32,31 +32,40 @@ def test_points_have_the_bits_of_the_command_line(
     assert not np.array_equal(smoothed, points)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"target": "keep-size"}, ["--target", "keep-size"]),
-        ({"target": "keep_shape", "target_rings": 4}, ["--target=keep-shape", "--target-rings=4"]),
-        ({"keep_layers": "none"}, ["--keep-layers", "none"]),
-        ({"target": "keep-shape", "target_of": "place"}, ["--target=keep-shape", "--target-of=place"]),
-        ({"method": "relaxed", "omega": 1.3}, ["--method", "relaxed", "--omega", "1.3"]),
-        ({"inner": 3, "tolerance": 1e-3}, ["--inner", "3", "--tolerance", "1e-3"]),
-        ({"method": "multilevel", "max_sweeps": 3}, ["--method=multilevel", "--max-sweeps=3"]),
-        ({"fraction": 0.5, "desired": 1.4}, ["--fraction", "0.5", "--desired", "1.4"]),
-        ({"desired": "auto"}, ["--desired", "auto"]),
-        ({"guard": "worst", "scheme": "rms"}, ["--guard", "worst", "--scheme", "rms"]),
-        ({"max_move": 0.1}, ["--max-move", "0.1"]),
-        ({"keep_altitude": True}, ["--keep-altitude"]),
-        ({"improve_worst": "min-angle"}, ["--improve-worst=min-angle"]),
-        ({"improve_worst": True}, ["--improve-worst"]),
-        ({"only_bad": 1.6, "rings": 0}, ["--only-bad", "1.6", "--rings", "0"]),
-        ({"slide": True, "corner_angle": 20}, ["--slide", "--corner-angle", "20"]),
-        ({"surface": "sphere"}, ["--surface", "sphere"]),
-        ({"surface": "sphere", "max_move": 0.2}, ["--surface", "sphere", "--max-move", "0.2"]),
-        ({"scheme": "edge", "edge_norm": "fixed"}, ["--scheme=edge", "--edge-norm=fixed"]),
-        ({"derivatives": "finite-difference"}, ["--derivatives", "finite-difference"]),
-    ],
-)
+# Options, and the same options on the command line.
+SAMPLES: list[tuple[dict[str, Any], list[str]]] = [
+    ({"target": "keep-size"}, ["--target", "keep-size"]),
+    ({"target": "keep_shape", "target_rings": 4}, ["--target=keep-shape", "--target-rings=4"]),
+    ({"keep_layers": "none"}, ["--keep-layers", "none"]),
+    ({"target": "keep-shape", "target_of": "place"}, ["--target=keep-shape", "--target-of=place"]),
+    ({"method": "relaxed", "omega": 1.3}, ["--method", "relaxed", "--omega", "1.3"]),
+    ({"inner": 3, "tolerance": 1e-3}, ["--inner", "3", "--tolerance", "1e-3"]),
+    ({"method": "multilevel", "max_sweeps": 3}, ["--method=multilevel", "--max-sweeps=3"]),
+    ({"fraction": 0.5, "desired": 1.4}, ["--fraction", "0.5", "--desired", "1.4"]),
+    ({"desired": "auto"}, ["--desired", "auto"]),
+    ({"guard": "worst", "scheme": "rms"}, ["--guard", "worst", "--scheme", "rms"]),
+    ({"max_move": 0.1}, ["--max-move", "0.1"]),
+    ({"keep_altitude": True}, ["--keep-altitude"]),
+    ({"improve_worst": "min-angle"}, ["--improve-worst=min-angle"]),
+    ({"improve_worst": True}, ["--improve-worst"]),
+    ({"only_bad": 1.6, "rings": 0}, ["--only-bad", "1.6", "--rings", "0"]),
+    ({"slide": True, "corner_angle": 20}, ["--slide", "--corner-angle", "20"]),
+    ({"surface": "sphere"}, ["--surface", "sphere"]),
+    ({"surface": "sphere", "max_move": 0.2}, ["--surface", "sphere", "--max-move", "0.2"]),
+    ({"scheme": "edge", "edge_norm": "fixed"}, ["--scheme=edge", "--edge-norm=fixed"]),
+    ({"derivatives": "finite-difference"}, ["--derivatives", "finite-difference"]),
+    ({"tolerance": 1e-2, "history": "all"}, ["--tolerance", "1e-2"]),
+    ({"slide": True, "hausdorff": 0.01}, ["--slide", "--hausdorff", "0.01"]),
+]
+
+
+def test_each_option_of_the_table_has_a_sample() -> None:
+    without = {"engine", "adapter", "time_limit", "checkpoint_every", "z", "untangle"}
+    names = {option["name"] for option in _native.options()}
+    assert names - without == {name for options, _ in SAMPLES for name in options} & names
+
+
+@pytest.mark.parametrize(("options", "words"), SAMPLES)
 @pytest.mark.filterwarnings("ignore:points. the mesh is:gpu_smooth.MeshWarning")
 def test_options_act_as_those_of_the_command_line(
     options: dict[str, Any], words: list[str], mesh: Mesh, tmp_path: Path
@@ -283,7 +292,7 @@ def test_a_smoother_runs_many_times(mesh: Mesh) -> None:
     corners = points[smoother.triangles]
     edges = corners[:, 1:] - corners[:, :1]
     assert (edges[:, 0, 0] * edges[:, 1, 1] > edges[:, 0, 1] * edges[:, 1, 0]).all()
-    first = smoother.run(scheme="imr", max_sweeps=2)
+    first = smoother.run(scheme="shape-size", max_sweeps=2)
     second = smoother.run()
     assert first.sweeps == 2 and second.stop == "converged"
     same = gpu_smooth.smooth(points, triangles[:, ::-1], target="keep-size", fixed=[30])

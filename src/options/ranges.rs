@@ -45,6 +45,9 @@ impl OptionRange {
         Self::new("corner angle", "an angle from 0 to 180 degrees", |angle| {
             (0.0..=180.0).contains(&angle)
         });
+    /// Inverse mean ratio of a triangle.
+    pub const RATIO: Self =
+        Self::new("ratio", "a number of at least 1", |ratio| ratio >= 1.0 && ratio.is_finite());
     /// [`Slide::hausdorff`](crate::Slide::hausdorff).
     pub const HAUSDORFF: Self = Self::new("hausdorff", "a length above 0", is_positive);
 

@@ -12,78 +12,25 @@ use crate::options::stopping::{Goal, Stopping};
 use crate::options::worst_by::WorstBy;
 use crate::precision::Precision;
 
-/// The options of a run. The mesh, its targets and its sliding vertices are not options: they belong to the
-/// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR, with Newton steps of all vertices at the end, until at
-/// most 1e-6 of f is left to gain, and makes neither the least angle nor the worst inverse mean ratio worse; see
-/// [`Floored`](crate::outcome::Floored).
-///
-/// Each option has a setter, as versions to come may have more options:
-///
-/// ```
-/// use gpu_smooth::{Metric, Options, Stopping};
-///
-/// let options = Options::default().scheme(Metric::Rms.into()).stopping(Stopping::Tolerance(1e-4));
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Options {
-    /// The metric, or several metrics that alternate. The first metric judges convergence.
-    pub scheme: Scheme,
-    /// The method by which sweeps lower the objective.
-    pub method: Method,
-    /// The criterion that ends the run before `max_sweeps` sweeps.
-    pub stopping: Stopping,
-    /// Largest number of sweeps.
-    pub max_sweeps: u32,
-    /// A limit on the inverse mean ratio of triangles after a step. No step ever inverts a triangle.
-    pub guard: Guard,
-    /// Largest distance of a vertex from its position before the run, divided by the mean length of its edges before
-    /// the run. Above 0; `None` for no bound. Only for whole runs.
-    pub max_move: Option<f64>,
-    /// Whether every triangle must keep an altitude of at least the least altitude in the mesh before the run, which
-    /// bounds the time step of explicit solvers. Only for whole runs.
-    pub keep_altitude: bool,
-    /// Measure by which the worst triangles are improved after the last sweep, on the CPU; `None` for no improvement.
-    /// Free vertices around the worst thousandth of the triangles (at least 10, at most 1000 triangles) move so that
-    /// the worst triangle around them becomes less bad, and no other triangle around them becomes worse than that
-    /// triangle was. f may rise a little. If the worst triangle of the mesh becomes no better, no vertex moves. Only
-    /// for whole runs, and not after a canceled run.
-    pub improve_worst: Option<WorstBy>,
-    /// Precision of the file or buffer that will store the result. The run rounds all positions, fixed vertices
-    /// included, to this precision before the final checks: the rounded mesh has no inverted triangle and a lower f.
-    pub stored: Precision,
-    /// Exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`] in runs
-    /// with corrections, up to an exponent that suffices for the tolerance, and [`PNormExponent::FIXED`] in runs of
-    /// sweeps alone.
-    pub edge_norm: Option<PNormExponent>,
-    /// Whether the history holds the objective of every metric, or of the base metric alone.
-    pub track_all: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            scheme: Metric::Imr.into(),
-            method: Method::Auto,
-            stopping: Stopping::default(),
-            max_sweeps: 1000,
-            guard: Guard::ByMetric,
-            max_move: None,
-            keep_altitude: false,
-            improve_worst: None,
-            stored: Precision::Double,
-            edge_norm: None,
-            track_all: false,
+/// Declares the options of a run, each with its description, type and default. A setter has the name of its option.
+macro_rules! options {
+    ($(#[$doc:meta])* $options:ident { $($(#[$of:meta])* $name:ident: $kind:ty = $default:expr,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub struct $options {
+            $($(#[$of])* pub $name: $kind,)*
         }
-    }
-}
 
-/// Declares a setter for each option. A setter has the name of its field, which has the description.
-macro_rules! setters {
-    ($($(#[$doc:meta])* $name:ident: $kind:ty,)*) => {
-        impl Options {
+        impl Default for $options {
+            fn default() -> Self {
+                Self { $($name: $default,)* }
+            }
+        }
+
+        impl $options {
             $(
-                $(#[$doc])*
+                #[doc = concat!("Sets [`", stringify!($name), "`](Self#structfield.", stringify!($name), ").")]
                 #[must_use]
                 pub fn $name(mut self, $name: $kind) -> Self {
                     self.$name = $name;
@@ -94,29 +41,52 @@ macro_rules! setters {
     };
 }
 
-setters! {
-    /// Sets the metric, or several metrics that alternate.
-    scheme: Scheme,
-    /// Sets the method by which sweeps lower the objective.
-    method: Method,
-    /// Sets the criterion that ends the run.
-    stopping: Stopping,
-    /// Sets the largest number of sweeps.
-    max_sweeps: u32,
-    /// Sets the limit on the inverse mean ratio of triangles after a step.
-    guard: Guard,
-    /// Sets the largest distance that a vertex may move, in lengths of its edges.
-    max_move: Option<f64>,
-    /// Sets whether every triangle must keep the least altitude of the mesh.
-    keep_altitude: bool,
-    /// Sets the measure by which the worst triangles are improved after the last sweep.
-    improve_worst: Option<WorstBy>,
-    /// Sets the precision of the file or buffer that will store the result.
-    stored: Precision,
-    /// Sets the exponent of the p-norm that replaces EDGE in Newton's method.
-    edge_norm: Option<PNormExponent>,
-    /// Sets whether the history holds the objective of every metric.
-    track_all: bool,
+options! {
+    /// The options of a run. The mesh, its targets and its sliding vertices are not options: they belong to the
+    /// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR, with Newton steps of all vertices at the end, until at
+    /// most 1e-6 of f is left to gain, and makes neither the least angle nor the worst inverse mean ratio worse; see
+    /// [`Floored`](crate::outcome::Floored).
+    ///
+    /// Each option has a setter, as versions to come may have more options:
+    ///
+    /// ```
+    /// use gpu_smooth::{Metric, Options, Stopping};
+    ///
+    /// let options = Options::default().scheme(Metric::Rms.into()).stopping(Stopping::Tolerance(1e-4));
+    /// ```
+    Options {
+        /// The metric, or several metrics that alternate. The first metric judges convergence.
+        scheme: Scheme = Metric::Imr.into(),
+        /// The method by which sweeps lower the objective.
+        method: Method = Method::Auto,
+        /// The criterion that ends the run before `max_sweeps` sweeps.
+        stopping: Stopping = Stopping::default(),
+        /// Largest number of sweeps.
+        max_sweeps: u32 = 1000,
+        /// A limit on the inverse mean ratio of triangles after a step. No step ever inverts a triangle.
+        guard: Guard = Guard::ByMetric,
+        /// Largest distance of a vertex from its position before the run, divided by the mean length of its edges before
+        /// the run. Above 0; `None` for no bound. Only for whole runs.
+        max_move: Option<f64> = None,
+        /// Whether every triangle must keep an altitude of at least the least altitude in the mesh before the run, which
+        /// bounds the time step of explicit solvers. Only for whole runs.
+        keep_altitude: bool = false,
+        /// Measure by which the worst triangles are improved after the last sweep, on the CPU; `None` for no improvement.
+        /// Free vertices around the worst thousandth of the triangles (at least 10, at most 1000 triangles) move so that
+        /// the worst triangle around them becomes less bad, and no other triangle around them becomes worse than that
+        /// triangle was. f may rise a little. If the worst triangle of the mesh becomes no better, no vertex moves. Only
+        /// for whole runs, and not after a canceled run.
+        improve_worst: Option<WorstBy> = None,
+        /// Precision of the file or buffer that will store the result. The run rounds all positions, fixed vertices
+        /// included, to this precision before the final checks: the rounded mesh has no inverted triangle and a lower f.
+        stored: Precision = Precision::Double,
+        /// Exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`] in runs
+        /// with corrections, up to an exponent that suffices for the tolerance, and [`PNormExponent::FIXED`] in runs of
+        /// sweeps alone.
+        edge_norm: Option<PNormExponent> = None,
+        /// Whether the history holds the objective of every metric, or of the base metric alone.
+        track_all: bool = false,
+    }
 }
 
 impl Options {

@@ -3,15 +3,24 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use clap_complete::engine::ArgValueCompleter;
-use gpu_smooth::Scheme;
 
-use crate::args::EngineChoice;
+use gpu_smooth::{Metric, Scheme};
+use gpu_smooth_job::EngineRequest;
+
 use crate::args::ReadArgs;
-use crate::args::SurfaceArgs;
-use crate::args::{names, parse};
+use crate::args::parse;
+use crate::args::table::{OfBench, TableArgs};
 
 #[derive(Args)]
+#[command(mut_arg("scheme", |arg| {
+    arg.help("The metric to sweep by, or several in turn").default_value("imr").help_heading(None)
+}))]
+#[command(mut_arg("engine", |arg| {
+    arg.help("What to measure: the CPU and the best GPU adapter, or one of them").help_heading(None)
+}))]
+#[command(mut_arg("adapter", |arg| {
+    arg.help("Measure the first adapter with NAME in its name").help_heading(None)
+}))]
 pub(crate) struct BenchArgs {
     /// A mesh to measure on [default: lattices, see --vertices]
     pub(crate) mesh: Option<PathBuf>,
@@ -26,15 +35,8 @@ pub(crate) struct BenchArgs {
         allow_negative_numbers = true
     )]
     pub(crate) vertices: Vec<usize>,
-    /// The metric to sweep by, or several in turn
-    #[arg(long, default_value = "imr", value_name = "A[+B...]", value_parser = names::schemes(), hide_possible_values = true, add = ArgValueCompleter::new(names::completed_schemes))]
-    pub(crate) scheme: Scheme,
-    /// What to measure: the CPU and the best GPU adapter, or one of them
-    #[arg(long, value_enum, default_value = "auto")]
-    pub(crate) engine: EngineChoice,
-    /// Measure the first adapter with NAME in its name
-    #[arg(long, value_name = "NAME")]
-    pub(crate) adapter: Option<String>,
+    #[command(flatten)]
+    pub(crate) options: TableArgs<OfBench>,
     /// Time whole runs and their phases instead of single sweeps: set-up, coarser levels, compilation of kernels and waits
     /// for the device, with counts of the work that a run gives to the device
     #[arg(long, conflicts_with = "baseline")]
@@ -52,7 +54,27 @@ pub(crate) struct BenchArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) baseline: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) surface: SurfaceArgs,
-    #[command(flatten)]
     pub(crate) reading: ReadArgs,
+}
+
+impl BenchArgs {
+    /// Returns the scheme to measure.
+    pub(crate) fn scheme(&self) -> Scheme {
+        self.options.settings().run.scheme.clone().unwrap_or_else(|| Metric::Imr.into())
+    }
+
+    /// Returns whether the CPU is measured.
+    pub(crate) fn has_cpu(&self) -> bool {
+        matches!(self.options.settings().engine(), EngineRequest::Auto | EngineRequest::Cpu)
+    }
+
+    /// Returns whether a GPU is measured.
+    pub(crate) fn has_gpu(&self) -> bool {
+        self.options.settings().engine() != EngineRequest::Cpu
+    }
+
+    /// Returns the text in the name of the GPU adapter.
+    pub(crate) fn adapter(&self) -> Option<&str> {
+        self.options.settings().adapter.as_deref()
+    }
 }

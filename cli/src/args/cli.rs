@@ -8,9 +8,9 @@ use clap_complete::Shell;
 use mesh_io::{Conversion, Encoding, Format};
 
 use crate::args::names;
+use crate::args::table::{OfComparison, TableArgs};
 use crate::args::{
-    BenchArgs, FieldArgs, MoveArgs, QualityArgs, ReadArgs, SlideArgs, SmoothArgs, SurfaceArgs,
-    TryArgs,
+    BenchArgs, FieldArgs, MoveArgs, QualityArgs, ReadArgs, SideArgs, SmoothArgs, TryArgs,
 };
 
 /// Smooths a 2D triangle mesh: moves interior vertices until element quality is optimal, and never inverts a triangle.
@@ -163,9 +163,9 @@ pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) moving: MoveArgs,
     #[command(flatten)]
-    pub(crate) sliding: SlideArgs,
+    pub(crate) options: TableArgs<OfComparison>,
     #[command(flatten)]
-    pub(crate) surface: SurfaceArgs,
+    pub(crate) sides: SideArgs,
     #[command(flatten)]
     pub(crate) fields: FieldArgs,
     #[command(flatten)]

@@ -11,10 +11,9 @@ mod quality;
 mod read;
 mod sliding;
 mod smooth;
-mod surface;
+pub(crate) mod table;
 mod target;
 mod trial;
-mod worst;
 
 pub(crate) use bench::BenchArgs;
 pub(crate) use cli::{
@@ -23,15 +22,10 @@ pub(crate) use cli::{
 };
 pub(crate) use fields::FieldArgs;
 pub(crate) use movable::MoveArgs;
-pub(crate) use parse::Desired;
 pub(crate) use picture::PictureArgs;
 pub(crate) use quality::{QualityArgs, Threshold};
 pub(crate) use read::ReadArgs;
-pub(crate) use sliding::SlideArgs;
-pub(crate) use smooth::{
-    DerivativesChoice, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice, SmoothArgs,
-};
-pub(crate) use surface::{SurfaceArg, SurfaceArgs, ZArg};
-pub(crate) use target::{Owner, Target, TargetArgs};
+pub(crate) use sliding::SideArgs;
+pub(crate) use smooth::SmoothArgs;
+pub(crate) use target::{Target, TargetArgs};
 pub(crate) use trial::TryArgs;
-pub(crate) use worst::{WorstArgs, WorstChoice};

@@ -37,10 +37,4 @@ pub(crate) struct MoveArgs {
     /// Let only vertices move whose triangles all belong to these groups
     #[arg(long, value_name = "NAME|TAG,...", help_heading = HEADING, value_parser = parse::group_names, allow_hyphen_values = true)]
     pub(crate) only: Vec<String>,
-    /// Let only vertices move that are near a triangle with an inverse mean ratio above Q
-    #[arg(long, value_name = "Q", help_heading = HEADING, value_parser = parse::ratio, allow_negative_numbers = true)]
-    pub(crate) only_bad: Option<f64>,
-    /// Number of rings of triangles, around those of --only-bad, that count as near
-    #[arg(long, value_name = "N", default_value_t = 2, requires = "only_bad", help_heading = HEADING, allow_negative_numbers = true)]
-    pub(crate) rings: u32,
 }

@@ -6,10 +6,8 @@ use std::ffi::OsStr;
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
 use clap_complete::engine::CompletionCandidate;
-use gpu_smooth::{Metric, Scheme, measure::Measure};
+use gpu_smooth::{Metric, measure::Measure};
 use mesh_io::Format;
-
-use crate::args::parse;
 
 /// A parser of values that offers names as completions. Values beyond the offered names may be valid, such as
 /// `edge+imr`.
@@ -36,11 +34,6 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Offering<T> {
     }
 }
 
-/// Returns the parser of schemes, which offers the names of all metrics.
-pub(crate) fn schemes() -> Offering<Scheme> {
-    Offering { parse: parse::scheme, names: || metrics(|_| true) }
-}
-
 /// Returns the completions of an incomplete scheme: the scheme with each metric whose name begins like the last word.
 pub(crate) fn completed_schemes(scheme: &OsStr) -> Vec<CompletionCandidate> {
     let scheme = scheme.to_string_lossy();
@@ -60,34 +53,6 @@ pub(crate) fn measures() -> Offering<Measure> {
 pub(crate) fn metrics(is_wanted: impl Fn(Metric) -> bool) -> Vec<&'static str> {
     let wanted = Metric::ALL.iter().filter(|&&metric| is_wanted(metric));
     wanted.map(|metric| metric.name()).collect()
-}
-
-/// Joins names as in `a, b or c`.
-pub(crate) fn either(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [only] => (*only).to_owned(),
-        [before @ .., last] => format!("{} or {last}", before.join(", ")),
-    }
-}
-
-/// Returns the help text of `--scheme`.
-pub(crate) fn scheme_help() -> String {
-    let names = metrics(|_| true).join(", ");
-    format!(
-        "The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first judges \
-         convergence. Metrics: {names} (see `gpu-smooth metrics`) [default: imr; tmop-94 with --target keep-size, soft-size with size=SOURCE]"
-    )
-}
-
-/// Returns the help text of `--method`.
-pub(crate) fn method_help() -> String {
-    let uncorrected = either(&metrics(|metric| !metric.supports_multilevel()));
-    format!(
-        "Sweeps with Newton steps of all vertices or corrections from coarser levels of the mesh, by all metrics but \
-         {uncorrected} (multilevel), over-relaxed sweeps (relaxed), or the plain sweeps of Park & Shontz (paper). auto takes relaxed with --omega, paper with --inner or --derivatives, \
-         and otherwise multilevel where the scheme allows corrections"
-    )
 }
 
 /// Returns the help text of `--measure`.

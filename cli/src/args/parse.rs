@@ -1,33 +1,8 @@
 //! Parsers of the values of options.
 
-use std::time::Duration;
-
-use gpu_smooth::{Scheme, layers::KeepLayers, options::OptionRange};
+use gpu_smooth::{layers::KeepLayers, options::OptionRange};
 
 use crate::kept_layers::KeptLayers;
-
-/// The desired f of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Desired {
-    /// The optimum, which the run searches for.
-    Auto,
-    Value(f64),
-}
-
-impl Desired {
-    /// Returns the desired f as `Goal::desired` has it: `None` stands for the optimum.
-    pub(crate) fn value(self) -> Option<f64> {
-        match self {
-            Self::Auto => None,
-            Self::Value(value) => Some(value),
-        }
-    }
-}
-
-/// Parses a number and checks that `range` contains it.
-fn within(text: &str, range: &OptionRange) -> Result<f64, String> {
-    number(text, |value| range.contains(value), range.words)
-}
 
 /// Parses a number. If `fits` is false for the number, returns an error with `range`, the
 /// description of valid numbers.
@@ -87,22 +62,6 @@ pub(crate) fn area(text: &str) -> Result<[[f64; 2]; 2], String> {
     }
 }
 
-/// Parses an inverse mean ratio: a finite number from 1.
-pub(crate) fn ratio(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|q| *q >= 1.0 && q.is_finite());
-    number.ok_or_else(|| "give a number of at least 1, the ratio of an equilateral triangle".into())
-}
-
-/// Parses an angle in degrees.
-pub(crate) fn angle(text: &str) -> Result<f64, String> {
-    within(text, &OptionRange::CORNER_ANGLE)
-}
-
-/// Parses a length.
-pub(crate) fn distance(text: &str) -> Result<f64, String> {
-    within(text, &OptionRange::HAUSDORFF)
-}
-
 /// Parses the names of two groups with a comma between them.
 pub(crate) fn two_names(text: &str) -> Result<[String; 2], String> {
     match text.split_once(',').map(|(a, b)| [a.trim(), b.trim()]) {
@@ -121,45 +80,8 @@ pub(crate) fn field_name(text: &str) -> Result<String, String> {
 
 /// Parses a number that is not negative.
 pub(crate) fn nonnegative(text: &str) -> Result<f64, String> {
-    within(text, &OptionRange::TOLERANCE)
-}
-
-/// Parses a fraction of the reduction from the initial f to the desired f.
-pub(crate) fn fraction(text: &str) -> Result<f64, String> {
-    within(text, &OptionRange::FRACTION)
-}
-
-/// Parses a distance in lengths of edges.
-pub(crate) fn edges(text: &str) -> Result<f64, String> {
-    within(text, &OptionRange::MAX_MOVE)
-}
-
-/// Parses a factor of over-relaxation.
-pub(crate) fn omega(text: &str) -> Result<f64, String> {
-    within(text, &OptionRange::OMEGA)
-}
-
-/// Parses a scheme.
-pub(crate) fn scheme(text: &str) -> Result<Scheme, String> {
-    let scheme: Scheme = text.parse().map_err(|error| format!("{error}"))?;
-    let fits = scheme.period() <= Scheme::LONGEST;
-    let limit = || format!("a scheme can have {} metrics at most", Scheme::LONGEST);
-    if fits { Ok(scheme) } else { Err(limit()) }
-}
-
-/// Parses a desired f: a finite number, or `auto`.
-pub(crate) fn desired(text: &str) -> Result<Desired, String> {
-    match text {
-        "auto" => Ok(Desired::Auto),
-        _ => number(text, f64::is_finite, "a value of f, or auto").map(Desired::Value),
-    }
-}
-
-/// Parses a number of seconds above 0.
-pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
-    let range = "a number of seconds above 0";
-    let seconds = number(text, |s| s > 0.0, range)?;
-    Duration::try_from_secs_f64(seconds).map_err(|_| format!("it is too large; it must be {range}"))
+    let range = OptionRange::TOLERANCE;
+    number(text, |value| range.contains(value), range.words)
 }
 
 /// Parses the number of vertices of a lattice: an integer from 9 to 100,000,000.

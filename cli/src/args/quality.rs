@@ -8,8 +8,8 @@ use gpu_smooth::measure::{Better, Measure};
 
 use crate::args::PictureArgs;
 use crate::args::ReadArgs;
-use crate::args::SurfaceArgs;
 use crate::args::names;
+use crate::args::table::{OfCoordinates, TableArgs};
 
 // Arrows need a run. The option is accepted here only for the message that says so.
 #[derive(Args)]
@@ -55,7 +55,7 @@ pub(crate) struct QualityArgs {
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
-    pub(crate) surface: SurfaceArgs,
+    pub(crate) coordinates: TableArgs<OfCoordinates>,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
 }

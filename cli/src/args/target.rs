@@ -1,9 +1,7 @@
 //! Options of the target shapes and sizes of elements.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
-
-use crate::args::SurfaceArgs;
 
 const HEADING: &str = "Target elements";
 
@@ -18,21 +16,6 @@ pub(crate) struct TargetArgs {
     /// of gmsh (.pos) of scalars on triangles
     #[arg(long, default_value = "equilateral", value_name = "TARGET", help_heading = HEADING, value_parser = target, add = ArgValueCandidates::new(complete_targets))]
     pub(crate) target: Target,
-    /// Over how many rings of neighbors the sizes and shapes to keep are averaged: more leave less of the mesh's noise [default: 1 for keep-shape, 0 for keep-size]
-    #[arg(long, value_name = "N", help_heading = HEADING, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    pub(crate) target_rings: Option<u32>,
-    /// Owner of targets: vertices, which carry them along, or places, so that targets are evaluated again at the new
-    /// positions of vertices [default: place for a BACKGROUND, else vertex]
-    #[arg(long, value_enum, value_name = "WHAT", help_heading = HEADING)]
-    pub(crate) target_of: Option<Owner>,
-    #[command(flatten)]
-    pub(crate) surface: SurfaceArgs,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Owner {
-    Vertex,
-    Place,
 }
 
 #[derive(Clone, PartialEq, Eq)]

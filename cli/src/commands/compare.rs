@@ -11,7 +11,6 @@ use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest, T
 use crate::run::proof::{self, MeshVersion, Proof};
 use crate::terminal::shell_words::quoted;
 use crate::terminal::tell;
-use gpu_smooth::targets::Surface;
 use std::ffi::OsStr;
 
 /// Largest number of listed vertices, and of listed triangles.
@@ -20,10 +19,10 @@ const LISTED: usize = 10;
 /// Compares two files. Returns an error if the files differ in anything but movable vertices and
 /// interpolated data.
 pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
-    let (reading, surface) = (ReadRequest::from(&args.reading), Surface::from(&args.surface));
-    let z = ThirdCoordinate::of(&args.surface, &args.fields.interpolate);
-    let movable = MovableRequest::from(args.moving);
-    let slide = SlideRequest::of(args.sliding);
+    let (reading, settings) = (ReadRequest::from(&args.reading), args.options.settings());
+    let (surface, z) = (settings.surface, ThirdCoordinate::of(settings, &args.fields.interpolate));
+    let movable = MovableRequest::of(args.moving, settings);
+    let slide = SlideRequest::of(args.sides, settings);
     let fields = FieldsRequest::from(args.fields);
     let mut before = read(&args.before, &reading)?;
     let mut after = read(&args.after, &reading)?;

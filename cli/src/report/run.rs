@@ -22,6 +22,8 @@ pub(crate) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) untangled: Option<UntangleReport>,
     pub(crate) scheme: String,
+    /// The options of the table that the command line has, with their values.
+    pub(crate) options: serde_json::Map<String, serde_json::Value>,
     /// The target of the elements; `None` if elements are to be equilateral in the plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) target: Option<TargetReport>,
@@ -75,9 +77,6 @@ pub(crate) struct Report {
     pub(crate) goal: Option<GoalReport>,
     /// Number of vertices moved back because rounding had inverted a triangle.
     pub(crate) returned: usize,
-    /// Largest allowed move of a vertex, in lengths of an edge; `None` without `--max-move`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) max_move: Option<f64>,
     pub(crate) change: ChangeReport,
     /// Spacing at the walls. Without a report or a page, empty if nearly no triangle at a wall is flat.
     pub(crate) spacing: Vec<SpacingReport>,

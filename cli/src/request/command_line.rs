@@ -70,7 +70,7 @@ fn contradiction(cli: &Cli) -> Option<String> {
     match &cli.command {
         None => {
             let first = conflicts::first(OF_RUN, &cli.smooth);
-            first.or_else(|| conflicts::of_library(&cli.smooth))
+            first.or_else(|| conflicts::of_table(&cli.smooth))
         }
         Some(Command::Quality(args)) => conflicts::first(OF_QUALITY, args),
         Some(Command::Bench(args)) => conflicts::first(OF_BENCH, args),

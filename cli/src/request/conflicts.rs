@@ -1,16 +1,12 @@
 //! The tables of options that contradict each other, by command.
 
-use gpu_smooth::{Metric, OptionError, options::Feature};
+use gpu_smooth_job::TargetKind;
+use gpu_smooth_job::options::Spelling;
 use mesh_io::Format;
 
-use gpu_smooth_job::TargetKind;
-
-use crate::args::names;
 use crate::args::{
-    BenchArgs, CompareArgs, ConvertArgs, DerivativesChoice, EngineChoice, MethodChoice, MoveArgs,
-    QualityArgs, ReadArgs, SmoothArgs, SurfaceArg, Target, ZArg,
+    BenchArgs, CompareArgs, ConvertArgs, MoveArgs, QualityArgs, ReadArgs, SmoothArgs,
 };
-use crate::request::smooth::options;
 use crate::request::target::TargetRequest;
 
 /// Two options, or values of options, that do not go together.
@@ -39,41 +35,8 @@ pub(super) fn first<A>(table: &[Conflict<A>], args: &A) -> Option<String> {
 
 /// Conflicts between options of a run, in the order of the search.
 pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
-    row(["--target", "--scheme"], sizes_unseen, |a| {
-        a.target.kind().is_of_sizes() && !a.scheme().metrics().iter().any(sees_sizes)
-    }),
     row(["--target metric=VIEW", "a view of gmsh"], sizes_alone, |a| {
         a.target.kind() == TargetKind::Tensors && a.target.has_view()
-    }),
-    row(["--method multilevel", "--derivatives finite-difference"], of_paper, |a| {
-        is_multilevel(a) && has_finite_differences(a)
-    }),
-    row(["--method multilevel", "--inner"], of_paper, |a| is_multilevel(a) && a.inner != 1),
-    row(["--method relaxed", "--derivatives finite-difference"], of_paper, |a| {
-        is_relaxed(a) && has_finite_differences(a)
-    }),
-    row(["--method relaxed", "--inner"], of_paper, |a| is_relaxed(a) && a.inner != 1),
-    row(["--omega", "--derivatives finite-difference"], of_paper, |a| {
-        a.method == MethodChoice::Auto && a.omega.is_some() && has_finite_differences(a)
-    }),
-    row(["--omega", "--inner"], of_paper, |a| {
-        a.method == MethodChoice::Auto && a.omega.is_some() && a.inner != 1
-    }),
-    row(["--edge-norm", "edge in --scheme"], without, |a| {
-        a.edge_norm.is_some() && !a.scheme().metrics().contains(&Metric::Edge)
-    }),
-    row(["--target-rings", "--target keep-size or keep-shape"], without, |a| {
-        a.target.target_rings.is_some() && !a.target.kind().keeps()
-    }),
-    row(["--target-of", "another --target"], without, |a| {
-        a.target.target_of.is_some() && a.target.target == Target::Equilateral
-    }),
-    row(["--method paper", "--omega"], idle, |a| {
-        a.method == MethodChoice::Paper && a.omega.is_some()
-    }),
-    row(["--method multilevel", "--omega"], idle, |a| is_multilevel(a) && a.omega.is_some()),
-    row(["--engine cpu", "--adapter"], idle, |a| {
-        a.engine == EngineChoice::Cpu && a.adapter.is_some()
     }),
     row(REGIONS_OF_FREE, idle, |a| has_free_regions(&a.reading, &a.moving)),
 ];
@@ -96,12 +59,12 @@ pub(super) const OF_QUALITY: &[Conflict<QualityArgs>] = &[
 /// Conflicts between options of `bench`.
 pub(super) const OF_BENCH: &[Conflict<BenchArgs>] = &[
     row(["--engine cpu", "--adapter"], idle, |a| {
-        a.engine == EngineChoice::Cpu && a.adapter.is_some()
+        a.options.has("engine=cpu") && a.options.has("adapter")
     }),
     row(["--surface sphere", "a MESH"], without, |a| {
-        a.surface.surface == SurfaceArg::Sphere && a.mesh.is_none()
+        a.options.has("surface=sphere") && a.mesh.is_none()
     }),
-    row(["--z data", "a MESH"], without, |a| a.surface.z == ZArg::Data && a.mesh.is_none()),
+    row(["--z data", "a MESH"], without, |a| a.options.has("z=data") && a.mesh.is_none()),
 ];
 
 /// Conflicts between options of `convert`.
@@ -110,71 +73,19 @@ pub(super) const OF_CONVERT: &[Conflict<ConvertArgs>] =
         a.to == Some(Format::Triangle) && a.output.as_os_str() == "-"
     })];
 
-/// Returns the message for the first conflict in the library's table; `None` if the options of a run are valid.
-pub(super) fn of_library(args: &SmoothArgs) -> Option<String> {
-    let targets = args.target.target != Target::Equilateral
-        || args.target.surface.surface == SurfaceArg::Sphere;
-    let more = Feature::present([
-        (Feature::Slide, args.sliding.slide),
-        (Feature::Targets, targets),
-        (Feature::TargetField, TargetRequest::from(&args.target).is_of_places()),
-        (Feature::Untangle, args.untangle),
-    ]);
-    match options(args).check_with(&more) {
-        Err(OptionError::Conflict { features, why }) => {
-            let [a, b] = features.map(|feature| flag(feature, args));
-            let remedy = match features {
-                _ if features.contains(&Feature::TargetField) => " (--target-of vertex)",
-                _ => "",
-            };
-            Some(format!("{a} does not go with {b}: {why}{remedy}"))
-        }
-        // Other errors concern ranges, which parsers have checked.
-        Err(error) => Some(error.to_string()),
-        Ok(()) => None,
-    }
-}
-
-/// Returns the option of a command line by which a run has a feature.
-fn flag(feature: Feature, args: &SmoothArgs) -> String {
-    match feature {
-        Feature::UnevenScheme | Feature::UncorrectedScheme => format!("--scheme {}", args.scheme()),
-        Feature::Multilevel => "--method multilevel".into(),
-        Feature::FiniteDifferences => "--derivatives finite-difference".into(),
-        Feature::Goal if args.desired.is_none() => "--fraction".into(),
-        Feature::Goal => "--desired".into(),
-        Feature::WorstGuard => "--guard worst".into(),
-        Feature::MaxMove => "--max-move".into(),
-        Feature::KeepAltitude => "--keep-altitude".into(),
-        Feature::ImproveWorst => "--improve-worst".into(),
-        Feature::Slide => "--slide".into(),
-        Feature::Targets if args.target.target == Target::Equilateral => "--surface sphere".into(),
-        Feature::Targets => "--target".into(),
-        Feature::TargetField => "--target-of place".into(),
-        Feature::Untangle => "--untangle".into(),
-        other => other.to_string(),
-    }
+/// Returns the message for the first conflict in the table of options; `None` if the options of a run are valid.
+pub(super) fn of_table(args: &SmoothArgs) -> Option<String> {
+    let target = TargetRequest::of(&args.target, args.options.settings());
+    let more = args.options.features(target.kind, target.is_of_places());
+    args.options.check(target.kind, &more, Spelling::CommandLine).err()
 }
 
 fn idle<A>([a, b]: [&str; 2], _: &A) -> String {
     format!("{b} has no effect with {a}: drop one of them")
 }
 
-fn of_paper<A>([a, b]: [&str; 2], _: &A) -> String {
-    format!("{a} does not go with {b}, a setting of --method paper: drop one of them")
-}
-
 fn without<A>([option, wanted]: [&str; 2], _: &A) -> String {
     format!("{option} has no effect without {wanted}: drop it")
-}
-
-fn sizes_unseen(_: [&str; 2], args: &SmoothArgs) -> String {
-    let (scheme, target) = (args.scheme(), TargetRequest::from(&args.target).name());
-    let others =
-        names::either(&names::metrics(|metric| sees_sizes(&metric) && metric.has_barrier()));
-    format!(
-        "--target {target} has no effect on {scheme}, which sees no sizes: leave --scheme out, or take {others}"
-    )
 }
 
 fn sizes_alone(_: [&str; 2], args: &SmoothArgs) -> String {
@@ -201,22 +112,6 @@ fn has_free_regions(reading: &ReadArgs, moving: &MoveArgs) -> bool {
     reading.regions.is_some() && moving.free_interfaces
 }
 
-fn has_finite_differences(args: &SmoothArgs) -> bool {
-    args.derivatives == DerivativesChoice::FiniteDifference
-}
-
-fn is_multilevel(args: &SmoothArgs) -> bool {
-    args.method == MethodChoice::Multilevel
-}
-
-fn is_relaxed(args: &SmoothArgs) -> bool {
-    args.method == MethodChoice::Relaxed
-}
-
-fn sees_sizes(metric: &Metric) -> bool {
-    !metric.is_scale_invariant()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -228,22 +123,12 @@ mod tests {
     fn words(options: [&str; 2], view: &str) -> Vec<String> {
         let of = |option: &str| match (option, options) {
             ("--target metric=VIEW", _) => format!("--target metric={view}"),
-            ("--target", _) => "--target keep-size".to_owned(),
-            ("--scheme", _) => "--scheme imr".to_owned(),
-            ("--edge-norm", _) => "--edge-norm fixed".to_owned(),
-            ("--target-of", _) => "--target-of vertex".to_owned(),
-            ("--target-rings" | "--inner", _) => format!("{option} 3"),
-            ("--omega", _) => format!("{option} 0.5"),
             ("--adapter" | "--regions", _) => format!("{option} name"),
             ("--picture", _) => "--picture p.png".to_owned(),
             ("--picture-arrows", _) => "--picture p.png --picture-arrows".to_owned(),
             ("several meshes", _) => "another".to_owned(),
             // The other side of the pair has no words.
-            (
-                "a view of gmsh" | "no run" | "edge in --scheme" | "another --target" | "a MESH",
-                _,
-            )
-            | ("--target keep-size or keep-shape" | "--target keep-shape", _) => String::new(),
+            ("a view of gmsh" | "no run" | "a MESH", _) => String::new(),
             (option, _) => option.to_owned(),
         };
         options.map(of).join(" ").split_whitespace().map(str::to_owned).collect()
@@ -275,14 +160,28 @@ mod tests {
         check(OF_RUN, &["gpu-smooth", "in", "out"], |cli| &cli.smooth);
     }
 
-    /// Errors would name a feature in the library's terms if `flag` returned no option for the feature.
     #[test]
-    fn each_feature_of_a_run_has_an_option() {
-        let cli = Cli::try_parse_from(["gpu-smooth", "in", "out"]).unwrap();
-        for feature in Feature::ALL {
-            let is_encoded = matches!(feature, Feature::Encoded | Feature::EncodedCorrections);
-            let option = flag(feature, &cli.smooth);
-            assert!(is_encoded || option.starts_with("--"), "add an arm to `flag`: {option}");
+    fn each_pair_of_the_table_is_refused_in_words_of_the_command_line() {
+        for (words, message) in [
+            (
+                "--method paper --omega 0.5",
+                "--omega does not go with --method paper: it is a setting of --method relaxed",
+            ),
+            (
+                "--engine cpu --adapter name",
+                "--adapter does not go with --engine cpu: it names a GPU",
+            ),
+            (
+                "--target keep-size --scheme imr",
+                "--target keep-size has no effect on imr, which sees no sizes",
+            ),
+            ("--edge-norm fixed", "--edge-norm has no effect without edge in --scheme"),
+            ("--max-move 1 --untangle", "--max-move does not go with --untangle"),
+        ] {
+            let line = format!("gpu-smooth in out {words}");
+            let error =
+                checked(line.split(' ').map(Into::into)).err().map(|error| error.to_string());
+            assert!(error.is_some_and(|error| error.contains(message)), "{line}: {message}");
         }
     }
 

@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use gpu_smooth::layers::KeepLayers;
+use gpu_smooth_job::SlideBy;
+use gpu_smooth_job::options::Settings;
 
-use crate::args::{FieldArgs, MoveArgs, SlideArgs};
+use crate::args::{FieldArgs, MoveArgs, SideArgs};
 use crate::kept_layers::KeptLayers;
 
 /// The selection of vertices that may move. By default, vertices on constraints and between regions are fixed.
@@ -36,24 +38,16 @@ pub(crate) struct NearBad {
     pub(crate) rings: u32,
 }
 
-impl From<MoveArgs> for MovableRequest {
-    fn from(args: MoveArgs) -> Self {
-        let near_bad = args.only_bad.map(|above| NearBad { above, rings: args.rings });
-        let MoveArgs {
-            free_interfaces,
-            fix,
-            fix_vertices,
-            fix_array,
-            fix_box,
-            only,
-            keep_layers,
-            ..
-        } = args;
+impl MovableRequest {
+    /// Returns the request of the options.
+    pub(crate) fn of(args: MoveArgs, settings: &Settings) -> Self {
+        let rings = settings.rings_of_bad();
+        let near_bad = settings.only_bad.map(|above| NearBad { above, rings });
+        let MoveArgs { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, keep_layers } =
+            args;
         Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad, keep_layers }
     }
-}
 
-impl MovableRequest {
     /// Keeps boundary layers that are found, unless an option says otherwise.
     pub(crate) fn keeping_layers(self) -> Self {
         let found = || KeptLayers { keep: KeepLayers::Auto, groups: None };
@@ -74,9 +68,10 @@ pub(crate) struct SlideRequest {
 
 impl SlideRequest {
     /// Returns the request of the options; `None` without `--slide`.
-    pub(crate) fn of(args: SlideArgs) -> Option<Self> {
-        let SlideArgs { slide, corner_angle, hausdorff, periodic } = args;
-        slide.then_some(Self { corner_angle, hausdorff, periodic })
+    pub(crate) fn of(args: SideArgs, settings: &Settings) -> Option<Self> {
+        let corner_angle = settings.corner_angle.unwrap_or(SlideBy::default().corner_angle);
+        let hausdorff = settings.hausdorff;
+        settings.slides.then_some(Self { corner_angle, hausdorff, periodic: args.periodic })
     }
 }
 

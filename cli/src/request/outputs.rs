@@ -80,7 +80,7 @@ impl Outputs {
         let (checkpoint, continued) = (args.checkpoint.clone(), args.continued.clone());
         let colors = picture::colors(&args.picture)?;
         let mut inputs = args.moving.fix_vertices.clone();
-        inputs.extend(TargetRequest::from(&args.target).files());
+        inputs.extend(TargetRequest::of(&args.target, args.options.settings()).files());
         Ok(Self {
             mesh: match args.out_dir {
                 Some(_) => MeshOutput::OfMany,
@@ -92,7 +92,11 @@ impl Outputs {
             picture: PictureRequest::of(&args.picture, colors)?,
             page: args.html.clone(),
             colors,
-            checkpoint: CheckpointFile::of(checkpoint, continued, Some(args.checkpoint_every)),
+            checkpoint: CheckpointFile::of(
+                checkpoint,
+                continued,
+                args.options.settings().checkpoint_every,
+            ),
             inputs,
             continued: args.continued.clone(),
         })

@@ -3,18 +3,11 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use gpu_smooth::{
-    Guard, Options, Scheme, Stopping,
-    options::{Derivatives, WorstBy},
-    precision::Precision,
-    targets::Surface,
-};
-use gpu_smooth_job::{EngineRequest, MethodName, RunRequest};
+use gpu_smooth::{Guard, Options, Scheme, Stopping, precision::Precision, targets::Surface};
+use gpu_smooth_job::EngineRequest;
+use gpu_smooth_job::options::GivenOptions;
 
-use crate::args::{
-    DerivativesChoice, Desired, EdgeNorm, EngineChoice, GuardChoice, History, MethodChoice,
-    SmoothArgs, WorstArgs, WorstChoice,
-};
+use crate::args::SmoothArgs;
 use crate::error::CliError;
 use crate::request::movable::{FieldsRequest, MovableRequest, SlideRequest};
 use crate::request::outputs::Outputs;
@@ -35,6 +28,8 @@ pub(crate) struct SmoothRequest {
     pub(crate) slide: Option<SlideRequest>,
     pub(crate) fields: FieldsRequest,
     pub(crate) engine: EngineRequest,
+    /// The options of the table that the command line has.
+    pub(crate) given: GivenOptions,
     /// The options of the library, for coordinates in double precision.
     run: Options,
     /// The time after which the run ends, counted from the start of reading the mesh.
@@ -97,7 +92,9 @@ impl SmoothRequest {
     /// # Errors
     /// Returns a usage error if IN or OUT is missing, or if the picture's extension is unknown.
     pub(crate) fn new(args: SmoothArgs) -> Result<Self, CliError> {
-        let (run, outputs) = (options(&args), Outputs::of_run(&args)?);
+        let outputs = Outputs::of_run(&args)?;
+        let settings = args.options.settings();
+        let run = settings.run.options(args.target.kind().default_metric(), Precision::Double);
         let (given, more) = (args.input.into_iter().chain(args.output), args.more);
         let meshes = match (args.out_dir, given.collect::<Vec<_>>()) {
             (Some(directory), mut inputs) => {
@@ -117,21 +114,19 @@ impl SmoothRequest {
         Ok(Self {
             meshes,
             reading: (&args.reading).into(),
-            surface: (&args.target.surface).into(),
-            z: ThirdCoordinate::of(&args.target.surface, &args.fields.interpolate),
-            target: (&args.target).into(),
-            movable: MovableRequest::from(args.moving).keeping_layers(),
-            slide: SlideRequest::of(args.sliding),
+            surface: settings.surface,
+            z: ThirdCoordinate::of(settings, &args.fields.interpolate),
+            target: TargetRequest::of(&args.target, settings),
+            movable: MovableRequest::of(args.moving, settings).keeping_layers(),
+            slide: SlideRequest::of(args.sides, settings),
             fields: args.fields.into(),
-            engine: match args.engine {
-                EngineChoice::Auto => EngineRequest::Auto,
-                EngineChoice::Cpu => EngineRequest::Cpu,
-                EngineChoice::Gpu => EngineRequest::Gpu { adapter: None },
-            }
-            .with_adapter(args.adapter),
+            engine: settings.engine(),
+            given: GivenOptions::clone(&args.options),
             run,
-            time_limit: args.time_limit,
-            untangle: args.untangle.then_some(UntangleRequest { keeps_going: args.keep_going }),
+            time_limit: settings.time_limit,
+            untangle: settings
+                .untangles
+                .then_some(UntangleRequest { keeps_going: args.keep_going }),
             continue_from: args.continued,
             is_strict: args.strict,
             extent: match args.dry_run {
@@ -150,11 +145,6 @@ impl SmoothRequest {
     /// Returns the largest number of sweeps.
     pub(crate) fn max_sweeps(&self) -> u32 {
         self.run.max_sweeps
-    }
-
-    /// Returns the largest distance that a vertex may move, in lengths of an edge; `None` without a limit.
-    pub(crate) fn max_move(&self) -> Option<f64> {
-        self.run.max_move
     }
 
     /// Returns whether the guard bounds every triangle by the worst one of IN.
@@ -180,60 +170,6 @@ impl SmoothRequest {
     pub(crate) fn options(&self, stored: Precision) -> Options {
         self.run.clone().stored(stored)
     }
-}
-
-impl SmoothArgs {
-    /// Returns the scheme: the metrics of the sweeps.
-    pub(super) fn scheme(&self) -> Scheme {
-        self.scheme.clone().unwrap_or_else(|| self.target.kind().default_metric().into())
-    }
-}
-
-/// Returns the options of a run, for coordinates in double precision.
-pub(super) fn options(args: &SmoothArgs) -> Options {
-    RunRequest::from(args).options(args.target.kind().default_metric(), Precision::Double)
-}
-
-impl From<&SmoothArgs> for RunRequest {
-    fn from(args: &SmoothArgs) -> Self {
-        Self {
-            scheme: args.scheme.clone(),
-            method: match args.method {
-                MethodChoice::Auto => MethodName::Auto,
-                MethodChoice::Multilevel => MethodName::Multilevel,
-                MethodChoice::Relaxed => MethodName::Relaxed,
-                MethodChoice::Paper => MethodName::Paper,
-            },
-            omega: args.omega,
-            newton_steps: Some(args.inner),
-            derivatives: Some(match args.derivatives {
-                DerivativesChoice::Analytic => Derivatives::Analytic,
-                DerivativesChoice::FiniteDifference => Derivatives::FiniteDifference,
-            }),
-            doubles_exponent: args.edge_norm.map(|norm| norm == EdgeNorm::Continued),
-            tolerance: Some(args.tolerance),
-            fraction: args.fraction,
-            desired: args.desired.map(Desired::value),
-            max_sweeps: Some(args.max_sweeps),
-            guard: match args.guard {
-                GuardChoice::ByMetric => Guard::ByMetric,
-                GuardChoice::Worst => Guard::Worst,
-            },
-            max_move: args.max_move,
-            keep_altitude: args.keep_altitude,
-            improve_worst: worst_by(&args.improving),
-            track_all: args.history == History::All,
-        }
-    }
-}
-
-/// Returns the measure of `--improve-worst`; `None` without the option.
-fn worst_by(args: &WorstArgs) -> Option<WorstBy> {
-    args.improve_worst.map(|choice| match choice {
-        WorstChoice::Imr => WorstBy::Imr,
-        WorstChoice::MinAngle => WorstBy::MinAngle,
-        WorstChoice::Altitude => WorstBy::Altitude,
-    })
 }
 
 #[cfg(test)]

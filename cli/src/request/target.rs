@@ -4,17 +4,9 @@ use std::path::{Path, PathBuf};
 
 use gpu_smooth::targets::Surface;
 use gpu_smooth_job::TargetKind;
+use gpu_smooth_job::options::Settings;
 
-use crate::args::{Owner, SurfaceArg, SurfaceArgs, Target, TargetArgs, ZArg};
-
-impl From<&SurfaceArgs> for Surface {
-    fn from(args: &SurfaceArgs) -> Self {
-        match args.surface {
-            SurfaceArg::Plane => Surface::Plane,
-            SurfaceArg::Sphere => Surface::Sphere,
-        }
-    }
-}
+use crate::args::{Target, TargetArgs};
 
 /// Whether third coordinates that differ are coordinates or data.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -27,10 +19,10 @@ pub(crate) enum ThirdCoordinate {
 
 impl ThirdCoordinate {
     /// Returns the meaning of z: data by `--z data`, if `--interpolate` names z, and on a sphere.
-    pub(crate) fn of(args: &SurfaceArgs, interpolated: &[String]) -> Self {
+    pub(crate) fn of(settings: &Settings, interpolated: &[String]) -> Self {
         let mut names = interpolated.iter().flat_map(|names| names.split(','));
         let is_interpolated = names.any(|name| name.trim() == "z");
-        match args.z == ZArg::Data || args.surface == SurfaceArg::Sphere || is_interpolated {
+        match settings.z_is_data || settings.surface == Surface::Sphere || is_interpolated {
             true => Self::Data,
             false => Self::Coordinate,
         }
@@ -65,17 +57,16 @@ pub(crate) enum TargetSource {
     View(PathBuf),
 }
 
-impl From<&TargetArgs> for TargetRequest {
-    fn from(args: &TargetArgs) -> Self {
+impl TargetRequest {
+    /// Returns the request of the options.
+    pub(crate) fn of(args: &TargetArgs, settings: &Settings) -> Self {
         let given = args.source();
         let given = given
             .map(|text| GivenTargets { text: text.to_owned(), source: TargetSource::of(text) });
-        let of_places = args.target_of.map(|owner| owner == Owner::Place);
-        Self { kind: args.kind(), rings: args.target_rings, of_places, given }
+        let (rings, of_places) = (settings.target_rings, settings.of_places);
+        Self { kind: args.kind(), rings, of_places, given }
     }
-}
 
-impl TargetRequest {
     /// Returns whether targets belong to places, and are evaluated again at the new positions of vertices. By default, targets
     /// on a background mesh or view do.
     pub(crate) fn is_of_places(&self) -> bool {

@@ -3,12 +3,14 @@
 use std::time::Instant;
 
 use gpu_smooth::{Backend, Checkpoint, Metric, Outcome, Smoother, Stop};
+use gpu_smooth_job::options::{GivenOptions, Kind};
 
 use crate::load::LoadedMesh;
 use crate::report::{
     self, Certificate, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds,
     SlideReport, UntangleReport,
 };
+use crate::request::SmoothRequest;
 use crate::run::engine::OpenEngine;
 use crate::run::input::Input;
 use crate::run::prepare::Ready;
@@ -55,6 +57,7 @@ pub(super) fn report(
         target: measured.target,
         untangled: ready.mended.map(untangle_report),
         scheme: request.scheme().to_string(),
+        options: options(request),
         sweeps: outcome.sweeps,
         corrections: outcome.corrections,
         newton_steps: outcome.newton_steps,
@@ -84,7 +87,6 @@ pub(super) fn report(
         }),
         floored: outcome.floored.map(Into::into),
         improved: outcome.improved.map(Into::into),
-        max_move: request.max_move(),
         change: measured.change.into(),
         spacing: measured.spacing,
         before: (&ready.before).into(),
@@ -93,6 +95,21 @@ pub(super) fn report(
         history: report::history(outcome, request.scheme(), request.tracks_all()),
         seconds: clock.seconds(),
     }
+}
+
+/// Returns the options of the table that the command line has, with their values.
+fn options(request: &SmoothRequest) -> serde_json::Map<String, serde_json::Value> {
+    let value = |name: &str, text: &str| -> serde_json::Value {
+        let is_number =
+            !GivenOptions::row(name).is_some_and(|row| matches!(row.kind, Kind::Text(_)));
+        match (text.parse::<u32>(), text.parse::<f64>()) {
+            (Ok(count), _) if is_number => count.into(),
+            (_, Ok(number)) if is_number => number.into(),
+            _ if text == "true" => true.into(),
+            _ => text.into(),
+        }
+    };
+    request.given.values().map(|(name, text)| (name.to_owned(), value(name, text))).collect()
 }
 
 /// Multiple of the tolerance that a run reports if bounds or a guard may hold vertices, whatever the precision of the engine.

@@ -36,7 +36,7 @@ fn values_out_of_range_name_the_range() {
         ("--scheme edge+", &["no metric is called ''"]),
         (SIXTY_ONE, &["a scheme can have 60 metrics at most"]),
         ("--engine opencl", &["auto, gpu, cpu"]),
-        ("--max-sweeps -1", &["'-1' for '--max-sweeps", "0..=4294967295"]),
+        ("--max-sweeps -1", &["'-1' for '--max-sweeps", "a whole number from 0 to 4294967295"]),
         ("--max-sweeps many", &["'many' for '--max-sweeps"]),
         ("--tolerance -1", &["'-1' for '--tolerance", "0 or above"]),
         ("--tolerance inf", &["0 or above"]),
@@ -45,13 +45,13 @@ fn values_out_of_range_name_the_range() {
         ("--fraction 95", &["above 0 and at most 1"]),
         ("--fraction nan", &["above 0 and at most 1"]),
         ("--fraction 95%", &["not a number; it must be above 0 and at most 1"]),
-        ("--desired best", &["a value of f, or auto"]),
-        ("--desired nan", &["a value of f, or auto"]),
+        ("--desired best", &["a finite number, or auto"]),
+        ("--desired nan", &["a finite number, or auto"]),
         ("--omega 0", &["above 0 and below 2"]),
         ("--omega 2", &["above 0 and below 2"]),
         ("--omega -0.5", &["'-0.5' for '--omega", "above 0 and below 2"]),
-        ("--inner 0", &["1..=1000"]),
-        ("--inner 1001", &["1..=1000"]),
+        ("--inner 0", &["a whole number from 1 to 1000"]),
+        ("--inner 1001", &["a whole number from 1 to 1000"]),
         ("--method other", &["relaxed, paper"]),
         ("--derivatives exact", &["analytic, finite-difference"]),
         ("--edge-norm 8", &["fixed, continued"]),
@@ -59,8 +59,8 @@ fn values_out_of_range_name_the_range() {
         ("--only -q", &["the name or the tag of a group is needed"]),
         ("--fix-box 0,0,1", &["'0,0,1' for '--fix-box", "four numbers with commas"]),
         ("--fix-box -1,0,1,inf", &["four numbers with commas"]),
-        ("--only-bad 0.5", &["give a number of at least 1"]),
-        ("--only-bad -2", &["'-2' for '--only-bad", "give a number of at least 1"]),
+        ("--only-bad 0.5", &["a number of at least 1"]),
+        ("--only-bad -2", &["'-2' for '--only-bad", "a number of at least 1"]),
         ("--only-bad 2 --rings -1", &["'-1' for '--rings"]),
         ("--rings 1", &["--only-bad <Q>"]),
     ];
@@ -126,9 +126,9 @@ fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
             "--target does not go with --derivatives",
         ),
         ("--surface sphere --derivatives finite-difference", "--surface sphere does not go with"),
-        ("--method multilevel --inner 2", "--inner, a setting of --method paper"),
-        ("--method relaxed --derivatives finite-difference", "a setting of --method paper"),
-        ("--omega 1.2 --inner 2", "--omega does not go with --inner, a setting of --method paper"),
+        ("--method multilevel --inner 2", "it is a setting of --method paper; drop"),
+        ("--method relaxed --derivatives finite-difference", "it is a setting of --method paper"),
+        ("--omega 1.2 --inner 2", "--inner does not go with --omega: each selects another method"),
     ] {
         // The mesh does not exist, so reading it would cause a different error.
         assert_usage(&folder, &format!("none out {options}"), &[told]);
@@ -160,7 +160,7 @@ fn options_without_effect_are_refused() {
         ),
         ("--target-of place", "--target-of has no effect without another --target"),
         ("--edge-norm fixed", "--edge-norm has no effect without edge in --scheme"),
-        ("--scheme imr --target size=s.sol", "--target size=s.sol has no effect on imr"),
+        ("--scheme imr --target size=s.sol", "--target has no effect on imr"),
     ];
     for (options, told) in cases {
         assert_usage(&folder, &format!("in out {options}"), &[told]);

@@ -1,91 +1,57 @@
 //! The crate `gpu-smooth-job` and the command line write equal files, for each option that changes where vertices go.
 
 use gpu_smooth::layers::KeepLayers;
-use gpu_smooth::options::{Derivatives, WorstBy};
-use gpu_smooth::{Backend, Guard, Metric, Options, Scheme};
-use gpu_smooth_job::{Job, MethodName, RunRequest, SlideBy, TargetKind, TargetRequest};
+use gpu_smooth::{Backend, Options};
+use gpu_smooth_job::options::{GivenOptions, Kind, OPTIONS, OptionRow};
+use gpu_smooth_job::{Job, RunRequest, TargetKind, TargetRequest};
 use mesh_io::MeshFile;
 
 use super::regions::{folder, halves};
 use super::{Folder, disturbed};
 
-/// The words of a command line, and the same run in Rust.
-type Case = (&'static str, fn(&mut RunRequest), for<'f> fn(Job<'f>) -> Job<'f>);
-
-fn scheme(text: &str) -> Option<Scheme> {
-    Some(text.parse().unwrap())
+/// Returns options of the table that test a row, with the row's option among them; `None` for options that change no file.
+fn sample(row: &OptionRow) -> Option<&'static [(&'static str, &'static str)]> {
+    Some(match row.name {
+        "scheme" => &[("scheme", "edge+imr")],
+        "tolerance" => &[("scheme", "rms"), ("tolerance", "1e-4")],
+        "fraction" => &[("fraction", "0.9")],
+        "desired" => &[("desired", "1.3"), ("fraction", "0.5")],
+        "max-sweeps" => &[("max-sweeps", "3")],
+        "method" => &[("method", "multilevel")],
+        "omega" => &[("omega", "1.2")],
+        "inner" => &[("method", "paper"), ("inner", "3")],
+        "derivatives" => &[("derivatives", "finite-difference")],
+        "edge-norm" => &[("scheme", "edge"), ("edge-norm", "fixed")],
+        "guard" => &[("guard", "worst")],
+        "improve-worst" => &[("improve-worst", "min-angle")],
+        "target-rings" => &[("target-rings", "2")],
+        "target-of" => &[("target-of", "place")],
+        "surface" => &[("surface", "sphere")],
+        "z" => &[("z", "data")],
+        "slide" => &[("slide", "true")],
+        "corner-angle" => &[("slide", "true"), ("corner-angle", "10")],
+        "hausdorff" => &[("slide", "true"), ("hausdorff", "0.01")],
+        "only-bad" => &[("only-bad", "1.2")],
+        "rings" => &[("only-bad", "1.2"), ("rings", "0")],
+        "max-move" => &[("max-move", "0.2")],
+        "keep-altitude" => &[("keep-altitude", "true")],
+        "untangle" => &[("untangle", "true")],
+        "engine" | "adapter" | "time-limit" | "checkpoint-every" | "history" => return None,
+        other => panic!("{other} is in the table: add options that test it"),
+    })
 }
 
-fn toward(job: Job<'_>, kind: TargetKind, rings: Option<u32>, of_places: bool) -> Job<'_> {
-    let of_places = of_places.then_some(true);
-    job.target(TargetRequest { kind, rings, of_places, ..TargetRequest::default() })
+/// Returns the words of a command line that give options of the table.
+fn words(options: &[(&str, &str)]) -> String {
+    let word = |(name, text): &(&str, &str)| match GivenOptions::row(name).unwrap().kind {
+        Kind::Flag(_) => format!("--{name}"),
+        _ => format!("--{name}={text}"),
+    };
+    options.iter().map(word).collect::<Vec<_>>().join(" ")
 }
 
-const CASES: &[Case] = &[
-    ("", |_| {}, |job| job),
-    ("--scheme edge+imr", |run| run.scheme = scheme("edge+imr"), |job| job),
-    ("--scheme rms --tolerance 1e-4", by_rms, |job| job),
-    ("--method multilevel", |run| run.method = MethodName::Multilevel, |job| job),
-    ("--omega 1.2", |run| run.omega = Some(1.2), |job| job),
-    ("--method paper --inner 3", by_paper, |job| job),
-    ("--derivatives finite-difference", differences, |job| job),
-    ("--scheme edge --edge-norm fixed", by_fixed_norm, |job| job),
-    ("--fraction 0.9", |run| run.fraction = Some(0.9), |job| job),
-    ("--desired 1.3 --fraction 0.5", toward_f, |job| job),
-    ("--max-sweeps 3", |run| run.max_sweeps = Some(3), |job| job),
-    ("--guard worst", |run| run.guard = Guard::Worst, |job| job),
-    ("--max-move 0.2", |run| run.max_move = Some(0.2), |job| job),
-    ("--keep-altitude", |run| run.keep_altitude = true, |job| job),
-    ("--improve-worst", |run| run.improve_worst = Some(WorstBy::Imr), |job| job),
-    ("--history all --report r.json", |run| run.track_all = true, |job| job),
-    ("--slide", |_| {}, |job| job.slide(SlideBy::default())),
-    (
-        "--slide --corner-angle 10 --hausdorff 0.01",
-        |_| {},
-        |job| {
-            let mut by = SlideBy::default();
-            (by.corner_angle, by.hausdorff) = (10.0, Some(0.01));
-            job.slide(by)
-        },
-    ),
-    ("--free-interfaces", |_| {}, |job| job.free_interfaces()),
-    ("--keep-layers none", |_| {}, |job| job.keep_layers(KeepLayers::None)),
-    ("--target keep-size", |_| {}, |job| toward(job, TargetKind::KeepSize, None, false)),
-    (
-        "--target keep-shape --target-rings 2",
-        |_| {},
-        |job| toward(job, TargetKind::KeepShape, Some(2), false),
-    ),
-    (
-        "--target keep-shape --target-of place",
-        |_| {},
-        |job| toward(job, TargetKind::KeepShape, None, true),
-    ),
-    (
-        "--target keep-size --slide",
-        |_| {},
-        |job| toward(job, TargetKind::KeepSize, None, false).slide(SlideBy::default()),
-    ),
-];
-
-fn by_rms(run: &mut RunRequest) {
-    (run.scheme, run.tolerance) = (Some(Metric::Rms.into()), Some(1e-4));
-}
-
-fn by_paper(run: &mut RunRequest) {
-    (run.method, run.newton_steps) = (MethodName::Paper, Some(3));
-}
-
-fn differences(run: &mut RunRequest) {
-    run.derivatives = Some(Derivatives::FiniteDifference);
-}
-
-fn by_fixed_norm(run: &mut RunRequest) {
-    (run.scheme, run.doubles_exponent) = (scheme("edge"), Some(false));
-}
-
-fn toward_f(run: &mut RunRequest) {
-    (run.desired, run.fraction) = (Some(Some(1.3)), Some(0.5));
+fn toward(job: Job<'_>, kind: TargetKind) -> Job<'_> {
+    job.target(TargetRequest { kind, ..TargetRequest::default() })
 }
 
 /// Compares the file that a command line writes with that of a job.
@@ -104,22 +70,47 @@ fn compare(folder: &Folder, input: &str, words: &str, request: &RunRequest, job:
 }
 
 #[test]
-fn a_job_and_the_command_line_write_equal_files_by_all_options() {
+fn a_job_and_the_command_line_write_equal_files_by_each_option_of_the_table() {
+    let mesh = disturbed();
+    let of_regions = support::write_regions(&mesh, &halves(&mesh, [[1, 7], [2, 7]]));
+    for (i, row) in OPTIONS.iter().enumerate() {
+        let Some(options) = sample(row) else { continue };
+        assert!(options.iter().any(|(name, _)| *name == row.name), "{}", row.name);
+        // The formats take turns.
+        let files = &of_regions[i % 2];
+        let (folder, input) = (folder(files), files[0].0);
+        let file = MeshFile::read(&folder.path(input)).unwrap();
+        let given = GivenOptions::of(options).unwrap();
+        let mut job = match row.name {
+            "surface" => Job::on_sphere(&file).unwrap(),
+            _ => Job::of_file(&file).unwrap(),
+        };
+        let mut line = words(options);
+        if row.name.starts_with("target") {
+            line += " --target keep-shape";
+            job = toward(job, TargetKind::KeepShape);
+        }
+        let job = job.settings(given.settings()).unwrap();
+        compare(&folder, input, &line, &given.settings().run, job);
+    }
+}
+
+#[test]
+fn a_job_and_the_command_line_write_equal_files_by_the_options_of_a_mesh() {
     let mesh = disturbed();
     for files in support::write_regions(&mesh, &halves(&mesh, [[1, 7], [2, 7]])).iter().take(2) {
-        let (folder, input) = (folder(files), files[0].0);
-        for (words, set, prepare) in CASES {
-            let file = MeshFile::read(&folder.path(input)).unwrap();
-            let mut request = RunRequest::default();
-            set(&mut request);
-            compare(&folder, input, words, &request, prepare(Job::of_file(&file).unwrap()));
-        }
+        let (folder, input, request) = (folder(files), files[0].0, RunRequest::default());
         let file = MeshFile::read(&folder.path(input)).unwrap();
-        let (job, request) = (Job::on_sphere(&file).unwrap(), RunRequest::default());
-        compare(&folder, input, "--surface sphere", &request, job);
-        let job = Job::of_file(&file).unwrap().fix(&[40, 41]).unwrap();
+        let job = || Job::of_file(&file).unwrap();
+        compare(&folder, input, "", &request, job());
+        compare(&folder, input, "--free-interfaces", &request, job().free_interfaces());
+        let free = job().keep_layers(KeepLayers::None);
+        compare(&folder, input, "--keep-layers none", &request, free);
+        let of_sizes = toward(job(), TargetKind::KeepSize);
+        compare(&folder, input, "--target keep-size", &request, of_sizes);
         std::fs::write(folder.path("held.txt"), "41\n42\n").unwrap();
-        compare(&folder, input, "--fix-vertices held.txt", &request, job);
+        let held = job().fix(&[40, 41]).unwrap();
+        compare(&folder, input, "--fix-vertices held.txt", &request, held);
     }
 }
 

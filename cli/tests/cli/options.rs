@@ -1,6 +1,10 @@
 //! The effects of options on a run.
 
+use std::fmt::Write;
+use std::path::Path;
+
 use super::{Folder, assert_holds, assert_smoothed, finish, number, plate_path, small};
+use gpu_smooth_job::options::{Belongs, Kind, OPTIONS, OptionRow, Spelling};
 use serde_json::Value;
 
 /// Runs on the CPU. Returns the report and the printed text.
@@ -206,4 +210,58 @@ fn options_work_on_the_gpu_too() {
         folder.line(&format!("in out --engine gpu {options}")).clean();
         assert_smoothed(&folder.mesh("in"), &folder.mesh("out"));
     }
+}
+
+/// Returns a row of the table in docs/options.md.
+fn documented(row: &OptionRow) -> String {
+    let line = match row.kind {
+        Kind::Flag(_) => Spelling::CommandLine.option(row.name),
+        Kind::WordOrFlag(..) => format!("--{}[={}]", row.name, row.placeholder),
+        _ => format!("{} {}", Spelling::CommandLine.option(row.name), row.placeholder),
+    };
+    let values = match row.kind {
+        Kind::Flag(_) => "–".to_owned(),
+        Kind::Scheme(_) => "metrics with `+` between them".to_owned(),
+        Kind::Word(words, _) | Kind::WordOrFlag(words, _) => {
+            words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+        }
+        _ => row.wanted(),
+    };
+    let default = match row.default {
+        "" => "–".to_owned(),
+        default => format!("`{default}`"),
+    };
+    let call = match row.belongs {
+        Belongs::ToMesh => "mesh",
+        Belongs::ToRun => "run",
+    };
+    let line = line.replace('|', "\\|");
+    let (name, help) = (Spelling::Python.option(row.name), row.help(Spelling::CommandLine));
+    format!(
+        "| `{line}` | `{name}` | {call} | {values} | {default} | {} |\n",
+        help.replace('|', "\\|")
+    )
+}
+
+#[test]
+fn the_document_of_the_options_has_the_table() {
+    let mut text = String::new();
+    for row in OPTIONS {
+        let of_heading = OPTIONS.iter().find(|other| other.heading == row.heading);
+        let is_first = of_heading.is_some_and(|first| first.name == row.name);
+        if is_first {
+            write!(text, "\n## {}\n\n", row.heading).unwrap();
+            text += "| command line | Python | belongs to | values | default | meaning |\n|---|---|---|---|---|---|\n";
+        }
+        text += &documented(row);
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/options.md");
+    let recorded = std::fs::read_to_string(&path).unwrap();
+    let start = recorded.find("\n## ").unwrap_or(recorded.len());
+    if std::env::var("GPU_SMOOTH_OPTIONS").is_ok_and(|what| what == "write") {
+        std::fs::write(&path, format!("{}{text}", &recorded[..start])).unwrap();
+        return;
+    }
+    let remedy = "GPU_SMOOTH_OPTIONS=write cargo test -p gpu-smooth-cli the_document_of_the_options writes it";
+    assert!(recorded[start..] == text, "docs/options.md differs from the table: {remedy}");
 }

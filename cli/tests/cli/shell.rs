@@ -35,7 +35,7 @@ fn completions_and_manual_have_every_option() {
     let words = offered(&folder, &["gpu-smooth", "part.msh", "out.msh", "--"]);
     // The help also mentions options of other commands, but never at the start of a line.
     let begins_line = |line: &str| {
-        let mut words = line.split_whitespace().take(2).map(|word| word.trim_matches(','));
+        let mut words = line.split_whitespace().take(2).map(|word| word.trim_matches([',', ']']));
         let option = words.find(|word| word.starts_with("--"))?;
         option.split(['[', '=']).next().map(str::to_owned)
     };

@@ -6,11 +6,9 @@ use gpu_smooth::{
     Mesh, Method, Options, SmoothError, Stopping,
     gpu::Kernel,
     internal::{Plan, Problem, Stepwise, prepare, run_on_cpu, run_on_gpu},
-    targets::Surface,
 };
 
 use crate::args::BenchArgs;
-use crate::args::EngineChoice;
 use crate::commands::bench::baseline::Baseline;
 use crate::commands::bench::machine::Place;
 use crate::commands::bench::report::{Form, KernelRow, Row};
@@ -68,8 +66,8 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
 /// Reads a mesh, and lays the mesh out in its plane or on the sphere, as a run does.
 fn laid_out(path: &Path, args: &BenchArgs, quiet: bool) -> Result<LoadedMesh, CliError> {
     let mut file = read(path, &(&args.reading).into())?;
-    let z = ThirdCoordinate::of(&args.surface, &[]);
-    for remark in lay_out(&mut file, Surface::from(&args.surface), z)? {
+    let z = ThirdCoordinate::of(args.options.settings(), &[]);
+    for remark in lay_out(&mut file, args.options.settings().surface, z)? {
         tell::note(args.json || quiet, &remark);
     }
     Ok(file)
@@ -110,7 +108,7 @@ fn measure(
     place: &Place,
 ) -> Result<Row, SmoothError> {
     let options = Options::default()
-        .scheme(args.scheme.clone())
+        .scheme(args.scheme())
         .stopping(Stopping::Tolerance(0.0))
         .max_sweeps(u32::MAX);
     let plan = Plan::new(&options);
@@ -147,7 +145,7 @@ fn measure(
         machine: machine::machine(),
         engine: place.name.clone(),
         software: place.gpu.as_ref().is_some_and(|gpu| gpu.adapter().is_software()),
-        scheme: args.scheme.to_string(),
+        scheme: args.scheme().to_string(),
         vertices: mesh.points.len(),
         triangles: mesh.triangles.len(),
         free: problem.free_count(),
@@ -166,13 +164,13 @@ fn measure(
 /// adapter.
 fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, CliError> {
     let mut places = Vec::new();
-    if args.engine != EngineChoice::Gpu && args.adapter.is_none() {
+    if args.has_cpu() {
         let threads = rayon::current_num_threads();
         let name = format!("cpu, {threads} threads");
         places.push(Place { gpu: None, name, copy_rate: rates::on_cpu(args.seconds) });
     }
-    if args.engine != EngineChoice::Cpu {
-        match engine::open_adapter(args.adapter.as_deref()) {
+    if args.has_gpu() {
+        match engine::open_adapter(args.adapter()) {
             Ok(gpu) => places.push(Place {
                 name: gpu.adapter().name.clone(),
                 copy_rate: rates::on_gpu(&gpu, args.seconds),

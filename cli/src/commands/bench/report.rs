@@ -96,7 +96,7 @@ impl Form {
         }
         text += &format!(
             "\nA sweep by {} with the objective after it; bytes are the least it can read and write\n\n",
-            args.scheme
+            args.scheme()
         );
         text += &self.line(COLUMNS.map(str::to_owned), "engine");
         if self.markdown {

@@ -6,7 +6,7 @@ use gpu_smooth::internal::{DeviceCounts, device_counts};
 use gpu_smooth::{Backend, CheckpointPolicy, Mesh, Options, Outcome, SmoothError, Smoother};
 use serde::Serialize;
 
-use crate::args::{BenchArgs, EngineChoice};
+use crate::args::BenchArgs;
 use crate::commands::bench::{lattice, machine};
 use crate::error::CliError;
 use crate::load::{LoadedMesh, explain};
@@ -108,7 +108,7 @@ pub(super) fn run(
 /// Opens the engines that options select, by default the CPU and the best adapter.
 fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, CliError> {
     let mut places = Vec::new();
-    if args.engine != EngineChoice::Gpu && args.adapter.is_none() {
+    if args.has_cpu() {
         places.push(Place {
             name: format!("cpu, {} threads", rayon::current_num_threads()),
             driver: String::new(),
@@ -117,9 +117,9 @@ fn places(args: &BenchArgs, quiet: bool) -> Result<Vec<Place>, CliError> {
             open: Duration::ZERO,
         });
     }
-    if args.engine != EngineChoice::Cpu {
+    if args.has_gpu() {
         let began = Instant::now();
-        match engine::open_adapter(args.adapter.as_deref()) {
+        match engine::open_adapter(args.adapter()) {
             Ok(gpu) => places.push(Place {
                 name: gpu.adapter().name.clone(),
                 driver: tell::adapter(gpu.adapter()),
@@ -143,7 +143,7 @@ fn measure(
     let began = Instant::now();
     let smoother = Smoother::new(mesh)?;
     let prepare = began.elapsed();
-    let options = Options::default().scheme(args.scheme.clone());
+    let options = Options::default().scheme(args.scheme());
     for place in places {
         let row = |first, mut runs: Vec<Timed>| {
             runs.sort_by_key(|run| run.outcome.smooth);
@@ -208,7 +208,7 @@ fn row(
     runs: usize,
     run: &Timed,
 ) -> Row {
-    let base = args.scheme.base();
+    let base = args.scheme().base();
     let f = |k: usize| run.outcome.history.get(k).and_then(|f| f.of(base)).unwrap_or(f64::NAN);
     let count = |of: fn(&DeviceCounts) -> u64| run.work.as_ref().map_or(0, of);
     let seconds = |of: fn(&DeviceCounts) -> Duration| {
@@ -221,7 +221,7 @@ fn row(
         driver: place.driver.clone(),
         software: place.software,
         open_seconds: place.open.as_secs_f64(),
-        scheme: args.scheme.to_string(),
+        scheme: args.scheme().to_string(),
         vertices: mesh.points.len(),
         triangles: mesh.triangles.len(),
         first,
@@ -277,7 +277,7 @@ fn head(args: &BenchArgs, places: &[Place]) -> String {
     text += &format!(
         "\nWhole runs by {} to the default tolerance, in ms: the first on its engine and mesh, then the median of others. \
          Levels, compilation and waits are parts of smoothing; bytes are for each vertex\n\n",
-        args.scheme
+        args.scheme()
     );
     text += &line(args, COLUMNS.map(|(name, _)| name.to_owned()), "engine");
     if args.markdown {

@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use gpu_smooth::{
     Quality, Topology,
     measure::{Measure, Measured, Statistics},
-    targets::Surface,
     topology::BadTriangle,
 };
 use mesh_io::{Group, Groups, Location, SourceLocation};
@@ -111,8 +110,9 @@ impl MeshQuality {
         display
             .stage(Stage::Reading { bytes: std::fs::metadata(path).map_or(0, |file| file.len()) });
         let mut file = read(path, &(&args.reading).into())?;
-        let surface = Surface::from(&args.surface);
-        let laid_out = lay_out(&mut file, surface, ThirdCoordinate::of(&args.surface, &[]))?;
+        let settings = args.coordinates.settings();
+        let surface = settings.surface;
+        let laid_out = lay_out(&mut file, surface, ThirdCoordinate::of(settings, &[]))?;
         let file = file;
         let mesh = file.mesh();
         let refused = |error| explain::mesh_error(&file, &error);
