@@ -16,7 +16,7 @@ use std::path::Path;
 
 use gpu_smooth::Metric;
 
-/// The code of README.md, each part in a function that provides its variables. The code is compiled, and not run.
+/// The code of README.md and docs/library.md, each part in a function that provides its variables. The code is compiled, and not run.
 #[allow(dead_code)]
 mod readme {
     use std::path::Path;
@@ -78,19 +78,20 @@ mod readme {
 }
 
 #[test]
-fn the_rust_code_of_the_readme_is_compiled() {
+fn the_rust_code_of_the_documents_is_compiled() {
     let trimmed = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join("\n");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
-    let readme = trimmed(&std::fs::read_to_string(path).unwrap());
     let source = trimmed(include_str!("examples.rs"));
-    let blocks = readme.split("```rust\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    let parts: Vec<&str> = blocks.flat_map(|block| block.trim().split("\n\n")).collect();
-    assert!(parts.len() >= 4, "{parts:?}");
-    for part in parts {
-        assert!(
-            source.contains(part),
-            "tests/examples.rs must have this code of README.md:\n{part}"
-        );
+    for (name, least) in [("README.md", 1), ("docs/library.md", 4)] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name);
+        let document = trimmed(&std::fs::read_to_string(path).unwrap());
+        let blocks = document.split("```rust\n").skip(1);
+        let blocks = blocks.map(|rest| rest.split("```").next().unwrap());
+        let parts: Vec<&str> = blocks.flat_map(|block| block.trim().split("\n\n")).collect();
+        assert!(parts.len() >= least, "{parts:?}");
+        for part in parts {
+            let is_there = source.contains(part);
+            assert!(is_there, "tests/examples.rs must have this code of {name}:\n{part}");
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rules of this project that the compiler does not check.
 
 mod dependencies;
+mod documents;
 
 use dependencies::{Uses, by_folder, circles};
 use gpu_smooth::Metric;
