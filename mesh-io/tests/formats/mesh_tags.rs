@@ -1,7 +1,7 @@
 //! XDMF files with mesh tags, in the layout of DOLFINx. Grids of mesh tags refer to the Geometry of the mesh.
 
 use super::Folder;
-use mesh_io::{CellKind, MeshFile};
+use mesh_io::{CellKind, Conversion, Format, MeshFile};
 
 /// A square of four triangles around the vertex 4, with two tagged lines, and with tags of three triangles in another
 /// order and with other first corners.
@@ -82,5 +82,43 @@ fn damaged_mesh_tags_are_errors_with_place_and_remedy() {
     ] {
         let error = read(&TAGGED.replacen(part, other, 1)).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}");
+    }
+}
+
+/// Programs of FEniCS read a grid of triangles alone, with as many columns as the space has dimensions.
+#[test]
+fn a_conversion_has_one_topology_of_triangles_and_mesh_tags_of_lines() {
+    let msh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\
+               $Elements\n4\n1 1 2 7 1 1 2\n2 1 2 8 2 3 4\n3 2 2 5 1 1 2 3\n4 2 2 6 1 1 3 4\n$EndElements\n";
+    for (z, kind, columns) in [("0", "XY", 2), ("2.5", "XYZ", 3)] {
+        let folder = Folder::new(&[("in.msh", &*msh.replace("1 1 0\n4", &format!("1 1 {z}\n4")))]);
+        let file = MeshFile::read(&folder.path("in.msh")).unwrap();
+        let conversion = Conversion::new(&file, Format::Xdmf).unwrap().unwrap();
+        assert_eq!(conversion.losses(), [""; 0]);
+        let text = conversion.text().unwrap();
+        let has = |part: &str| assert!(text.contains(part), "no {part} in {text}");
+        has(&format!("<Geometry GeometryType=\"{kind}\">"));
+        has(&format!("Dimensions=\"4 {columns}\""));
+        has("<Topology TopologyType=\"Triangle\" NumberOfElements=\"2\" NodesPerElement=\"3\">");
+        has(
+            "<Grid Name=\"lines\" GridType=\"Uniform\">\n<xi:include xpointer=\"xpointer(/Xdmf/Domain/Grid/Geometry)\"/>",
+        );
+        has("<Topology TopologyType=\"PolyLine\" NumberOfElements=\"2\" NodesPerElement=\"2\">");
+        let back = read(&text).unwrap();
+        let told = |file: &MeshFile| -> Vec<_> {
+            let groups = file.groups().unwrap();
+            let own = |group: &mesh_io::Group| {
+                group.tag.map(|tag| (tag, group.lines, group.triangles().to_vec()))
+            };
+            let mut all: Vec<_> = groups
+                .iter()
+                .filter(|group| group.kind.contains("physical"))
+                .filter_map(own)
+                .collect();
+            all.sort();
+            all
+        };
+        assert_eq!(told(&back), told(&file));
+        assert_eq!(told(&back).len(), 4);
     }
 }

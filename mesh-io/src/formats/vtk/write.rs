@@ -88,6 +88,16 @@ impl Array {
         Array { name: data.name.clone(), components: each, numbers }
     }
 
+    /// Returns whether each value is a whole number.
+    pub(crate) fn is_of_tags(&self) -> bool {
+        self.components == 1 && matches!(self.numbers, ArrayValues::Whole(_))
+    }
+
+    /// Returns whether all values are the whole number 0, as of groups that no cell has.
+    pub(crate) fn is_zero(&self) -> bool {
+        matches!(&self.numbers, ArrayValues::Whole(numbers) if numbers.iter().all(|&number| number == 0))
+    }
+
     pub(crate) fn whole(name: &str, numbers: Vec<i64>) -> Array {
         Array { name: name.to_owned(), components: 1, numbers: ArrayValues::Whole(numbers) }
     }

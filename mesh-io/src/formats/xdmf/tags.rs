@@ -24,33 +24,28 @@ fn attribute(name: &str) -> RegionAttribute {
 }
 
 /// Items of one grid with mesh tags.
-#[derive(Clone, Copy)]
 pub(super) struct MeshTags<'i> {
     topology: &'i Item,
-    /// The tags, one for each cell of `topology`.
-    values: &'i Item,
+    /// Lists of tags, each with a tag for each cell of `topology`. At least one.
+    values: Vec<&'i Item>,
 }
 
 impl File<'_> {
     /// Lists all mesh tags.
     ///
     /// # Errors
-    /// If a grid has a second Topology, or other items than one list of tags for its cells.
+    /// If a grid has a second Topology, or other items than lists of tags for its cells.
     fn tags(&self) -> Result<Vec<MeshTags<'_>>, ReadError> {
         let mut found = Vec::new();
         for topology in self.tagged.iter().filter(|item| item.section == "Topology") {
             let is_other = |item: &&Item| item.grid == topology.grid && item.at != topology.at;
-            let mut others = self.tagged.iter().filter(is_other);
-            match (others.next(), others.next()) {
-                (Some(values), None) if values.center == "cell" => {
-                    found.push(MeshTags { topology, values });
-                }
-                _ => {
-                    let problem = "this is the second Topology, and not one of mesh tags";
-                    let remedy = "Save each mesh to a separate file";
-                    return Err(self.cursor(topology).error(problem, remedy));
-                }
+            let values: Vec<&Item> = self.tagged.iter().filter(is_other).collect();
+            if values.is_empty() || values.iter().any(|item| item.center != "cell") {
+                let problem = "this is the second Topology, and not one of mesh tags";
+                let remedy = "Save each mesh to a separate file";
+                return Err(self.cursor(topology).error(problem, remedy));
             }
+            found.push(MeshTags { topology, values });
         }
         Ok(found)
     }
@@ -65,8 +60,11 @@ impl File<'_> {
     ) -> Result<(TagRegions, Vec<MeshTags<'_>>), ReadError> {
         let (mut regions, mut lines) = (TagRegions::default(), Vec::new());
         for tags in self.tags()? {
-            match self.tags_of_triangles(tags, mesh)? {
-                Some(numbers) => regions.numbers.push((attribute(&tags.values.name), numbers)),
+            match self.tags_of_triangles(&tags, mesh)? {
+                Some(numbers) => {
+                    let attributes = tags.values.iter().map(|values| attribute(&values.name));
+                    regions.numbers.extend(attributes.zip(numbers));
+                }
                 None => lines.push(tags),
             }
         }
@@ -87,33 +85,36 @@ impl File<'_> {
         Ok(nodes)
     }
 
-    /// Reads the cells of mesh tags: VTK's cell type, the number of nodes of a cell, the nodes of all cells, and the tag
-    /// of each cell.
-    fn tagged_cells(&self, tags: MeshTags<'_>) -> Result<TaggedCells, ReadError> {
+    /// Reads the cells of mesh tags: VTK's cell type, the number of nodes of a cell, the nodes of all cells, and the lists of
+    /// tags.
+    fn tagged_cells(&self, tags: &MeshTags<'_>) -> Result<TaggedCells, ReadError> {
         let (cell_type, corners) = self.uniform(tags.topology, &tags.topology.kind)?;
         let nodes = self.all_nodes(tags.topology)?;
-        let values = self.integers(tags.values)?;
-        if corners == 0 || nodes.len() as u64 != corners.saturating_mul(values.len() as u64) {
-            let problem = format!(
-                "there are {} tags for {} nodes of cells with {corners} nodes",
-                values.len(),
-                nodes.len()
-            );
-            return Err(self.cursor(tags.values).error(problem, CORRECT));
+        let values = tags.values.iter().map(|item| self.integers(item));
+        let values = values.collect::<Result<Vec<_>, _>>()?;
+        for (item, values) in tags.values.iter().zip(&values) {
+            if corners == 0 || nodes.len() as u64 != corners.saturating_mul(values.len() as u64) {
+                let problem = format!(
+                    "there are {} tags for {} nodes of cells with {corners} nodes",
+                    values.len(),
+                    nodes.len()
+                );
+                return Err(self.cursor(item).error(problem, CORRECT));
+            }
         }
         Ok(TaggedCells { cell_type, corners: corners as usize, nodes, values })
     }
 
-    /// Returns the tag of each triangle of the mesh, [`UNTAGGED`] for a triangle without a tag. `None` for tags of
-    /// other cells.
+    /// Returns each list of tags with the tag of each triangle of the mesh, [`UNTAGGED`] for a triangle without a tag. `None`
+    /// for tags of other cells.
     ///
     /// # Errors
     /// If the tags are damaged, or name a triangle that the mesh does not have.
     fn tags_of_triangles(
         &self,
-        tags: MeshTags<'_>,
+        tags: &MeshTags<'_>,
         mesh: &Item,
-    ) -> Result<Option<Vec<i64>>, ReadError> {
+    ) -> Result<Option<Vec<Vec<i64>>>, ReadError> {
         if tags.topology.kind != "triangle" || mesh.kind != "triangle" {
             return Ok(None);
         }
@@ -124,19 +125,21 @@ impl File<'_> {
             key
         };
         let triangles: HashMap<[u64; 3], usize> = nodes.chunks_exact(3).map(key).zip(0..).collect();
-        let mut numbers = vec![UNTAGGED; nodes.len() / 3];
         let tagged = self.tagged_cells(tags)?;
-        for (corners, value) in tagged.nodes.chunks_exact(3).zip(tagged.values) {
+        let mut numbers = vec![vec![UNTAGGED; nodes.len() / 3]; tagged.values.len()];
+        for (own, corners) in tagged.nodes.chunks_exact(3).enumerate() {
             let Some(&triangle) = triangles.get(&key(corners)) else {
-                let name = quoted(tags.values.name.as_bytes());
+                let name = quoted(tags.values[0].name.as_bytes());
                 let problem = format!(
                     "`{name}` tags a triangle of the points {corners:?}, which the mesh does not have"
                 );
                 return Err(self
-                    .cursor(tags.values)
+                    .cursor(tags.values[0])
                     .error(problem, "Save the mesh and its tags again"));
             };
-            numbers[triangle] = value;
+            for (numbers, values) in numbers.iter_mut().zip(&tagged.values) {
+                numbers[triangle] = values[own];
+            }
         }
         Ok(Some(numbers))
     }
@@ -152,18 +155,25 @@ impl File<'_> {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<u64, ReadError> {
         let cursor = &self.cursor(tags.topology);
-        let cells = self.tagged_cells(tags)?;
+        let cells = self.tagged_cells(&tags)?;
         if !matches!(cells.cell_type, types::LINE | types::VERTEX) {
             let problem = "mesh tags of cells that are neither triangles, lines nor points";
             return Err(cursor.error(problem, "Save the mesh without these tags"));
         }
-        let mut last = None;
-        for (points, &value) in cells.nodes.chunks_exact(cells.corners).zip(&cells.values) {
-            if last.replace(value) != Some(value) && visitor.asks_for_groups() {
-                let label = GroupLabel::Tag(value);
-                let kind = &tags.values.name;
-                visitor.group_scopes(&[GroupScope { kind, label, dimension: None }]);
+        let mut last = Vec::new();
+        for (own, points) in cells.nodes.chunks_exact(cells.corners).enumerate() {
+            let values: Vec<i64> = cells.values.iter().map(|values| values[own]).collect();
+            if last != values && visitor.asks_for_groups() {
+                let tags = tags.values.iter().zip(&values);
+                let scopes: Vec<GroupScope<'_>> = tags
+                    .map(|(item, &tag)| {
+                        let label = GroupLabel::Tag(tag);
+                        GroupScope { kind: &item.name, label, dimension: None }
+                    })
+                    .collect();
+                visitor.group_scopes(&scopes);
             }
+            last = values;
             let region = [UNTAGGED; 2];
             Cell { id, cell_type: cells.cell_type, points, region }.send(cursor, visitor)?;
             id += 1;
@@ -181,5 +191,6 @@ struct TaggedCells {
     /// Number of nodes of each cell.
     corners: usize,
     nodes: Vec<u64>,
-    values: Vec<i64>,
+    /// A tag of each cell, for each list.
+    values: Vec<Vec<i64>>,
 }

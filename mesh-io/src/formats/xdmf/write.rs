@@ -1,4 +1,7 @@
 //! Writer of XDMF with all numbers in the XML.
+//!
+//! A mesh whose faces are triangles has one grid of triangles, and lines and points in grids of mesh tags, as DOLFINx writes
+//! them: DOLFIN and DOLFINx read no other cells beside triangles. Other meshes have one grid of all cells.
 
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
@@ -7,31 +10,105 @@ use crate::visit::items::CellKind;
 use std::fmt::Write;
 
 pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
-    let content = input.content;
-    let cells: Vec<usize> = input.cells().collect();
-    let (points, count) = (content.points.len(), cells.len());
-    let mut out = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"Grid\" GridType=\"Uniform\">\n"
+    let kinds = &input.content.cells.kinds;
+    let of = |kind| -> Vec<usize> { input.all(kind).collect() };
+    let [points, lines, triangles] = [CellKind::Point, CellKind::Line, CellKind::Triangle].map(of);
+    let mut out = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n<Domain>\n\
+                   <Grid Name=\"mesh\" GridType=\"Uniform\">\n"
         .to_owned();
+    geometry(input, &mut out);
+    let is_of_triangles = input.cells().count() == points.len() + lines.len() + triangles.len();
+    // Mesh tags have whole numbers alone.
+    let are_tags = || of_cells(input, &[]).iter().all(Array::is_of_tags);
+    let has_tags = is_of_triangles && (points.is_empty() && lines.is_empty() || are_tags());
+    let cells = if has_tags { triangles } else { input.cells().collect() };
+    match has_tags {
+        true => uniform(input, "Triangle", 3, &cells, &mut out),
+        false => mixed(input, &cells, &mut out),
+    }
+    let count = input.content.points.len();
+    of_points(input).iter().for_each(|array| attribute(array, "Node", count, &mut out));
+    let arrays = of_cells(input, &cells);
+    let arrays =
+        arrays.iter().filter(|array| !has_tags || !array.is_zero() || kinds.len() == cells.len());
+    arrays.for_each(|array| attribute(array, "Cell", cells.len(), &mut out));
+    out.push_str("</Grid>\n");
+    if has_tags {
+        tags(input, "lines", "PolyLine", 2, &lines, &mut out);
+        tags(input, "points", "PolyVertex", 1, &points, &mut out);
+    }
+    out.push_str("</Domain>\n</Xdmf>\n");
+    out
+}
+
+/// Appends the points: x and y if z is 0 everywhere, as DOLFINx takes the columns for the dimension of space.
+fn geometry(input: &WriterInput<'_>, out: &mut String) {
+    let count = input.content.points.len();
+    let is_flat = (0..count).all(|vertex| input.content.z(vertex) == 0.0);
+    let (kind, columns) = if is_flat { ("XY", 2) } else { ("XYZ", 3) };
     put!(
         out,
-        "<Geometry GeometryType=\"XYZ\">\n<DataItem DataType=\"Float\" Dimensions=\"{points} 3\" Format=\"XML\" \
+        "<Geometry GeometryType=\"{kind}\">\n<DataItem DataType=\"Float\" Dimensions=\"{count} {columns}\" Format=\"XML\" \
          Precision=\"8\">\n"
     );
-    (0..points).for_each(|vertex| put!(out, "{}\n", input.xyz(vertex)));
+    for vertex in 0..count {
+        let row = if is_flat { input.xy(vertex) } else { input.xyz(vertex) };
+        put!(out, "{row}\n");
+    }
     out.push_str("</DataItem>\n</Geometry>\n");
+}
+
+/// Appends a topology of cells of one kind with `corners` vertices each.
+fn uniform(input: &WriterInput<'_>, kind: &str, corners: usize, cells: &[usize], out: &mut String) {
+    let count = cells.len();
+    put!(
+        out,
+        "<Topology TopologyType=\"{kind}\" NumberOfElements=\"{count}\" NodesPerElement=\"{corners}\">\n\
+         <DataItem DataType=\"Int\" Dimensions=\"{count} {corners}\" Format=\"XML\" Precision=\"8\">\n"
+    );
+    cells.iter().for_each(|&cell| put!(out, "{}\n", input.positions(cell, 0)));
+    out.push_str("</DataItem>\n</Topology>\n");
+}
+
+/// Appends a topology of cells of several kinds.
+fn mixed(input: &WriterInput<'_>, cells: &[usize], out: &mut String) {
     let rows: Vec<String> = cells.iter().map(|&cell| row(input, cell)).collect();
     let words: usize = rows.iter().map(|row| row.split(' ').count()).sum();
     put!(
         out,
-        "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{count}\">\n<DataItem DataType=\"Int\" \
-         Dimensions=\"{words}\" Format=\"XML\" Precision=\"8\">\n"
+        "<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">\n<DataItem DataType=\"Int\" \
+         Dimensions=\"{words}\" Format=\"XML\" Precision=\"8\">\n",
+        cells.len()
     );
     rows.iter().for_each(|row| put!(out, "{row}\n"));
     out.push_str("</DataItem>\n</Topology>\n");
-    of_points(input).iter().for_each(|array| attribute(array, "Node", points, &mut out));
-    of_cells(input, &cells).iter().for_each(|array| attribute(array, "Cell", count, &mut out));
-    out.push_str("</Grid>\n</Domain>\n</Xdmf>\n");
-    out
+}
+
+/// Appends a grid of mesh tags, which refers to the points of the mesh.
+fn tags(
+    input: &WriterInput<'_>,
+    name: &str,
+    kind: &str,
+    corners: usize,
+    cells: &[usize],
+    out: &mut String,
+) {
+    if cells.is_empty() {
+        return;
+    }
+    put!(
+        out,
+        "<Grid Name=\"{name}\" GridType=\"Uniform\">\n<xi:include xpointer=\"xpointer(/Xdmf/Domain/Grid/Geometry)\"/>\n"
+    );
+    uniform(input, kind, corners, cells, out);
+    let mut arrays = of_cells(input, cells);
+    // Data that only triangles have are NaN at lines, and no whole numbers.
+    arrays.retain(|array| array.is_of_tags() && !array.is_zero());
+    if arrays.is_empty() {
+        arrays.push(Array::whole(name, vec![0; cells.len()]));
+    }
+    arrays.iter().for_each(|array| attribute(array, "Cell", cells.len(), out));
+    out.push_str("</Grid>\n");
 }
 
 /// Formats a cell: XDMF's type number, the vertex count of points, lines and polygons, and the vertices.
