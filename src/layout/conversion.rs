@@ -18,12 +18,12 @@ impl Problem {
     /// Returns the center and the scale of the normalization: normalized positions are (x - center) · scale, without
     /// rounding. x are the images of the coordinates of the mesh if vertices move in a projection.
     pub fn normalization(&self) -> (DVec2, f64) {
-        (self.layout.center, self.layout.scale)
+        (self.placement.center, self.placement.scale)
     }
 
     /// Returns the conversion between normalized positions and the coordinates of the mesh.
     pub(crate) fn coordinates(&self) -> MeshCoordinates {
-        MeshCoordinates::new(self.projection, self.layout.center, self.layout.scale)
+        MeshCoordinates::new(self.projection, self.placement.center, self.placement.scale)
     }
 
     /// Returns whether vertices move in a projection of the coordinates of the mesh.
@@ -54,7 +54,7 @@ impl Problem {
 
     /// Returns the point of a normalized position, in the coordinates of the mesh.
     pub(crate) fn point(&self, position: DVec2) -> [f64; 2] {
-        let point = (self.layout.center + position / self.layout.scale).to_array();
+        let point = (self.placement.center + position / self.placement.scale).to_array();
         self.projection.map_or(point, |_| Mercator::point(point))
     }
 
@@ -72,7 +72,7 @@ impl Problem {
             for (position, &v) in positions.iter_mut().zip(&self.layout.vertices[first..]) {
                 let point = points[v as usize];
                 let image = self.projection.map_or(point, |projection| projection.image(point));
-                *position = (DVec2::from(image) - self.layout.center) * self.layout.scale;
+                *position = (DVec2::from(image) - self.placement.center) * self.placement.scale;
             }
         })
         .await;
@@ -90,7 +90,7 @@ impl Problem {
         let mut points = paced::copied(&mesh.points).await;
         paced::in_order(self.free_count(), CHUNK, |vertices| {
             for i in vertices {
-                let (now, was) = (positions[i], self.layout.positions[i]);
+                let (now, was) = (positions[i], self.placement.positions[i]);
                 if now != was {
                     points[self.layout.vertices[i] as usize] = self.point(now);
                 }

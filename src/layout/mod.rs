@@ -9,6 +9,7 @@ mod local_maps;
 mod mercator;
 mod normalization;
 mod numbering;
+mod placement;
 mod prepare;
 mod problem;
 mod sizes;
@@ -16,6 +17,8 @@ mod smallest_last;
 
 pub(crate) use bounds::Bounds;
 pub use coloring::Coloring;
+#[cfg(test)]
+pub(crate) use curve::along_curve;
 pub(crate) use mercator::{Mercator, MeshCoordinates};
 pub(crate) use numbering::DEGREE_BLOCK;
 pub use prepare::prepare;

@@ -2,7 +2,6 @@
 
 use glam::DVec2;
 
-use crate::layout::curve::bounds;
 use crate::mesh::Mesh;
 use crate::parallel::map_parts;
 use crate::topology::predicates::orientation;
@@ -13,9 +12,13 @@ use crate::topology::{EnclosedArea, Topology};
 const TANGLED: f64 = 1e-3;
 
 /// Returns the center to subtract, the power of two that brings the mean area into [0.5, 2], and the mean area after
-/// scaling by this power.
-pub(super) fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64, f64) {
-    let (low, high) = bounds(mesh, topology);
+/// scaling by this power. `used` lists the vertices that some triangle uses.
+pub(super) fn normalization(
+    mesh: &Mesh,
+    topology: &Topology<'_>,
+    used: &[u32],
+) -> (DVec2, f64, f64) {
+    let (low, high) = bounds(&mesh.points, used);
     let center = DVec2::new(exact_center(low.x, high.x), exact_center(low.y, high.y));
     // The areas are computed from the original points, in units of the bounding box, in which their sum cannot
     // overflow.
@@ -35,6 +38,17 @@ pub(super) fn normalization(mesh: &Mesh, topology: &Topology<'_>) -> (DVec2, f64
     let length = mean.sqrt() * extent;
     let scale = (-length.log2().round()).exp2();
     (center, scale, (length * scale).powi(2))
+}
+
+/// Returns the lower and the upper corner of the bounding box of vertices.
+fn bounds(points: &[[f64; 2]], vertices: &[u32]) -> (DVec2, DVec2) {
+    let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let both = |a: (DVec2, DVec2), b: (DVec2, DVec2)| (a.0.min(b.0), a.1.max(b.1));
+    let of_part = |_, part: &[u32]| {
+        let points = part.iter().map(|&v| DVec2::from(points[v as usize]));
+        points.map(|point| (point, point)).fold(none, both)
+    };
+    map_parts(vertices.chunks(1 << 14), of_part).into_iter().fold(none, both)
 }
 
 /// Returns a center that can be subtracted without rounding from all coordinates between `low` and `high`. If no

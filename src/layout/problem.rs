@@ -11,12 +11,12 @@ use crate::layout::Coloring;
 use crate::layout::bounds::Bounds;
 use crate::layout::curve::along_curve;
 use crate::layout::mercator::Mercator;
-use crate::layout::normalization::normalization;
 use crate::layout::numbering::{order, rings, triangles};
+use crate::layout::placement::{Placement, sum};
 use crate::mesh::Mesh;
 use crate::metric::{Corner, Ideal, TargetMap};
 use crate::parallel::counting_sort::{atomics, plain};
-use crate::parallel::{collect, for_each_part, map_parts, paced};
+use crate::parallel::{collect, for_each_part, paced};
 use crate::targets::Targets;
 use crate::topology::Topology;
 
@@ -36,6 +36,7 @@ const CHUNK: usize = 1 << 12;
 #[derive(Clone, Debug)]
 pub struct Problem {
     pub(super) layout: Arc<Layout>,
+    pub(super) placement: Arc<Placement>,
     /// Projection from the coordinates of the mesh to the plane in which sweeps move vertices. `None` if sweeps move
     /// vertices in the coordinates of the mesh.
     pub(super) projection: Option<Mercator>,
@@ -82,17 +83,14 @@ impl MapKind {
     pub(crate) const ALL: [Self; 3] = [MapKind::None, MapKind::Targets, MapKind::Local];
 }
 
-/// Layout of a [`Problem`]: positions, order and connectivity, independent of targets.
+/// Layout of a [`Problem`]: order and connectivity, independent of positions and targets.
 #[derive(Debug)]
 pub(super) struct Layout {
-    pub(super) positions: Vec<DVec2>,
     colors: Vec<Range<u32>>,
     ring_start: Vec<u32>,
     ring: Vec<u32>,
     triangles: Vec<[u32; 3]>,
     pub(super) vertices: Vec<u32>,
-    pub(super) center: DVec2,
-    pub(super) scale: f64,
 }
 
 impl Problem {
@@ -109,9 +107,6 @@ impl Problem {
         coloring: &Coloring,
         curve: &[u32],
     ) -> Self {
-        let (center, scale, exact_mean) = normalization(mesh, topology);
-        let normalized = |v: u32| (DVec2::from(mesh.points[v as usize]) - center) * scale;
-
         let (vertices, colors) = order(topology, coloring, curve);
         let number = atomics(mesh.points.len(), u32::MAX);
         for_each_part(vertices.chunks(CHUNK), |chunk, vertices| {
@@ -125,22 +120,23 @@ impl Problem {
         let (ring_start, ring) = rings(topology, &vertices[..free], curve, &number);
         let triangles = triangles(topology, vertices.len(), &number);
         drop(number);
+        let layout = Layout { colors, ring_start, ring, triangles, vertices };
+        Self::placed(Arc::new(layout), mesh, topology)
+    }
 
-        let positions: Vec<DVec2> = collect(vertices.len(), |i| normalized(vertices[i]));
-        let area = |t: &[u32; 3]| {
-            let [p, q, r] = t.map(|v| positions[v as usize]);
-            0.5 * (q - p).perp_dot(r - p)
-        };
-        // The rounded areas of very thin triangles may add up to zero.
-        let mean_area = match sum(&triangles, area) / triangles.len() as f64 {
-            mean if mean > 0.0 => mean,
-            _ => exact_mean,
-        };
-        let judged = Judged { reordered: None, count: triangles.len() };
-        let layout =
-            Layout { positions, colors, ring_start, ring, triangles, vertices, center, scale };
+    /// Returns the problem of a mesh with other points. Colors, one-rings, triangles and the order of vertices are shared with
+    /// this problem. The returned problem has neither projection nor maps nor bounds, and is judged by all triangles.
+    pub(crate) fn at_points(&self, mesh: &Mesh, topology: &Topology<'_>) -> Self {
+        Self::placed(Arc::clone(&self.layout), mesh, topology)
+    }
+
+    fn placed(layout: Arc<Layout>, mesh: &Mesh, topology: &Topology<'_>) -> Self {
+        let (placement, mean_area) =
+            Placement::of(mesh, topology, &layout.vertices, &layout.triangles);
+        let judged = Judged { reordered: None, count: layout.triangles.len() };
         Self {
-            layout: Arc::new(layout),
+            layout,
+            placement: Arc::new(placement),
             projection: None,
             targets: None,
             local_maps: None,
@@ -160,8 +156,8 @@ impl Problem {
     /// Sets the target maps of all vertices of the mesh, in any unit, and the weight of sizes. A common factor scales the
     /// maps so that the mean area of the triangles, after their maps are applied, is 1.
     pub(crate) fn set_targets(&mut self, targets: &Targets) {
-        let layout = Arc::clone(&self.layout);
-        self.set_targets_at(targets, &layout.positions);
+        let placement = Arc::clone(&self.placement);
+        self.set_targets_at(targets, &placement.positions);
     }
 
     /// Sets targets as [`set_targets`](Self::set_targets) does, but scales maps for vertices at the given
@@ -218,7 +214,7 @@ impl Problem {
 
     /// Returns the normalized position of each vertex.
     pub fn positions(&self) -> &[DVec2] {
-        &self.layout.positions
+        &self.placement.positions
     }
 
     /// Returns the range of free vertices of each color.
@@ -452,10 +448,4 @@ impl Problem {
         let sought: HashSet<[u32; 3]> = triangles.iter().map(of).collect();
         (0..given.len()).filter(|&t| sought.contains(&sorted(given[t]))).collect()
     }
-}
-
-/// Returns the sum of `of` over triangles, added in an order that does not depend on the number of threads.
-fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
-    let sums = map_parts(triangles.chunks(4096), |_, part| part.iter().map(&of).sum::<f64>());
-    sums.iter().sum()
 }

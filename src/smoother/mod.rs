@@ -4,6 +4,7 @@ mod backend;
 mod floor;
 mod goal;
 mod judging;
+mod moved;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod over_all;

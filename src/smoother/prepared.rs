@@ -25,7 +25,8 @@ use crate::whole::{radii, set_targets_of};
 
 use super::slivers;
 
-/// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs.
+/// A mesh prepared for smoothing: its topology, coloring and layout. Serves any number of runs. A clone shares the layout.
+#[derive(Clone)]
 pub struct Smoother<'a> {
     pub(super) mesh: Cow<'a, Mesh>,
     pub(super) topology: Topology<'a>,
@@ -48,7 +49,7 @@ pub struct Smoother<'a> {
     /// [`serving`](Self::serving) returns it, while the fields above serve all other runs. `None` unless the
     /// projection would invert slivers.
     pub(super) opened: Option<Box<Smoother<'static>>>,
-    prepare: Duration,
+    pub(super) prepare: Duration,
 }
 
 impl fmt::Debug for Smoother<'_> {
@@ -299,7 +300,7 @@ impl<'a> Smoother<'a> {
         self.slides() && (self.problem.is_projected() || self.problem.free_count() == 0)
     }
 
-    fn stop_sliding(&mut self) {
+    pub(super) fn stop_sliding(&mut self) {
         (self.slide, self.sliding) = (None, None);
         (self.pairs, self.coincident) = ([0; 2], [0; 2]);
     }
@@ -359,7 +360,7 @@ impl<'a> Smoother<'a> {
         self.problem.colors().len()
     }
 
-    /// Returns the time that [`Self::new`] took.
+    /// Returns the time that [`Self::new`] took, or the latest [`Self::set_points`].
     pub fn prepare_time(&self) -> Duration {
         self.prepare
     }

@@ -56,7 +56,7 @@ impl<'m> Topology<'m> {
         let Mesh { points, triangles, fixed } = mesh;
         check_indices(mesh)?;
         let mut stars = stars(points.len(), triangles);
-        check_size(points, &stars)?;
+        check_size(points.len(), |v| if stars.of(v).is_empty() { 0.0 } else { size(points[v]) })?;
         let mut free = vec![false; points.len()];
         // Most meshes are consistent and counter-clockwise already, and the stars alone prove it. The triangle across
         // each edge is found only for other meshes.
@@ -121,6 +121,14 @@ impl<'m> Topology<'m> {
     pub fn bad_triangles(&self, points: &[[f64; 2]]) -> Result<Vec<BadTriangle>, MeshError> {
         self.check_count(points)?;
         Ok(now(predicates::bad_triangles(points, &self.triangles)))
+    }
+
+    /// Checks new points of the vertices as [`Self::new`] checks those of a mesh. `used` lists the vertices that some triangle
+    /// uses.
+    pub(crate) fn check_points(&self, points: &[[f64; 2]], used: &[u32]) -> Result<(), MeshError> {
+        self.check_count(points)?;
+        check_finite(points)?;
+        check_size(used.len(), |i| size(points[used[i] as usize]))
     }
 
     /// Fails with [`MeshError::PointCount`] unless `points` has one entry per vertex.
@@ -209,10 +217,7 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     if points.len() >= NONE as usize || triangles.len() >= NONE as usize / 3 {
         return Err(MeshError::TooLarge { vertices: points.len(), triangles: triangles.len() });
     }
-    let is_infinite = |p: &[f64; 2]| !(p[0].is_finite() & p[1].is_finite());
-    if let Some(vertex) = first(points, is_infinite) {
-        return Err(MeshError::NotFinite { vertex: vertex as u32 });
-    }
+    check_finite(points)?;
     let count = points.len() as u32;
     let is_bad = |t: &[u32; 3]| {
         let outside = (t[0] >= count) | (t[1] >= count) | (t[2] >= count);
@@ -237,6 +242,15 @@ fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
     Ok(())
 }
 
+/// Checks that all coordinates are finite.
+fn check_finite(points: &[[f64; 2]]) -> Result<(), MeshError> {
+    let is_infinite = |p: &[f64; 2]| !(p[0].is_finite() & p[1].is_finite());
+    match first(points, is_infinite) {
+        None => Ok(()),
+        Some(vertex) => Err(MeshError::NotFinite { vertex: vertex as u32 }),
+    }
+}
+
 /// Returns the index of the first item for which `is_bad` holds.
 fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     const CHUNK: usize = 1 << 14;
@@ -246,14 +260,16 @@ fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usi
     items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
 }
 
+/// Returns the larger coordinate of a point, in absolute value.
+fn size(point: [f64; 2]) -> f64 {
+    point[0].abs().max(point[1].abs())
+}
+
 /// Checks that the largest coordinate of a vertex that some triangle uses is from 1e-100 to 1e100 in absolute value.
-/// Unused vertices may be anywhere.
-fn check_size(points: &[[f64; 2]], stars: &Groups) -> Result<(), MeshError> {
-    let size = |v: usize| match stars.of(v) {
-        [] => 0.0,
-        _ => points[v][0].abs().max(points[v][1].abs()),
-    };
-    let sizes = map_ranges(points.len(), 1 << 14, |range| range.map(size).fold(0.0, f64::max));
+/// Unused vertices may be anywhere. `size` returns the larger coordinate of each of `count` vertices, 0 for an unused
+/// vertex.
+fn check_size(count: usize, size: impl Fn(usize) -> f64 + Sync) -> Result<(), MeshError> {
+    let sizes = map_ranges(count, 1 << 14, |range| range.map(&size).fold(0.0, f64::max));
     let size = sizes.into_iter().fold(0.0, f64::max);
     match size {
         1e-100..=1e100 => Ok(()),

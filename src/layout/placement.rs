@@ -1,0 +1,47 @@
+//! The normalized positions of the vertices of a layout.
+
+use glam::DVec2;
+
+use crate::layout::normalization::normalization;
+use crate::mesh::Mesh;
+use crate::parallel::{collect, map_parts};
+use crate::topology::Topology;
+
+/// The normalized positions of the vertices of a layout, which are (x - center) · scale.
+#[derive(Debug)]
+pub(super) struct Placement {
+    pub(super) positions: Vec<DVec2>,
+    pub(super) center: DVec2,
+    pub(super) scale: f64,
+}
+
+impl Placement {
+    /// Normalizes the points of the `vertices` of a mesh that some triangle uses. Returns the mean area of the triangles in
+    /// normalized units too. `triangles` have indices in `vertices` as corners.
+    pub(super) fn of(
+        mesh: &Mesh,
+        topology: &Topology<'_>,
+        vertices: &[u32],
+        triangles: &[[u32; 3]],
+    ) -> (Self, f64) {
+        let (center, scale, exact_mean) = normalization(mesh, topology, vertices);
+        let normalized = |v: u32| (DVec2::from(mesh.points[v as usize]) - center) * scale;
+        let positions: Vec<DVec2> = collect(vertices.len(), |i| normalized(vertices[i]));
+        let area = |t: &[u32; 3]| {
+            let [p, q, r] = t.map(|v| positions[v as usize]);
+            0.5 * (q - p).perp_dot(r - p)
+        };
+        // The rounded areas of very thin triangles may add up to zero.
+        let mean_area = match sum(triangles, area) / triangles.len() as f64 {
+            mean if mean > 0.0 => mean,
+            _ => exact_mean,
+        };
+        (Self { positions, center, scale }, mean_area)
+    }
+}
+
+/// Returns the sum of `of` over triangles, added in an order that does not depend on the number of threads.
+pub(super) fn sum(triangles: &[[u32; 3]], of: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
+    let sums = map_parts(triangles.chunks(4096), |_, part| part.iter().map(&of).sum::<f64>());
+    sums.iter().sum()
+}
