@@ -180,7 +180,10 @@ class Result:
 
     @property
     def prepare_seconds(self) -> float:
-        """Duration of the preparation of the mesh in seconds, which runs of a `Smoother` share."""
+        """Duration of the preparation of the mesh in seconds, which runs of a `Smoother` share.
+
+        For a run at new points, the duration of the move of the prepared mesh to these points.
+        """
         return self._outcome.prepare_seconds
 
     @property

@@ -60,11 +60,17 @@ class Smoother:
             raise TypeError(f"{run_options[0]!r} is an option of a run: pass it to Smoother.run")
         self._native = _native.Smoother(points, triangles, **options)
 
-    def run(self, **options: Unpack[RunOptions]) -> Result:
-        """Smooth the mesh, from the points that were passed to the constructor.
+    def run(self, points: Array | None = None, **options: Unpack[RunOptions]) -> Result:
+        """Smooth the mesh, from other points or from those that were passed to the constructor.
 
         Parameters
         ----------
+        points : array_like of float, shape (n, 2) or (n, 3), optional
+            New positions of all vertices, such as after a step of a moving boundary, in the plane of the points that were
+            passed to the constructor. Fixed vertices and the boundary may be anywhere. Triangles, fixed vertices and boundary
+            layers are those of the constructor; targets and the lines along which vertices slide are those of the new points.
+            A mesh that is tangled there is untangled first if the constructor was called with `untangle=True`. The
+            result is that of a new `Smoother` within `tolerance`, as vertices may be visited in another order.
         **options
             Options of a run: `scheme`, `engine`, `adapter`, `max_sweeps`, `tolerance`, `fraction`, `desired`,
             `time_limit`, `method`, `omega`, `inner`, `derivatives`, `edge_norm`, `guard`, `improve_worst`, `max_move`,
@@ -77,10 +83,27 @@ class Smoother:
 
         Raises
         ------
-        MeshError, OptionError, DeviceError
+        MeshError
+            As `smooth` does, such as for triangles that are inverted at `points` (`MeshError.triangles`).
+        OptionError
+            As `smooth` does, and if `points` goes with `checkpoint`, `resume`, `only_bad` or `surface="sphere"`.
+        DeviceError
             As `smooth` does.
+
+        Examples
+        --------
+        >>> import gpu_smooth
+        >>> import numpy as np
+        >>> points = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1.5, 1.2]])
+        >>> triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+        >>> smoother = gpu_smooth.Smoother(points, triangles)
+        >>> for step in range(10):
+        ...     points[[1, 2], 0] += 0.2
+        ...     points = smoother.run(points).points
+        >>> points[4].round(3).tolist()
+        [2.0, 1.0]
         """
-        return Result(self._native.run(**options))
+        return Result(self._native.run(points, **options))
 
     @property
     def free(self) -> Any:

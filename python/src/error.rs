@@ -137,6 +137,15 @@ pub(crate) fn third_coordinate(py: Python<'_>, name: &str, vertex: usize, z: f64
     with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
 }
 
+/// Returns the exception of a point that is not in the plane of a prepared mesh.
+pub(crate) fn other_plane(py: Python<'_>, vertex: usize) -> PyErr {
+    let text = format!(
+        "points[{vertex}]: the vertex is not in the plane of the points of the Smoother. Make a Smoother of the new points, or \
+         pass z=\"data\" to it if z is data of a mesh in x and y"
+    );
+    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+}
+
 /// Sets the attributes of an exception that name triangles and a vertex.
 fn with_indices(
     py: Python<'_>,

@@ -57,6 +57,7 @@ pub(crate) struct Input {
 }
 
 /// The domain of a call, with its mesh after untangling, and the points of the mesh before untangling.
+#[derive(Clone)]
 pub(crate) struct Layout {
     /// Points of the mesh before untangling; `None` if the mesh was not tangled.
     pub(crate) tangled: Option<Vec<[f64; 2]>>,
@@ -124,7 +125,7 @@ impl Input {
 
 impl Layout {
     /// Sets the projection, the targets and the sliding vertices of a smoother.
-    fn set_up(
+    pub(crate) fn set_up(
         &self,
         options: &MeshOptions,
         smoother: &mut Smoother<'_>,

@@ -41,6 +41,32 @@ pub(crate) fn lay_out(
     }
 }
 
+/// Lays new points of a mesh out in the plane in which the mesh with the form `of` lies.
+pub(crate) fn lay_out_again(
+    py: Python<'_>,
+    points: Points,
+    of: &PointsForm,
+    z: ThirdCoordinate,
+) -> PyResult<Points> {
+    let vertex = match of.plane() {
+        Some(plane) => {
+            let points = lay_out_likewise(py, "points", points, of)?;
+            match points.form.plane().and_then(|new| plane.strays(new).first().copied()) {
+                None => return Ok(points),
+                Some(vertex) => vertex,
+            }
+        }
+        None => {
+            let points = lay_out(py, "points", points, z, Surface::Plane)?;
+            match points.form.plane() {
+                None => return Ok(points),
+                Some(_) => 0,
+            }
+        }
+    };
+    Err(error::other_plane(py, vertex as usize))
+}
+
 /// Lays points of another mesh, or of another state of a mesh, out in the plane of the points with the form `of`.
 pub(crate) fn lay_out_likewise(
     py: Python<'_>,

@@ -1,23 +1,58 @@
 //! A prepared mesh, with all that its results need.
 
-use gpu_smooth::Smoother as PreparedMesh;
+use std::sync::Arc;
+
+use gpu_smooth::{Mesh, MeshError, Smoother as PreparedMesh};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, PointsForm};
-use crate::input::Layout;
+use crate::arrays::{self, Points, PointsForm};
+use crate::input::{Failure, Layout, untangled};
 use crate::mesh_options::MeshOptions;
+use crate::observer::RunObserver;
+use crate::remarks::Remarks;
 
 /// A mesh that is prepared for runs, with all that results need.
 pub(crate) struct Prepared {
     pub(crate) smoother: PreparedMesh<'static>,
     pub(crate) layout: Layout,
-    pub(crate) options: MeshOptions,
+    pub(crate) options: Arc<MeshOptions>,
     pub(crate) form: PointsForm,
     /// Remarks on the mesh.
     pub(crate) remarks: Vec<String>,
+    /// Number of remarks, the first ones, that do not depend on targets and sliding vertices.
+    pub(crate) lasting: usize,
 }
 
 impl Prepared {
+    /// Returns the mesh with its vertices at other points. Fixed vertices and layers stay those of this mesh; targets and curves
+    /// are those of the new points. Untangles the mesh if the options ask for it.
+    pub(crate) fn at(&self, points: Points, observer: &RunObserver<'_>) -> Result<Self, Failure> {
+        let Points { xy, form } = points;
+        let (mut smoother, mut tangled) = (self.smoother.clone(), None);
+        let untangles = self.options.settings().untangles;
+        let given = untangles.then(|| xy.clone());
+        let is_tangled = match smoother.set_points(xy) {
+            Ok(()) => untangles && !smoother.beyond_precision().is_empty(),
+            Err(MeshError::Infeasible { .. } | MeshError::OverlappingStar { .. }) if untangles => {
+                true
+            }
+            Err(error) => return Err(error.into()),
+        };
+        if is_tangled && let Some(points) = given {
+            let mesh = Mesh { points, ..self.smoother.mesh().clone() };
+            if let Some(points) = untangled(&mesh, form.precision(), observer)? {
+                smoother.set_points(points)?;
+                tangled = Some(mesh.points);
+            }
+        }
+        let mut remarks = Remarks::new(observer);
+        let layout = Layout { tangled, domain: self.layout.domain.clone() };
+        layout.set_up(&self.options, &mut smoother, &mut remarks)?;
+        let (options, lasting) = (Arc::clone(&self.options), self.lasting);
+        let remarks = [&self.remarks[..lasting], &remarks.into_texts()].concat();
+        Ok(Self { smoother, layout, options, form, remarks, lasting })
+    }
+
     /// Returns points for the caller: vertices that a chart has copied are left out, and longitudes are in the given range.
     pub(crate) fn given(&self, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         given(&self.layout, points)

@@ -24,6 +24,11 @@ impl<'a> Remarks<'a> {
         self.texts
     }
 
+    /// Returns the number of remarks so far.
+    pub(crate) fn count(&self) -> usize {
+        self.texts.len()
+    }
+
     fn add(&mut self, text: String) {
         self.texts.push(text);
     }

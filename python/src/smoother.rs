@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use gpu_smooth::plane::Plane;
+use gpu_smooth::targets::Surface;
 use gpu_smooth::{Backend, Checkpoint, Mesh, MeshError, Options, Smoother as PreparedMesh};
 use gpu_smooth_job::{Adapted, CheckpointFile, EngineRequest};
 use pyo3::prelude::*;
@@ -10,6 +11,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{self, Points, PointsForm};
 use crate::engine;
+use crate::error;
 use crate::input::{Failure, Input, Layout};
 use crate::mesh_options::{CallOptions, MeshOptions, Target};
 use crate::observer::RunObserver;
@@ -41,25 +43,36 @@ impl Smoother {
         let prepared = threads::watched(py, &observer, || {
             let mut remarks = Remarks::new(&observer);
             let input = Input::new(mesh, &options, form.precision(), &observer, &mut remarks)?;
+            let lasting = remarks.count();
             let (smoother, layout) = input.into_smoother(&options, &mut remarks)?;
-            Ok(Prepared { smoother, layout, options, form, remarks: remarks.into_texts() })
+            let (options, remarks) = (Arc::new(options), remarks.into_texts());
+            Ok(Prepared { smoother, layout, options, form, remarks, lasting })
         })?;
         let prepared = finished(py, &observer, prepared)?;
         Ok(Self(Arc::new(prepared)))
     }
 
-    /// Smooths the mesh, from its points as they were passed.
-    #[pyo3(signature = (**options))]
-    fn run(&self, py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Outcome> {
+    /// Smooths the mesh, from other points or from its points as they were passed.
+    #[pyo3(signature = (points = None, **options))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        points: Option<&Bound<'_, PyAny>>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Outcome> {
         let mut run = RunOptions::default();
         for (name, value) in options.into_iter().flatten() {
             run.set_named(&name, &value, "Smoother.run")?;
         }
         run.check(py)?;
-        let Prepared { smoother, layout, options, form, .. } = &*self.0;
+        let observer = RunObserver::new(&run);
+        let prepared = match points {
+            None => Arc::clone(&self.0),
+            Some(points) => Arc::new(self.at(py, points, &run, &observer)?),
+        };
+        let Prepared { smoother, layout, options, form, .. } = &*prepared;
         options.check(py, &run)?;
         let plan = RunPlan::new(py, &run, options, form, smoother)?;
-        let observer = RunObserver::new(&run);
         let done = threads::watched(py, &observer, || {
             let mut remarks = Remarks::new(&observer);
             let adapted = plan.adapted(smoother, layout, options)?;
@@ -69,7 +82,7 @@ impl Smoother {
             Ok((outcome, remarks.into_texts()))
         })?;
         let (outcome, remarks) = finished(py, &observer, done)?;
-        Ok(Outcome::new(outcome, Arc::clone(&self.0), &plan.options, &plan.backend, remarks))
+        Ok(Outcome::new(outcome, Arc::clone(&prepared), &plan.options, &plan.backend, remarks))
     }
 
     /// The flags of the vertices that are free: inside of the mesh and not fixed.
@@ -83,6 +96,41 @@ impl Smoother {
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.0.triangles(py)
+    }
+}
+
+impl Smoother {
+    /// Returns the mesh at other points for a run.
+    fn at(
+        &self,
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        run: &RunOptions,
+        observer: &RunObserver<'_>,
+    ) -> PyResult<Prepared> {
+        let of = &*self.0;
+        let refusals = [
+            (
+                run.checkpoint_file().is_some(),
+                "checkpoint and resume: a checkpoint continues the run of a Smoother from its own points. Drop both",
+            ),
+            (
+                of.options.surface() == Surface::Sphere,
+                "surface=\"sphere\": the projection belongs to the points before. Make a Smoother of the new points",
+            ),
+            (
+                of.options.has("only-bad"),
+                "only_bad: the free vertices are those near bad triangles of the points before. Make a Smoother of the new \
+                 points, or drop only_bad",
+            ),
+        ];
+        if let Some((_, text)) = refusals.iter().find(|(is_refused, _)| *is_refused) {
+            return Err(error::option(py, &format!("points does not go with {text}")));
+        }
+        let points = arrays::points("points", points)?;
+        let points = plane::lay_out_again(py, points, &of.form, of.options.z())?;
+        let prepared = threads::watched(py, observer, || of.at(points, observer))?;
+        finished(py, observer, prepared)
     }
 }
 
