@@ -66,8 +66,8 @@ fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
     let mut sweeps = Sweeps::new(&device_mesh, options).unwrap();
     let made = start.elapsed();
     let numbers = buffer(256, Usage::STORAGE | Usage::COPY_SRC);
-    let objective = sweeps.bind_objective(&numbers, 0).unwrap();
-    let mut values = Readback::<ObjectiveValues>::new(gpu, &numbers, 0, 1).unwrap();
+    let objective = sweeps.bind_objective(numbers.slice(..)).unwrap();
+    let mut values = Readback::<ObjectiveValues>::new(gpu, numbers.slice(..), 1).unwrap();
 
     let mut loops = Topology::new(mesh).unwrap().boundary_loops();
     // The signed area of a hole is negative, so sorting puts the largest hole first.
@@ -75,7 +75,12 @@ fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
     loops.sort_by(|a, b| area(a).total_cmp(&area(b)));
     let hole = loops.swap_remove(0);
     let targets = buffer(8 * hole.len(), Usage::STORAGE | Usage::COPY_DST);
-    let drag = device_mesh.bind_move(&hole, &VertexBuffer::new(&targets, 8), 8.0, (&numbers, 128));
+    let drag = device_mesh.bind_move(
+        &hole,
+        &VertexBuffer::new(targets.slice(..), 8),
+        8.0,
+        numbers.slice(128..),
+    );
     let drag = drag.unwrap();
 
     let mut times = Vec::new();

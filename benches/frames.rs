@@ -63,10 +63,11 @@ fn main() {
             println!("{vertices:>7} {how}: {time:.2} ms ({least:.2})");
         }
         let device_mesh = DeviceMesh::new(&gpu, &mesh).unwrap();
-        let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertex_buffer, 8)).unwrap();
+        let bound =
+            device_mesh.bind_vertices(&VertexBuffer::new(vertex_buffer.slice(..), 8)).unwrap();
 
         let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
-        let objective = sweeps.bind_objective(&numbers, 0).unwrap();
+        let objective = sweeps.bind_objective(numbers.slice(..)).unwrap();
         let plain = times(&gpu, |encoder| {
             bound.encode_import(encoder);
             sweeps.encode_sweeps(encoder, 3);
@@ -76,7 +77,7 @@ fn main() {
 
         let options = Options::default().method(Method::Multilevel);
         let mut corrected_sweeps = Sweeps::new(&device_mesh, &options).unwrap();
-        let corrected_objective = corrected_sweeps.bind_objective(&numbers, 0).unwrap();
+        let corrected_objective = corrected_sweeps.bind_objective(numbers.slice(..)).unwrap();
         let corrected = times(&gpu, |encoder| {
             bound.encode_import(encoder);
             corrected_sweeps.encode_sweeps(encoder, 3);
@@ -94,21 +95,23 @@ fn main() {
         });
 
         let mut sweeps = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
-        let objective = sweeps.bind_objective(&numbers, 0).unwrap();
+        let objective = sweeps.bind_objective(numbers.slice(..)).unwrap();
         let mask = buffer(4 * count, usage);
-        let mask = device_mesh.bind_mask(&mask, 0).unwrap();
+        let mask = device_mesh.bind_mask(mask.slice(..)).unwrap();
         let mut loops = Topology::new(&mesh).unwrap().boundary_loops();
         loops.retain(|vertices| signed_area(&mesh.points, vertices) < 0.0);
         let hole = loops.swap_remove(0);
         let targets = buffer(8 * hole.len(), usage);
         let to: Vec<[f32; 2]> = hole.iter().map(|&v| points[v as usize].map(|x| x + 0.1)).collect();
         gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&to));
-        let share = (&numbers, size_of::<ObjectiveValues>() as u64);
-        let drag =
-            device_mesh.bind_move(&hole, &VertexBuffer::new(&targets, 8), 8.0, share).unwrap();
+        let share = numbers.slice(size_of::<ObjectiveValues>() as u64..);
+        let drag = device_mesh
+            .bind_move(&hole, &VertexBuffer::new(targets.slice(..), 8), 8.0, share)
+            .unwrap();
         let last_valid = device_mesh.keep_last_valid().unwrap();
-        let mut values = Readback::<ObjectiveValues>::new(&gpu, &numbers, 0, 1).unwrap();
-        let mut positions = Readback::<[f32; 2]>::new(&gpu, &vertex_buffer, 0, count).unwrap();
+        let mut values = Readback::<ObjectiveValues>::new(&gpu, numbers.slice(..), 1).unwrap();
+        let mut positions =
+            Readback::<[f32; 2]>::new(&gpu, vertex_buffer.slice(..), count).unwrap();
         let all = times(&gpu, |encoder| {
             bound.encode_import(encoder);
             mask.encode_mask(encoder);

@@ -66,7 +66,7 @@ mod readme {
     ) -> Result<()> {
         // 3. Into your own encoder and vertex buffer: nothing is submitted, nothing leaves the GPU.
         let on_device = DeviceMesh::new(&gpu, &mesh)?;
-        let vertices = on_device.bind_vertices(&VertexBuffer::new(&vertex_buffer, 12))?;
+        let vertices = on_device.bind_vertices(&VertexBuffer::new(vertex_buffer.slice(..), 12))?;
         let mut sweeps = Sweeps::new(&on_device, &options)?;
         // and in each frame
         vertices.encode_import(&mut encoder);

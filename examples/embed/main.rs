@@ -89,8 +89,8 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     let device_mesh = DeviceMesh::new(&gpu, mesh)?;
     let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
     let stride = size_of::<Vertex>() as u64;
-    let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, stride))?;
-    let objective = smoother.bind_objective(&objectives, 0)?;
+    let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), stride))?;
+    let objective = smoother.bind_objective(objectives.slice(..))?;
 
     let mut frame = |sweeps| -> Result<Frame> {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -75,12 +75,12 @@ impl Smoothing {
         };
         let numbers = buffer("numbers", SHARE + 4, Usage::STORAGE | Usage::COPY_SRC);
         let targets = buffer("targets", vertices.size(), Usage::STORAGE | Usage::COPY_DST);
-        let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, STRIDE))?;
-        let objective = sweeps.bind_objective(&numbers, 0)?;
+        let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), STRIDE))?;
+        let objective = sweeps.bind_objective(numbers.slice(..))?;
         let has_clock = device.features().contains(Gpu::optional_features());
         let mut smoothing = Self {
-            seen_points: Readback::new(&gpu, &vertices, 0, mesh.points.len())?,
-            seen_objectives: Readback::new(&gpu, &numbers, 0, 1)?,
+            seen_points: Readback::new(&gpu, vertices.slice(..), mesh.points.len())?,
+            seen_objectives: Readback::new(&gpu, numbers.slice(..), 1)?,
             points: mesh.points.clone(),
             objectives: ObjectiveValues::default(),
             gpu,
@@ -111,7 +111,7 @@ impl Smoothing {
     /// Continues with another scheme, starting from the present vertices.
     pub(crate) fn set_scheme(&mut self, scheme: Scheme) -> Result<()> {
         self.sweeps = Sweeps::until_converged(&self.device_mesh, &options(&scheme))?;
-        self.objective = self.sweeps.bind_objective(&self.numbers, 0)?;
+        self.objective = self.sweeps.bind_objective(self.numbers.slice(..))?;
         self.scheme = scheme;
         Ok(())
     }
@@ -127,8 +127,9 @@ impl Smoothing {
     /// [`WORST`].
     pub(crate) fn hold(&mut self, held: &[u32], clamp: bool) -> Result<()> {
         self.device_mesh.set_pinned(held)?;
-        let targets = VertexBuffer::new(&self.targets, STRIDE);
-        let bind = || self.device_mesh.bind_move(held, &targets, WORST, (&self.numbers, SHARE));
+        let targets = VertexBuffer::new(self.targets.slice(..), STRIDE);
+        let bind =
+            || self.device_mesh.bind_move(held, &targets, WORST, self.numbers.slice(SHARE..));
         self.held = (clamp && !held.is_empty()).then(bind).transpose()?;
         Ok(())
     }

@@ -86,7 +86,7 @@ pub(crate) fn simulate(
     });
     let stride = size_of::<[f32; 2]>() as u64;
     let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
-    let bound = device_mesh.bind_vertices(&VertexBuffer::new(&buffer, stride))?;
+    let bound = device_mesh.bind_vertices(&VertexBuffer::new(buffer.slice(..), stride))?;
     let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
 
     let mut left_alone = mesh.points.clone();

@@ -77,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX,
         mapped_at_creation: false,
     });
-    let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, 8))?;
+    let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), 8))?;
     soak("frames", frames, |done| {
         let mut encoder = gpu.device().create_command_encoder(&Default::default());
         sweeps.encode_sweeps(&mut encoder, 1);

@@ -138,7 +138,7 @@ impl App {
     pub(crate) fn objective(&self, sweeps: &Sweeps) -> ObjectiveValues {
         let buffer =
             self.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
-        let bound = sweeps.bind_objective(&buffer, 0).unwrap();
+        let bound = sweeps.bind_objective(buffer.slice(..)).unwrap();
         self.submit(|encoder| bound.encode_objective(encoder));
         bytemuck::pod_read_unaligned(bytemuck::cast_slice(&self.read(&buffer)))
     }
@@ -199,7 +199,7 @@ impl Vertices {
     }
 
     pub(crate) fn place(&self) -> VertexBuffer<'_> {
-        VertexBuffer::new(&self.buffer, self.stride).offset(self.offset)
+        VertexBuffer::new(self.buffer.slice(self.offset..), self.stride)
     }
 
     pub(crate) fn bind(&self, device_mesh: &DeviceMesh) -> BoundVertices {

@@ -26,8 +26,8 @@ impl Drag {
         let numbers = app.buffer(32, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST);
         let fillers: Vec<u32> = (0..8).map(filler).collect();
         app.gpu.queue().write_buffer(&numbers, 0, bytemuck::cast_slice(&fillers));
-        let place = VertexBuffer::new(&targets, 8);
-        let share = (&numbers, 4 * SHARE as u64);
+        let place = VertexBuffer::new(targets.slice(..), 8);
+        let share = numbers.slice(4 * SHARE as u64..);
         let bound = mesh.bind_move(vertices, &place, worst_imr, share).unwrap();
         Self { targets, numbers, bound }
     }
@@ -155,10 +155,10 @@ fn a_vertex_that_reaches_its_target_is_there_exactly() {
     let v = interior(&mesh)[40];
     let targets = app.buffer(24, Usage::STORAGE | Usage::COPY_DST);
     let share = app.buffer(4, Usage::STORAGE | Usage::COPY_SRC);
-    let place = VertexBuffer::new(&targets, 16).offset(4).origin(origin).scale(2.0);
-    let bound = device_mesh.bind_move(&[v, v], &place, 8.0, (&share, 0)).err().unwrap();
-    assert!(bound.to_string().contains("it has 24 bytes, and 24 from byte 4"), "{bound}");
-    let bound = device_mesh.bind_move(&[v], &place, 8.0, (&share, 0)).unwrap();
+    let place = VertexBuffer::new(targets.slice(4..), 16).origin(origin).scale(2.0);
+    let bound = device_mesh.bind_move(&[v, v], &place, 8.0, share.slice(..)).err().unwrap();
+    assert!(bound.to_string().contains("it has 20 bytes from byte 4 on, and 24"), "{bound}");
+    let bound = device_mesh.bind_move(&[v], &place, 8.0, share.slice(..)).unwrap();
     let [x, y] = mesh.points[v as usize];
     let to = [(x - origin[0] + 1e-3) * 2.0, (y - origin[1]) * 2.0].map(|x| x as f32);
     app.gpu.queue().write_buffer(&targets, 4, bytemuck::cast_slice(&to));
@@ -231,20 +231,23 @@ fn a_move_that_cannot_be_bound_is_refused() {
     let device_mesh = app.mesh(&mesh);
     let buffer = app.buffer(64, Usage::STORAGE);
     let other = app.buffer(8, Usage::COPY_DST);
-    let place = VertexBuffer::new(&buffer, 8);
-    let refused = |vertices: &[u32], worst, share: (&wgpu::Buffer, u64)| {
+    let place = VertexBuffer::new(buffer.slice(..), 8);
+    let refused = |vertices: &[u32], worst, share: wgpu::BufferSlice<'_>| {
         device_mesh.bind_move(vertices, &place, worst, share).err().unwrap()
     };
-    let error = refused(&[0], f64::NAN, (&buffer, 0));
+    let error = refused(&[0], f64::NAN, buffer.slice(..));
     assert!(matches!(error, SmoothError::Mesh(MeshError::BoundNotANumber)), "{error}");
-    let error = refused(&[5, 100_000], 8.0, (&buffer, 0));
+    let error = refused(&[5, 100_000], 8.0, buffer.slice(..));
     let SmoothError::Mesh(MeshError::IndexOutOfRange { vertex: 100_000, .. }) = error else {
         panic!("{error}");
     };
     for (error, part) in [
-        (refused(&[0], 8.0, (&buffer, 32)), "targets and share are in one buffer"),
-        (refused(&[0], 8.0, (&other, 0)), "needs STORAGE as well"),
-        (refused(&[0; 9], 8.0, (&other, 0)), "it has 64 bytes, and 72 from byte 0 are needed"),
+        (refused(&[0], 8.0, buffer.slice(32..)), "targets and share are in one buffer"),
+        (refused(&[0], 8.0, other.slice(..)), "needs STORAGE as well"),
+        (
+            refused(&[0; 9], 8.0, other.slice(..)),
+            "it has 64 bytes from byte 0 on, and 72 are needed",
+        ),
     ] {
         assert!(matches!(error, SmoothError::Gpu(GpuError::Buffer(_))), "{error:?}");
         assert!(error.to_string().contains(part), "{error}");

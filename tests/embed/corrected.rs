@@ -132,7 +132,7 @@ fn vertices_that_are_pinned_or_masked_stay_and_others_are_corrected_around_them(
     masked.iter().for_each(|&v| words[v as usize] = 1);
     let buffer = app.buffer(4 * words.len() as u64, Usage::STORAGE | Usage::COPY_DST);
     app.gpu.queue().write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-    let mask = device_mesh.bind_mask(&buffer, 0).unwrap();
+    let mask = device_mesh.bind_mask(buffer.slice(..)).unwrap();
     let first = app.objective(&sweeps).of(Metric::Imr);
     app.submit(|encoder| {
         mask.encode_mask(encoder);
@@ -301,7 +301,7 @@ fn encoding_frame_after_frame_allocates_nothing() {
     let device_mesh = app.mesh(&plate(300));
     let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
     let buffer = app.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE);
-    let objective = sweeps.bind_objective(&buffer, 0).unwrap();
+    let objective = sweeps.bind_objective(buffer.slice(..)).unwrap();
     let mut made = Vec::new();
     for _ in 0..40 {
         app.submit(|encoder| {

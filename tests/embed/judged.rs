@@ -115,8 +115,8 @@ fn a_change_of_the_mesh_begins_the_sweeps_anew() {
     // A vertex moved toward a target, and later a vertex that has reached its target.
     let targets = frames.app.buffer(8, Usage::STORAGE | Usage::COPY_DST);
     let share = frames.app.buffer(4, Usage::STORAGE);
-    let place = VertexBuffer::new(&targets, 8);
-    let drag = frames.device_mesh.bind_move(&[v], &place, 8.0, (&share, 0)).unwrap();
+    let place = VertexBuffer::new(targets.slice(..), 8);
+    let drag = frames.device_mesh.bind_move(&[v], &place, 8.0, share.slice(..)).unwrap();
     let [x, y] = frames.points()[v as usize].map(|x| x as f32);
     frames.app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&[x + 1e-3, y]));
     let dragged = || {
@@ -151,7 +151,7 @@ fn two_schemes_on_one_mesh_are_each_judged_and_evaluations_in_between_do_not_cou
     let other = options().scheme("rms".parse().unwrap());
     let mut other = Sweeps::until_converged(&device_mesh, &other).unwrap();
     let buffer = app.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE);
-    let objective = sweeps.bind_objective(&buffer, 0).unwrap();
+    let objective = sweeps.bind_objective(buffer.slice(..)).unwrap();
     app.submit(|encoder| {
         for _ in 0..40 {
             sweeps.encode_sweeps(encoder, 1);

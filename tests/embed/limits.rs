@@ -127,7 +127,9 @@ fn a_device_with_exactly_the_required_limits_moves_all_vertices() {
     let all: Vec<u32> = (0..size.vertices as u32).collect();
     let [targets, share] =
         [8 * size.vertices as u64, 4].map(|bytes| app.buffer(bytes, wgpu::BufferUsages::STORAGE));
-    device_mesh.bind_move(&all, &VertexBuffer::new(&targets, 8), 8.0, (&share, 0)).unwrap();
+    device_mesh
+        .bind_move(&all, &VertexBuffer::new(targets.slice(..), 8), 8.0, share.slice(..))
+        .unwrap();
 }
 
 #[test]
@@ -186,7 +188,7 @@ fn a_vertex_buffer_too_large_to_bind_is_refused() {
     let device_mesh = app.mesh(&mesh);
     let bytes = 64 * mesh.points.len() as u64;
     let buffer = app.buffer(bytes, wgpu::BufferUsages::STORAGE);
-    let place = VertexBuffer::new(&buffer, 64);
+    let place = VertexBuffer::new(buffer.slice(..), 64);
     let error = device_mesh.bind_vertices(&place).err().unwrap();
     let needed = VertexBuffer::binding_size(mesh.points.len(), 64, 0);
     assert_eq!(needed, bytes - 56);

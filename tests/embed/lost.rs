@@ -282,12 +282,12 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         let usage = wgpu::BufferUsages::STORAGE;
         let published = app.buffer(128, usage | wgpu::BufferUsages::COPY_SRC);
         let bound = vertices.bind(&device_mesh);
-        let objective = sweeps.bind_objective(&published, 0).unwrap();
+        let objective = sweeps.bind_objective(published.slice(..)).unwrap();
         let mut judged = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
         let words = app.buffer(8 * mesh.points.len() as u64, usage);
-        let mask = device_mesh.bind_mask(&words, 0).unwrap();
-        let targets = VertexBuffer::new(&words, 8);
-        let drag = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 56)).unwrap();
+        let mask = device_mesh.bind_mask(words.slice(..)).unwrap();
+        let targets = VertexBuffer::new(words.slice(..), 8);
+        let drag = device_mesh.bind_move(&[7], &targets, 8.0, published.slice(56..)).unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 2));
         app.device().destroy();
         app.submit(|encoder| {
@@ -308,9 +308,9 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         assert_lost(&gpu_error(device_mesh.set_pinned(&[]).unwrap_err()));
         assert_lost(&gpu_error(app.gpu.prepare(&Options::default()).unwrap_err()));
         judged.restart();
-        let _ = device_mesh.bind_move(&[7], &targets, 8.0, (&published, 56)).map(drop);
-        let _ = device_mesh.bind_mask(&words, 0).map(drop);
-        assert_lost(&Readback::<f32>::new(&app.gpu, &published, 0, 1).err().unwrap());
+        let _ = device_mesh.bind_move(&[7], &targets, 8.0, published.slice(56..)).map(drop);
+        let _ = device_mesh.bind_mask(words.slice(..)).map(drop);
+        assert_lost(&Readback::<f32>::new(&app.gpu, published.slice(..), 1).err().unwrap());
         if app.device().features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             assert_lost(&Budget::micros(100).timed_by(&app.gpu).err().unwrap());
         }

@@ -73,7 +73,7 @@ fn several_evaluations_in_one_command_buffer_are_each_of_their_moment() {
     app.submit(|encoder| {
         for k in 0..count {
             let offset = (4 * WORDS * k) as u64;
-            sweeps.bind_objective(&published, offset).unwrap().encode_objective(encoder);
+            sweeps.bind_objective(published.slice(offset..)).unwrap().encode_objective(encoder);
             sweeps.encode_sweeps(encoder, u32::from(k < 40));
         }
     });
@@ -100,7 +100,10 @@ fn metrics_not_tracked_are_zero_and_the_rest_of_the_buffer_untouched() {
         let words: Vec<u32> = (0..100).map(filler).collect();
         app.gpu.queue().write_buffer(&published, 0, bytemuck::cast_slice(&words));
         app.submit(|encoder| {
-            sweeps.bind_objective(&published, 4 * first as u64).unwrap().encode_objective(encoder);
+            sweeps
+                .bind_objective(published.slice(4 * first as u64..))
+                .unwrap()
+                .encode_objective(encoder);
         });
         let found = app.read(&published);
         let written: &ObjectiveValues =
@@ -198,7 +201,7 @@ fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
         let place = vertices.place().origin(origin).scale(scale);
         let bound = device_mesh.bind_vertices(&place).unwrap();
         let published = readable(&app, WORDS);
-        let drawn = device_mesh.bind_drawn_objective(&place, &all_tracked(), (&published, 0));
+        let drawn = device_mesh.bind_drawn_objective(&place, &all_tracked(), published.slice(..));
         let drawn = drawn.unwrap();
         let evaluated = || -> ObjectiveValues {
             app.submit(|encoder| drawn.encode_objective(encoder));

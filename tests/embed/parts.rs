@@ -106,19 +106,19 @@ fn an_application_gets_the_same_results_part_by_part() {
         let [mask, targets] =
             [4, 8].map(|bytes| app.buffer(bytes * mesh.points.len() as u64, usage));
         app.gpu.queue().write_buffer(&mask, 0, bytemuck::cast_slice(&words));
-        let mask = device_mesh.bind_mask(&mask, 0).unwrap();
+        let mask = device_mesh.bind_mask(mask.slice(..)).unwrap();
         // All dragged vertices move toward a common point, until triangles stop them.
         let to = vec![[1.0f32, 1.0]; mesh.points.len()];
         app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&to));
         let share = app.buffer(4, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-        let place = VertexBuffer::new(&targets, 8);
+        let place = VertexBuffer::new(targets.slice(..), 8);
         let moved: Vec<u32> = (0..mesh.points.len() as u32).step_by(41).collect();
-        let drag = device_mesh.bind_move(&moved, &place, 1e4, (&share, 0)).unwrap();
+        let drag = device_mesh.bind_move(&moved, &place, 1e4, share.slice(..)).unwrap();
         // An import applies the move of a plate's corner.
         vertices.put(&app, 0, [-0.125, -0.25]);
         let last_valid = device_mesh.keep_last_valid().unwrap();
         let all: Vec<u32> = (0..mesh.points.len() as u32).collect();
-        if let Err(error) = device_mesh.bind_move(&all, &place, 1e4, (&share, 0)) {
+        if let Err(error) = device_mesh.bind_move(&all, &place, 1e4, share.slice(..)) {
             let text = "triangles around moved vertices needs";
             assert!(error.to_string().contains(text), "{error}");
             assert!(matches!(gpu_error(error), GpuError::Limit { .. }));

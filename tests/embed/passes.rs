@@ -48,14 +48,14 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
         let vertices = Vertices::usual(&app, &mesh);
         let bound = vertices.bind(&device_mesh);
         let numbers = app.buffer(128, Usage::STORAGE | Usage::COPY_SRC);
-        let objective = sweeps.bind_objective(&numbers, 0).unwrap();
+        let objective = sweeps.bind_objective(numbers.slice(..)).unwrap();
         let [x, y] = mesh.points[v as usize].map(|x| 0.5 * x as f32);
         let targets = app.buffer(8, Usage::STORAGE | Usage::COPY_DST);
         app.gpu.queue().write_buffer(&targets, 0, bytemuck::cast_slice(&[x + 1e-3, y]));
-        let place = VertexBuffer::new(&targets, 8);
-        let drag = device_mesh.bind_move(&[v], &place, 8.0, (&numbers, 124)).unwrap();
+        let place = VertexBuffer::new(targets.slice(..), 8);
+        let drag = device_mesh.bind_move(&[v], &place, 8.0, numbers.slice(124..)).unwrap();
         let mask = app.buffer(4 * mesh.points.len() as u64, Usage::STORAGE);
-        let mask = device_mesh.bind_mask(&mask, 0).unwrap();
+        let mask = device_mesh.bind_mask(mask.slice(..)).unwrap();
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
         // Kernels of the application: one doubles the targets in advance, the other the exported vertices
         // afterwards.

@@ -144,7 +144,7 @@ fn a_mask_of_the_application_holds_vertices_beside_pins() {
     let free = interior(&mesh);
     let mut held = Held::new(Mesh { fixed: vec![free[3]], ..mesh });
     let buffer = mask(&held, |v| v % 2 == 0);
-    let bound = held.device_mesh.bind_mask(&buffer, 12).unwrap();
+    let bound = held.device_mesh.bind_mask(buffer.slice(12..)).unwrap();
     // The mask takes effect once it is encoded.
     assert!(held.moved().iter().any(|v| v % 2 == 0));
     held.app.submit(|encoder| bound.encode_mask(encoder));
@@ -169,7 +169,7 @@ fn a_mask_that_changes_nothing_is_no_change_of_the_mesh() {
     let options = Options::default().max_sweeps(2);
     held.sweeps = Sweeps::until_converged(&held.device_mesh, &options).unwrap();
     let buffer = mask(&held, |v| v % 5 == 0);
-    let bound = held.device_mesh.bind_mask(&buffer, 12).unwrap();
+    let bound = held.device_mesh.bind_mask(buffer.slice(12..)).unwrap();
     let mut frame = || {
         held.app.submit(|encoder| {
             bound.encode_mask(encoder);
@@ -187,9 +187,9 @@ fn a_mask_that_cannot_be_bound_is_refused() {
     let held = Held::new(bad_plate(300));
     let bytes = 4 * held.mesh.points.len() as u64;
     let short = held.app.buffer(bytes, wgpu::BufferUsages::STORAGE);
-    let error = held.device_mesh.bind_mask(&short, 4).err().unwrap();
+    let error = held.device_mesh.bind_mask(short.slice(4..)).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
-    held.device_mesh.bind_mask(&short, 0).unwrap();
+    held.device_mesh.bind_mask(short.slice(..)).unwrap();
 }
 
 #[test]

@@ -21,12 +21,13 @@ fn the_latest_values_are_those_of_the_last_frame_that_is_done() {
     let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let numbers =
         app.buffer(8 + size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
-    let objective = sweeps.bind_objective(&numbers, 8).unwrap();
+    let objective = sweeps.bind_objective(numbers.slice(8..)).unwrap();
     let vertices = Vertices::usual(&app, &mesh);
     let bound = vertices.bind(&device_mesh);
-    let mut values = Readback::<ObjectiveValues>::new(&app.gpu, &numbers, 8, 1).unwrap();
+    let mut values = Readback::<ObjectiveValues>::new(&app.gpu, numbers.slice(8..), 1).unwrap();
     let count = mesh.points.len();
-    let mut positions = Readback::<[f32; 3]>::new(&app.gpu, &vertices.buffer, 0, count).unwrap();
+    let mut positions =
+        Readback::<[f32; 3]>::new(&app.gpu, vertices.buffer.slice(..), count).unwrap();
     assert!(values.latest().unwrap().is_none() && values.age().is_none());
     let mut seen = Vec::new();
     for frame in 0..8 {
@@ -53,7 +54,7 @@ fn the_latest_values_are_those_of_the_last_frame_that_is_done() {
 fn a_device_that_is_behind_gets_no_more_copies_and_nothing_waits() {
     let app = App::new();
     let buffer = app.buffer(4, Usage::COPY_DST | Usage::COPY_SRC);
-    let mut readback = Readback::<u32>::new(&app.gpu, &buffer, 0, 1).unwrap();
+    let mut readback = Readback::<u32>::new(&app.gpu, buffer.slice(..), 1).unwrap();
     app.gpu.queue().write_buffer(&buffer, 0, &7_u32.to_le_bytes());
     // No copy arrives before the submission.
     let mut encoder = app.encoder();
@@ -78,7 +79,7 @@ fn a_device_that_is_behind_gets_no_more_copies_and_nothing_waits() {
 fn the_latest_values_are_new_although_nobody_asked_for_earlier_ones() {
     let app = App::new();
     let buffer = app.buffer(4, Usage::COPY_DST | Usage::COPY_SRC);
-    let mut readback = Readback::<u32>::new(&app.gpu, &buffer, 0, 1).unwrap();
+    let mut readback = Readback::<u32>::new(&app.gpu, buffer.slice(..), 1).unwrap();
     for number in 1..=60_u32 {
         app.gpu.queue().write_buffer(&buffer, 0, &number.to_le_bytes());
         let mut is_copied = false;
@@ -98,7 +99,7 @@ fn the_latest_values_are_new_although_nobody_asked_for_earlier_ones() {
 fn an_encoder_that_is_dropped_takes_no_copy_with_it() {
     let app = App::new();
     let buffer = app.buffer(8, Usage::STORAGE | Usage::COPY_SRC);
-    let mut readback = Readback::<[u32; 2]>::new(&app.gpu, &buffer, 0, 1).unwrap();
+    let mut readback = Readback::<[u32; 2]>::new(&app.gpu, buffer.slice(..), 1).unwrap();
     for _ in 0..10 {
         let mut encoder = app.encoder();
         readback.encode_readback(&mut encoder);
@@ -118,7 +119,7 @@ fn an_encoder_that_is_dropped_takes_no_copy_with_it() {
 fn a_readback_reports_a_lost_device() {
     let app = App::new();
     let buffer = app.buffer(4, Usage::COPY_SRC);
-    let mut readback = Readback::<u32>::new(&app.gpu, &buffer, 0, 1).unwrap();
+    let mut readback = Readback::<u32>::new(&app.gpu, buffer.slice(..), 1).unwrap();
     app.submit(|encoder| {
         readback.encode_readback(encoder);
     });
@@ -136,17 +137,17 @@ fn a_readback_reports_a_lost_device() {
 fn readbacks_of_wrong_buffers_and_ranges_are_refused() {
     let (app, other) = (App::new(), App::new());
     let usage = Usage::COPY_SRC;
-    let refused = |buffer: &wgpu::Buffer, offset, count, part: &str| {
-        let error = Readback::<f32>::new(&app.gpu, buffer, offset, count).err().unwrap();
+    let refused = |values: wgpu::BufferSlice<'_>, count, part: &str| {
+        let error = Readback::<f32>::new(&app.gpu, values, count).err().unwrap();
         assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
         assert!(error.to_string().contains(part), "{error}");
     };
     let good = app.buffer(16, usage);
-    refused(&app.buffer(16, Usage::STORAGE), 0, 1, "needs COPY_SRC as well");
-    refused(&good, 4, 4, "it has 16 bytes, and 16 from byte 4 are needed");
-    refused(&good, u64::MAX - 3, 4, "it has 16 bytes");
-    refused(&good, 0, usize::MAX, "bytes");
-    refused(&good, 2, 1, "must be multiples of 4");
-    refused(&good, 0, 0, "must be multiples of 4");
-    refused(&other.buffer(16, usage), 0, 1, "belongs to another device");
+    refused(app.buffer(16, Usage::STORAGE).slice(..), 1, "needs COPY_SRC as well");
+    refused(good.slice(4..), 4, "it has 12 bytes from byte 4 on, and 16 are needed");
+    refused(good.slice(..12), 4, "it has 12 bytes from byte 0 on, and 16 are needed");
+    refused(good.slice(..), usize::MAX, "bytes");
+    refused(good.slice(2..), 1, "must be multiples of 4");
+    refused(good.slice(..), 0, "must be multiples of 4");
+    refused(other.buffer(16, usage).slice(..), 1, "belongs to another device");
 }

@@ -18,7 +18,7 @@ fn assert_place_refused(bytes: u64, usage: Usage, offset: u64, stride: u64, text
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
     let buffer = app.buffer(bytes, usage);
-    let place = VertexBuffer::new(&buffer, stride).offset(offset);
+    let place = VertexBuffer::new(buffer.slice(offset..), stride);
     let error = device_mesh.bind_vertices(&place).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     let whole = format!("the application's buffer cannot be used: {text}");
@@ -39,12 +39,10 @@ fn a_buffer_too_small_is_refused() {
         Usage::STORAGE,
         0,
         12,
-        "it has 424 bytes, and 428 from byte 0 are needed",
+        "it has 424 bytes from byte 0 on, and 428 are needed",
     );
-    let text = "it has 432 bytes, and 428 from byte 8 are needed";
+    let text = "it has 424 bytes from byte 8 on, and 428 are needed";
     assert_place_refused(432, Usage::STORAGE, 8, 12, text);
-    let text = "it has 432 bytes, and 428 from byte 18446744073709551612 are needed";
-    assert_place_refused(432, Usage::STORAGE, u64::MAX - 3, 12, text);
 }
 
 #[test]
@@ -52,7 +50,7 @@ fn a_buffer_just_large_enough_is_not() {
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
     let buffer = app.buffer(8 + 12 * 35 + 8, Usage::STORAGE);
-    let place = VertexBuffer::new(&buffer, 12).offset(8);
+    let place = VertexBuffer::new(buffer.slice(8..), 12);
     app.submit(|encoder| device_mesh.bind_vertices(&place).unwrap().encode_export(encoder));
 }
 
@@ -82,7 +80,7 @@ fn coordinates_that_single_precision_tangles_are_refused_with_an_origin() {
     let app = App::new();
     let lattice = lattice(5, 5);
     let buffer = app.buffer(1000, Usage::STORAGE);
-    let place = VertexBuffer::new(&buffer, 12);
+    let place = VertexBuffer::new(buffer.slice(..), 12);
     let refused = |mesh: &Mesh, place: VertexBuffer<'_>, part: &str| {
         let error = app.mesh(mesh).bind_vertices(&place).err().unwrap();
         assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
@@ -109,7 +107,7 @@ fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
     let device_mesh = app.mesh(&lattice(5, 5));
     let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
     let buffer = app.buffer(bytes, usage);
-    let error = sweeps.bind_objective(&buffer, offset).err().unwrap();
+    let error = sweeps.bind_objective(buffer.slice(offset..)).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
     assert!(error.to_string().ends_with(text), "{error}");
 }
@@ -119,7 +117,8 @@ fn a_buffer_for_objectives_is_checked_like_a_vertex_buffer() {
     let (storage, needed) = (Usage::STORAGE, size_of::<ObjectiveValues>() as u64);
     assert_objective_refused(needed, Usage::COPY_DST, 0, "and needs STORAGE as well");
     for (bytes, offset) in [(24, 0), (needed + 8, 40)] {
-        let text = format!("it has {bytes} bytes, and {needed} from byte {offset} are needed");
+        let rest = bytes - offset;
+        let text = format!("it has {rest} bytes from byte {offset} on, and {needed} are needed");
         assert_objective_refused(bytes, storage, offset, &text);
     }
     assert_objective_refused(needed + 4, storage, 2, "the offset is 2 bytes, not a multiple of 4");
@@ -146,7 +145,7 @@ fn buffers_and_meshes_of_another_device_are_refused() {
     let vertices = Vertices::usual(&other, &mesh);
     let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
-    let error = sweeps.bind_objective(&vertices.buffer, 0).err().unwrap();
+    let error = sweeps.bind_objective(vertices.buffer.slice(..)).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
 }
 

@@ -158,7 +158,7 @@ fn pins_and_masks_hold_sliding_vertices_with_their_partners() {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
     let mask = sliding.app.buffer(4 * words.len() as u64, usage);
     sliding.app.gpu.queue().write_buffer(&mask, 0, bytemuck::cast_slice(&words));
-    let bound = sliding.device_mesh.bind_mask(&mask, 0).unwrap();
+    let bound = sliding.device_mesh.bind_mask(mask.slice(..)).unwrap();
     sliding.app.submit(|encoder| bound.encode_mask(encoder));
     let has_moved = moved();
     assert_eq!([first, second, below].map(has_moved), [false, false, true]);

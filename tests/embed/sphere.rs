@@ -64,8 +64,8 @@ fn a_buffer_in_degrees_is_refused_for_a_mesh_that_moves_in_the_projection() {
     let vertices = Vertices::usual(&app, &mesh);
     let numbers = app.buffer(256, Usage::STORAGE | Usage::COPY_SRC);
     let bind = |place: &VertexBuffer<'_>| {
-        let share = device_mesh.bind_move(&[317], place, 8.0, (&numbers, 0));
-        let drawn = device_mesh.bind_drawn_objective(place, &Options::default(), (&numbers, 0));
+        let share = device_mesh.bind_move(&[317], place, 8.0, numbers.slice(..));
+        let drawn = device_mesh.bind_drawn_objective(place, &Options::default(), numbers.slice(..));
         [
             device_mesh.bind_vertices(place).err(),
             share.err().map(gpu_error),

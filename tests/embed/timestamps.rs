@@ -22,7 +22,7 @@ fn timed_frame(app: &App, mesh: &Mesh, timestamps: &mut Timestamps, count: u32) 
     let options = Options::default().scheme("edge+imr".parse().unwrap());
     let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
     let bound = Vertices::usual(app, mesh).bind(&device_mesh);
-    let objective = sweeps.bind_objective(&app.buffer(128, Usage::STORAGE), 0).unwrap();
+    let objective = sweeps.bind_objective(app.buffer(128, Usage::STORAGE).slice(..)).unwrap();
     let mut encoder = app.encoder();
     let mut timed = timestamps.time(&mut encoder);
     bound.encode_import(&mut timed);

@@ -13,7 +13,7 @@ pub(crate) async fn all(mesh: &Mesh) -> Result<Vec<String>, GpuError> {
         mapped_at_creation: false,
     });
     let other = Gpu::open_async(None).await?;
-    let refused = match Readback::<f32>::new(&other, &buffer, 0, 4) {
+    let refused = match Readback::<f32>::new(&other, buffer.slice(..), 4) {
         Ok(_) => other.errors_async().await,
         Err(error) => Err(error),
     };

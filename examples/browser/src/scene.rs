@@ -56,7 +56,7 @@ impl Scene {
         let numbers = buffer("numbers", SHARE + 4, usage);
         let targets = buffer("targets", 8 * plate.hole.len() as u64, usage);
 
-        let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, 8))?;
+        let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), 8))?;
         let sweeps = Sweeps::until_converged_async(&device_mesh, &options).await?;
         // Browsers round timestamps to approximately a tenth of a millisecond.
         let budget = Budget::micros(BUDGET.0).at_most(BUDGET.1);
@@ -64,15 +64,15 @@ impl Scene {
             true => budget.timed_by(gpu)?,
             false => budget,
         };
-        let to = VertexBuffer::new(&targets, 8);
+        let to = VertexBuffer::new(targets.slice(..), 8);
         Ok(Self {
             untangling: UntanglingSweeps::new(&device_mesh)?,
-            objective: sweeps.bind_objective(&numbers, 0)?,
-            drag: device_mesh.bind_move(&plate.hole, &to, WORST, (&numbers, SHARE))?,
+            objective: sweeps.bind_objective(numbers.slice(..))?,
+            drag: device_mesh.bind_move(&plate.hole, &to, WORST, numbers.slice(SHARE..))?,
             held: None,
             home: plate.hole.iter().map(|&v| single(v as usize)).collect(),
-            values: Readback::new(gpu, &numbers, 0, 1)?,
-            positions: Readback::new(gpu, &vertices, 0, count)?,
+            values: Readback::new(gpu, numbers.slice(..), 1)?,
+            positions: Readback::new(gpu, vertices.slice(..), count)?,
             frames: 0,
             gpu: gpu.clone(),
             bound,

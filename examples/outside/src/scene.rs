@@ -72,10 +72,10 @@ impl Scene {
         let numbers = buffer("numbers", SHARE + 4, Usage::STORAGE | Usage::COPY_SRC);
         let targets = buffer("targets", 8 * count as u64, Usage::STORAGE | Usage::COPY_DST);
 
-        let bound = device_mesh.bind_vertices(&VertexBuffer::new(&vertices, STRIDE))?;
+        let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), STRIDE))?;
         let sweeps = Sweeps::until_converged(&device_mesh, &options())?;
         let untangling = UntanglingSweeps::new(&device_mesh)?;
-        let objective = sweeps.bind_objective(&numbers, 0)?;
+        let objective = sweeps.bind_objective(numbers.slice(..))?;
         let budget = Budget::micros(2000).at_most(20);
         let budget = match gpu.device().features().contains(Gpu::optional_features()) {
             true => budget.timed_by(gpu)?,
@@ -89,9 +89,9 @@ impl Scene {
             untangling,
             budget,
             objective,
-            values: Readback::new(gpu, &numbers, 0, 1)?,
-            share: Readback::new(gpu, &numbers, SHARE, 1)?,
-            positions: Readback::new(gpu, &vertices, 0, count)?,
+            values: Readback::new(gpu, numbers.slice(..), 1)?,
+            share: Readback::new(gpu, numbers.slice(SHARE..), 1)?,
+            positions: Readback::new(gpu, vertices.slice(..), count)?,
             vertices,
             numbers,
             targets,
@@ -155,8 +155,8 @@ impl Scene {
 
     /// Binds a move of `vertices` for a drag.
     pub(crate) fn take_hold(&self, vertices: &[u32]) -> Result<BoundMove> {
-        let targets = VertexBuffer::new(&self.targets, 8);
-        Ok(self.device_mesh.bind_move(vertices, &targets, WORST, (&self.numbers, SHARE))?)
+        let targets = VertexBuffer::new(self.targets.slice(..), 8);
+        Ok(self.device_mesh.bind_move(vertices, &targets, WORST, self.numbers.slice(SHARE..))?)
     }
 
     /// Returns the original positions of some vertices, as given by the mesh.

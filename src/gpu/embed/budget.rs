@@ -156,7 +156,7 @@ impl Clock {
             let usage = Usage::QUERY_RESOLVE | Usage::COPY_SRC | Usage::COPY_DST;
             (queries, zeroed(gpu, "budget", size_of::<[u64; 3]>() as u64, usage))
         })?;
-        let readback = Readback::new(gpu, &times, 0, 1)?;
+        let readback = Readback::new(gpu, times.slice(..), 1)?;
         let period = 1e-9 * f64::from(gpu.queue.get_timestamp_period());
         let (measuring, taken) = (VecDeque::with_capacity(8), None);
         Ok(Self { queries, times, readback, measuring, taken, period })

@@ -64,7 +64,7 @@ impl Moves {
 /// #     sweeps: &mut Sweeps, vertices: &BoundVertices, encoder: &mut wgpu::CommandEncoder, where_to: &[[f32; 2]],
 /// # ) -> Result<(), SmoothError> {
 /// // When the user takes hold of a hole; a target is two floats.
-/// let drag = mesh.bind_move(hole, &VertexBuffer::new(targets, 8), 8.0, (numbers, 0))?;
+/// let drag = mesh.bind_move(hole, &VertexBuffer::new(targets.slice(..), 8), 8.0, numbers.slice(..))?;
 /// // In each frame.
 /// queue.write_buffer(targets, 0, bytemuck::cast_slice(where_to));
 /// drag.encode_move(encoder);
@@ -87,17 +87,16 @@ impl BoundMove {
         mesh: &MeshBuffers,
         mut moves: Moves,
         targets: &VertexBuffer<'_>,
-        share: &wgpu::Buffer,
-        offset: u64,
+        share: wgpu::BufferSlice<'_>,
     ) -> Result<Self, GpuError> {
-        if targets.buffer == share {
+        if targets.slice.buffer() == share.buffer() {
             let problem = "targets and share are in one buffer, and a kernel that writes a buffer \
                            cannot read another part of it: use two buffers";
             return Err(GpuError::Buffer(problem.into()));
         }
         let stride = targets.words()?;
         let window = targets.window(gpu, moves.listed.max(1))?;
-        let share = Window::new(gpu, share, offset, size_of::<f32>() as u64)?;
+        let share = Window::new(gpu, share, size_of::<f32>() as u64)?;
         let Coordinates { center, scale } = targets.unjudged_coordinates(problem)?;
         let ([x, x_low], [y, y_low]) = (pair(center.x), pair(center.y));
         let mut corners = moves.corners(problem);

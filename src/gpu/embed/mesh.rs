@@ -200,18 +200,17 @@ impl DeviceMesh {
         Ok(pins.change(gpu, problem, buffers, &change)?)
     }
 
-    /// Binds a mask in a buffer of the application: one u32 per vertex of the mesh from byte `offset` on, nonzero for a
-    /// vertex that must stay in place. `offset` is a multiple of 4. Kernels of the application may write the mask, and
-    /// [`BoundMask::encode_mask`] applies it.
+    /// Binds a mask in a buffer of the application: one u32 per vertex of the mesh from the start of the slice on, nonzero
+    /// for a vertex that must stay in place. The slice starts at a multiple of 4 bytes. Kernels of the application may
+    /// write the mask, and [`BoundMask::encode_mask`] applies it.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, was created without `STORAGE`, or belongs to another device, or
-    /// if `offset` is not a multiple of 4. [`GpuError::Limit`] if the mask exceeds the device's
-    /// `max_storage_buffer_binding_size`.
-    pub fn bind_mask(&self, buffer: &wgpu::Buffer, offset: u64) -> Result<BoundMask, GpuError> {
+    /// [`GpuError::Buffer`] if the slice is too small or misaligned, or if its buffer was created without `STORAGE` or
+    /// belongs to another device. [`GpuError::Limit`] if the mask exceeds the device's `max_storage_buffer_binding_size`.
+    pub fn bind_mask(&self, mask: wgpu::BufferSlice<'_>) -> Result<BoundMask, GpuError> {
         let Self { gpu, problem, buffers, numbers, pins, vertex_count, .. } = self;
         let bytes = (*vertex_count as u64).saturating_mul(size_of::<u32>() as u64);
-        let window = Window::new(gpu, buffer, offset, bytes)?;
+        let window = Window::new(gpu, mask, bytes)?;
         BoundMask::new(gpu, problem, buffers, numbers, pins, &window)
     }
 
@@ -239,7 +238,7 @@ impl DeviceMesh {
     ///
     /// # Errors
     /// [`GpuError::Buffer`] if the buffer is too small, was created without `STORAGE`, or belongs to another device; if
-    /// stride, offset, origin or scale are out of range; if the mesh is on the sphere and the buffer is not declared
+    /// start, stride, origin or scale are out of range; if the mesh is on the sphere and the buffer is not declared
     /// [`in_mercator_projection`](VertexBuffer::in_mercator_projection), or the reverse; or if rounding to single
     /// precision would invert triangles of the uploaded mesh (the message names a remedy). [`GpuError::Limit`] if the vertices exceed the device's
     /// `max_storage_buffer_binding_size`.
@@ -250,8 +249,8 @@ impl DeviceMesh {
 
     /// Binds the objectives of the vertices as drawn: of the floats in an application's vertex buffer, whose rounding
     /// may distort or invert triangles. Encode [`BoundObjective::encode_objective`] after the export. The objectives
-    /// that `options` track are written as [`ObjectiveValues`](crate::gpu::ObjectiveValues) to byte `values.1` of the
-    /// buffer `values.0`. No sweeps belong to these values, so [`stop`](crate::gpu::ObjectiveValues::stop) is 0.
+    /// that `options` track are written as [`ObjectiveValues`](crate::gpu::ObjectiveValues) to the start of the slice
+    /// `values`. No sweeps belong to these values, so [`stop`](crate::gpu::ObjectiveValues::stop) is 0.
     ///
     /// Takes 16 more bytes on the device per vertex, 32 with targets. If a vertex has floats that are not finite, its
     /// last finite floats are evaluated.
@@ -263,7 +262,7 @@ impl DeviceMesh {
         &self,
         vertices: &VertexBuffer<'_>,
         options: &Options,
-        values: (&wgpu::Buffer, u64),
+        values: wgpu::BufferSlice<'_>,
     ) -> Result<BoundObjective, SmoothError> {
         let Self { gpu, problem, buffers, numbers, vertex_count, .. } = self;
         options.check_with(&self.features())?;
@@ -274,7 +273,7 @@ impl DeviceMesh {
         let bound = BoundVertices::new(gpu, problem, *vertex_count, &drawn, numbers, vertices)?;
         let plan = Plan::new(options).endless();
         let run = Run::of_no_sweeps(gpu, problem, &drawn, plan)?;
-        Ok(BoundObjective::new(gpu, &run, Some(bound), values.0, values.1)?)
+        Ok(BoundObjective::new(gpu, &run, Some(bound), values)?)
     }
 
     /// Lists the features that the mesh adds to sweeps: targets, if present.
@@ -293,7 +292,7 @@ impl DeviceMesh {
     /// Binds vertices that the application moves toward targets, as far as the triangles allow: for handles, holes and
     /// boundaries that a user drags. The target of `vertices[i]` is vertex i of the buffer `targets`, in the
     /// coordinates of its origin and scale. When a frame's command buffer runs, the share of the ways that the vertices
-    /// have gone is written to byte `share.1` of the buffer `share.0`, as an f32 from 0 to 1.
+    /// have gone is written to the start of the slice `share`, as an f32 from 0 to 1.
     ///
     /// Call this method when a drag begins. During the drag, the application writes targets and encodes
     /// [`BoundMove::encode_move`] in each frame. Fixed vertices and vertices of the boundary can be moved too. Unless a
@@ -317,7 +316,7 @@ impl DeviceMesh {
         vertices: &[u32],
         targets: &VertexBuffer<'_>,
         worst_imr: f64,
-        share: (&wgpu::Buffer, u64),
+        share: wgpu::BufferSlice<'_>,
     ) -> Result<BoundMove, SmoothError> {
         if worst_imr.is_nan() {
             return Err(MeshError::BoundNotANumber.into());
@@ -331,7 +330,7 @@ impl DeviceMesh {
         }
         let Self { gpu, problem, buffers, .. } = self;
         let moves = Moves { ways, listed: vertices.len(), worst_imr };
-        Ok(BoundMove::new(gpu, problem, buffers, moves, targets, share.0, share.1)?)
+        Ok(BoundMove::new(gpu, problem, buffers, moves, targets, share)?)
     }
 
     /// Returns the device number of a vertex of the application; [`NONE`] for a vertex of no triangle.

@@ -127,15 +127,14 @@ impl Run {
 }
 
 impl BoundObjective {
-    /// Binds the evaluation of the mesh, or of the vertices that `drawn` imports, to byte `offset` of `buffer`.
+    /// Binds the evaluation of the mesh, or of the vertices that `drawn` imports, to the start of `values`.
     pub(crate) fn new(
         gpu: &Gpu,
         run: &Run,
         drawn: Option<BoundVertices>,
-        buffer: &wgpu::Buffer,
-        offset: u64,
+        values: wgpu::BufferSlice<'_>,
     ) -> Result<Self, GpuError> {
-        let window = Window::new(gpu, buffer, offset, size_of::<ObjectiveValues>() as u64)?;
+        let window = Window::new(gpu, values, size_of::<ObjectiveValues>() as u64)?;
         let mut ideal_squared = [[0.0; 4]; SLOTS.div_ceil(4)];
         let Run { dispatches, evaluation, changes, triangles } = run;
         for metric in dispatches.plan.tracked() {

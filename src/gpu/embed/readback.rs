@@ -9,6 +9,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::zeroed;
+use crate::gpu::embed::window::check_size;
 use crate::gpu::scope::{WatchedDevice, check_alive, scoped, scoped_to_buffer};
 
 /// Limit of the copies in flight. A device with three copies in flight gets no further copy.
@@ -24,7 +25,7 @@ const COPIES: usize = 3;
 /// #     gpu: &Gpu, numbers: &wgpu::Buffer, objective: &BoundObjective, encoder: &mut wgpu::CommandEncoder,
 /// # ) -> Result<(), GpuError> {
 /// // Once; the buffer has usage COPY_SRC.
-/// let mut readback = Readback::<ObjectiveValues>::new(gpu, numbers, 0, 1)?;
+/// let mut readback = Readback::<ObjectiveValues>::new(gpu, numbers.slice(..), 1)?;
 /// // In each frame.
 /// objective.encode_objective(encoder);
 /// readback.encode_readback(encoder);
@@ -84,20 +85,16 @@ impl Drop for Arrival {
 }
 
 impl<T: Pod> Readback<T> {
-    /// Creates a readback of `count` values from byte `offset` of an application's buffer. Three staging buffers take
+    /// Creates a readback of the first `count` values of a slice of an application's buffer. Three staging buffers take
     /// three times the size of the values.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, was created without `COPY_SRC`, or belongs to another device;
-    /// if the offset or the total size, in bytes, is no multiple of 4; or if the size is 0. Another [`GpuError`] if the
-    /// device fails.
-    pub fn new(
-        gpu: &Gpu,
-        buffer: &wgpu::Buffer,
-        offset: u64,
-        count: usize,
-    ) -> Result<Self, GpuError> {
+    /// [`GpuError::Buffer`] if the slice is too small, or if its buffer was created without `COPY_SRC` or belongs to
+    /// another device; if the start of the slice or the total size, in bytes, is no multiple of 4; or if the size is 0.
+    /// Another [`GpuError`] if the device fails.
+    pub fn new(gpu: &Gpu, values: wgpu::BufferSlice<'_>, count: usize) -> Result<Self, GpuError> {
         let refuse = |problem: String| Err(GpuError::Buffer(problem));
+        let (buffer, offset) = (values.buffer(), values.offset());
         if !buffer.usage().contains(Usage::COPY_SRC) {
             let usage = buffer.usage();
             return refuse(format!("it was made for {usage:?}, and needs COPY_SRC as well"));
@@ -108,12 +105,7 @@ impl<T: Pod> Readback<T> {
                 "{bytes} bytes from byte {offset} on cannot be copied: size and offset must be multiples of 4, and the size at least 4"
             ));
         }
-        if offset.checked_add(bytes).is_none_or(|end| end > buffer.size()) {
-            let size = buffer.size();
-            return refuse(format!(
-                "it has {size} bytes, and {bytes} from byte {offset} are needed"
-            ));
-        }
+        check_size(values, bytes)?;
         let usage = Usage::COPY_DST | Usage::MAP_READ;
         let copies: Vec<Staged> = scoped(&gpu.device, || {
             let copy = |_| Staged {

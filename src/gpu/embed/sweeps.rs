@@ -239,18 +239,17 @@ impl Sweeps {
         }
     }
 
-    /// Binds a range of an application's buffer for the objectives: [`ObjectiveValues`](crate::gpu::ObjectiveValues)
-    /// from byte `offset` on, a multiple of 4.
+    /// Binds a slice of an application's buffer for the objectives: [`ObjectiveValues`](crate::gpu::ObjectiveValues)
+    /// are written to the start of the slice, which is at a multiple of 4 bytes.
     ///
     /// # Errors
-    /// [`GpuError::Buffer`] if the buffer is too small, was created without `STORAGE`, or belongs to another device, or
-    /// if `offset` is not a multiple of 4. Another [`GpuError`] if the device fails.
+    /// [`GpuError::Buffer`] if the slice is too small or misaligned, or if its buffer was created without `STORAGE` or
+    /// belongs to another device. Another [`GpuError`] if the device fails.
     pub fn bind_objective(
         &self,
-        buffer: &wgpu::Buffer,
-        offset: u64,
+        values: wgpu::BufferSlice<'_>,
     ) -> Result<BoundObjective, GpuError> {
-        BoundObjective::new(&self.gpu, &self.run, None, buffer, offset)
+        BoundObjective::new(&self.gpu, &self.run, None, values)
     }
 }
 

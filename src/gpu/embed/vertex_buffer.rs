@@ -10,31 +10,25 @@ use crate::layout::Problem;
 use crate::parallel::pace::now;
 use crate::topology::predicates::not_positive;
 
-/// The layout and coordinates of an application's vertex buffer: x and y of vertex i are two f32 from byte
-/// `offset + i * stride` on. [`new`](Self::new) sets buffer and stride; all other values have defaults.
+/// The layout and coordinates of an application's vertex buffer: x and y of vertex i are two f32 from byte `i * stride`
+/// of a slice on. [`new`](Self::new) sets slice and stride; all other values have defaults.
 ///
 /// Data behind y within the stride, such as a z, are neither read nor written.
 #[derive(Clone, Copy, Debug)]
 pub struct VertexBuffer<'a> {
-    pub(crate) buffer: &'a wgpu::Buffer,
+    pub(crate) slice: wgpu::BufferSlice<'a>,
     pub(crate) stride: u64,
-    pub(crate) offset: u64,
     origin: [f64; 2],
     scale: f64,
     is_projected: bool,
 }
 
 impl<'a> VertexBuffer<'a> {
-    /// Describes vertices in `buffer`, which needs the usage `STORAGE` in addition to the application's usages.
-    /// `stride` is the distance between successive vertices in bytes: a multiple of 4, at least 8. Binding calls check
-    /// both values.
-    pub fn new(buffer: &'a wgpu::Buffer, stride: u64) -> Self {
-        Self { buffer, stride, offset: 0, origin: [0.0; 2], scale: 1.0, is_projected: false }
-    }
-
-    /// Sets the offset of vertex 0 in bytes: a multiple of 4, 0 by default.
-    pub fn offset(self, offset: u64) -> Self {
-        Self { offset, ..self }
+    /// Describes vertices from the start of `slice` on, which is at a multiple of 4 bytes. The buffer needs the usage
+    /// `STORAGE` in addition to the application's usages. `stride` is the distance between successive vertices in bytes: a
+    /// multiple of 4, at least 8. Binding calls check both values.
+    pub fn new(slice: wgpu::BufferSlice<'a>, stride: u64) -> Self {
+        Self { slice, stride, origin: [0.0; 2], scale: 1.0, is_projected: false }
     }
 
     /// Sets the point of the mesh, in its unit, that becomes 0, 0 in the buffer: (0, 0) by default. Coordinates far
@@ -62,9 +56,9 @@ impl<'a> VertexBuffer<'a> {
     }
 
     /// Returns the `max_storage_buffer_binding_size`, in bytes, that a device needs to bind the coordinates of this
-    /// many vertices, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). If a buffer holds several meshes,
-    /// only the vertices of this mesh are bound, so `offset` matters only modulo 256. If the size overflows, returns
-    /// [`u64::MAX`].
+    /// many vertices, for [`Gpu::required_limits`](crate::gpu::Gpu::required_limits). The vertices begin at byte `offset` of
+    /// the buffer. If a buffer holds several meshes, only the vertices of this mesh are bound, so `offset` matters only
+    /// modulo 256. If the size overflows, returns [`u64::MAX`].
     pub fn binding_size(vertices: usize, stride: u64, offset: u64) -> u64 {
         // A binding starts at a multiple of the device's alignment, at most 256 bytes.
         (vertices.saturating_sub(1) as u64)
@@ -156,7 +150,7 @@ impl<'a> VertexBuffer<'a> {
     pub(crate) fn window(&self, gpu: &Gpu, vertices: usize) -> Result<Window<'a>, GpuError> {
         let steps = vertices.saturating_sub(1) as u64;
         let bytes = steps.saturating_mul(self.stride).saturating_add(8);
-        Window::new(gpu, self.buffer, self.offset, bytes)
+        Window::new(gpu, self.slice, bytes)
     }
 }
 

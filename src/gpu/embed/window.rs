@@ -15,15 +15,15 @@ pub(crate) struct Window<'a> {
 }
 
 impl<'a> Window<'a> {
-    /// Checks that `bytes` bytes from `offset` on can be bound as storage. Returns [`GpuError::Buffer`] if the usage,
+    /// Checks that the first `bytes` bytes of `slice` can be bound as storage. Returns [`GpuError::Buffer`] if the usage,
     /// the alignment or the size is wrong, and [`GpuError::Limit`] if the range exceeds a binding.
     pub(crate) fn new(
         gpu: &Gpu,
-        buffer: &'a wgpu::Buffer,
-        offset: u64,
+        slice: wgpu::BufferSlice<'a>,
         bytes: u64,
     ) -> Result<Self, GpuError> {
         let refuse = |problem: String| Err(GpuError::Buffer(problem));
+        let (buffer, offset) = (slice.buffer(), slice.offset());
         if !buffer.usage().contains(Usage::STORAGE) {
             let usage = buffer.usage();
             return refuse(format!("it was made for {usage:?}, and needs STORAGE as well"));
@@ -31,16 +31,11 @@ impl<'a> Window<'a> {
         if !offset.is_multiple_of(4) {
             return refuse(format!("the offset is {offset} bytes, not a multiple of 4"));
         }
-        let Some(end) = offset.checked_add(bytes).filter(|&end| end <= buffer.size()) else {
-            let size = buffer.size();
-            return refuse(format!(
-                "it has {size} bytes, and {bytes} from byte {offset} are needed"
-            ));
-        };
+        check_size(slice, bytes)?;
         let limits = gpu.device.limits();
         let alignment = u64::from(limits.min_storage_buffer_offset_alignment);
         let start = offset - offset % alignment;
-        let size = end - start;
+        let size = offset - start + bytes;
         if size > limits.max_storage_buffer_binding_size {
             return Err(GpuError::Limit {
                 what: "the application's buffer".into(),
@@ -52,11 +47,23 @@ impl<'a> Window<'a> {
         Ok(Self { buffer, start, size, offset: ((offset - start) / 4) as u32 })
     }
 
+    /// Returns the range with the bytes before it that alignment requires.
     pub(crate) fn binding(&self) -> wgpu::BindingResource<'a> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: self.buffer,
             offset: self.start,
             size: wgpu::BufferSize::new(self.size),
         })
+    }
+}
+
+/// Returns [`GpuError::Buffer`] if a slice has fewer than `bytes` bytes.
+pub(crate) fn check_size(slice: wgpu::BufferSlice<'_>, bytes: u64) -> Result<(), GpuError> {
+    let (size, offset) = (slice.size(), slice.offset());
+    match bytes <= size {
+        true => Ok(()),
+        false => Err(GpuError::Buffer(format!(
+            "it has {size} bytes from byte {offset} on, and {bytes} are needed"
+        ))),
     }
 }

@@ -214,8 +214,9 @@ mod tests {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let vertices = VertexBuffer::new(&buffer, 8);
-        let _bound = (mesh.bind_vertices(&vertices).unwrap(), sweeps.bind_objective(&buffer, 0));
+        let vertices = VertexBuffer::new(buffer.slice(..), 8);
+        let _bound =
+            (mesh.bind_vertices(&vertices).unwrap(), sweeps.bind_objective(buffer.slice(..)));
         assert_eq!(made(), prepared);
     }
 }

@@ -40,7 +40,7 @@ pub(crate) fn time(
         usage: wgpu::BufferUsages::STORAGE,
         mapped_at_creation: false,
     });
-    let objective = sweeps.bind_objective(&values, 0)?;
+    let objective = sweeps.bind_objective(values.slice(..))?;
     let mut encoder =
         gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     sweeps.encode_sweeps(&mut encoder, BEFORE);
