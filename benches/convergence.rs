@@ -24,7 +24,7 @@ fn main() {
     let (sizes, files) = arguments();
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     let mut backends = vec![("cpu".to_owned(), Backend::Cpu)];
-    match Gpu::open(std::env::var("GPU_SMOOTH_ADAPTER").ok().as_deref()) {
+    match Gpu::open(std::env::var("GPU_SMOOTH_ADAPTER").ok().as_deref()).block() {
         Ok(gpu) => backends.push((gpu.adapter().name.clone(), Backend::Gpu(gpu))),
         Err(error) => println!("no GPU: {error}"),
     }

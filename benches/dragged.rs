@@ -29,7 +29,7 @@ fn main() {
     let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
     let sizes = if sizes.is_empty() { vec![57_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     println!("{}", gpu.adapter().name);
     for vertices in sizes {
         let mesh = support::triangulate(&outline, vertices).unwrap();
@@ -63,7 +63,7 @@ fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
     };
     let device_mesh = DeviceMesh::new(gpu, mesh).unwrap();
     let start = Instant::now();
-    let mut sweeps = Sweeps::new(&device_mesh, options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, options).block().unwrap();
     let made = start.elapsed();
     let numbers = buffer(256, Usage::STORAGE | Usage::COPY_SRC);
     let objective = sweeps.bind_objective(numbers.slice(..)).unwrap();
@@ -115,7 +115,7 @@ fn measure(gpu: &Gpu, mesh: &Mesh, method: Method, far: f64) {
     for step in 0..FRAMES {
         last = frame(&mut sweeps, Some(step));
     }
-    let dragged = Mesh { points: device_mesh.read_points().unwrap(), ..mesh.clone() };
+    let dragged = Mesh { points: device_mesh.read_points().block().unwrap(), ..mesh.clone() };
     let end = optimum(&dragged).1;
     let gone = dragged.points[hole[0] as usize][0] - mesh.points[hole[0] as usize][0];
     let mut reached = [None; 3];

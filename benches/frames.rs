@@ -28,7 +28,7 @@ fn main() {
     let sizes = if sizes.is_empty() { vec![2000, 20_000, 200_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
     let adapter = std::env::var("GPU_SMOOTH_ADAPTER").ok();
-    let gpu = Gpu::open(adapter.as_deref()).unwrap();
+    let gpu = Gpu::open(adapter.as_deref()).block().unwrap();
     println!("{}: medians (and the least)", gpu.adapter().name);
     for vertices in sizes {
         let mesh = support::triangulate(&outline, vertices).unwrap();
@@ -66,7 +66,7 @@ fn main() {
         let bound =
             device_mesh.bind_vertices(&VertexBuffer::new(vertex_buffer.slice(..), 8)).unwrap();
 
-        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
         let objective = sweeps.bind_objective(numbers.slice(..)).unwrap();
         let plain = times(&gpu, |encoder| {
             bound.encode_import(encoder);
@@ -76,7 +76,7 @@ fn main() {
         });
 
         let options = Options::default().method(Method::Multilevel);
-        let mut corrected_sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut corrected_sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
         let corrected_objective = corrected_sweeps.bind_objective(numbers.slice(..)).unwrap();
         let corrected = times(&gpu, |encoder| {
             bound.encode_import(encoder);
@@ -94,7 +94,8 @@ fn main() {
             bound.encode_export(encoder);
         });
 
-        let mut sweeps = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
+        let mut sweeps =
+            Sweeps::until_converged(&device_mesh, &Options::default()).block().unwrap();
         let objective = sweeps.bind_objective(numbers.slice(..)).unwrap();
         let mask = buffer(4 * count, usage);
         let mask = device_mesh.bind_mask(mask.slice(..)).unwrap();

@@ -33,7 +33,7 @@ fn main() {
     let sizes: Vec<usize> = std::env::args().filter_map(|arg| arg.parse().ok()).collect();
     let sizes = if sizes.is_empty() { vec![2000, 57_000, 200_000, 1_000_000] } else { sizes };
     let outline = support::Outline::parse(include_str!("../meshes/plate.outline")).unwrap();
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     println!("{}: milliseconds, least of {RUNS} runs", gpu.adapter().name);
     for vertices in sizes {
         let plate = support::triangulate(&outline, vertices).unwrap();

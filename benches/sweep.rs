@@ -34,7 +34,7 @@ fn problem(size: usize) -> &'static Problem {
 
 fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
-    GPU.get_or_init(|| Gpu::open(None).ok()).as_ref()
+    GPU.get_or_init(|| Gpu::open(None).block().ok()).as_ref()
 }
 
 struct Case {

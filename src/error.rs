@@ -296,9 +296,7 @@ pub enum GpuError {
     )]
     Queue,
     /// The call would block the thread, and browsers forbid blocking calls.
-    #[error(
-        "a browser cannot wait in a blocking call: await a run, or use the call of this name that ends in _async"
-    )]
+    #[error("a browser cannot block: await the call instead of calling `block`")]
     WouldBlock,
     /// wgpu refused a call. Cause: a bug in this library, or a device created with limits below the required limits.
     #[error("the device refused: {0}")]

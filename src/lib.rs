@@ -18,7 +18,7 @@
 //!     fixed: vec![],
 //! };
 //! let smoother = Smoother::new(&mesh)?;
-//! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None)?), or what Backend::auto chooses
+//! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None).block()?), or what Backend::auto chooses
 //! let outcome = smoother.run(&Options::default()).on(&backend).block()?;
 //! let [x, y] = outcome.points[4];
 //! assert!((x - 0.5).abs() < 1e-3 && (y - 0.5).abs() < 1e-3);

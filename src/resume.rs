@@ -151,7 +151,7 @@ mod tests {
         Vec::from([
             Backend::Cpu,
             #[cfg(feature = "gpu")]
-            Backend::Gpu(crate::Gpu::open(None).unwrap()),
+            Backend::Gpu(crate::Gpu::open(None).block().unwrap()),
         ])
     }
 

@@ -67,7 +67,7 @@ mod readme {
         // 3. Into your own encoder and vertex buffer: nothing is submitted, nothing leaves the GPU.
         let on_device = DeviceMesh::new(&gpu, &mesh)?;
         let vertices = on_device.bind_vertices(&VertexBuffer::new(vertex_buffer.slice(..), 12))?;
-        let mut sweeps = Sweeps::new(&on_device, &options)?;
+        let mut sweeps = Sweeps::new(&on_device, &options).block()?;
         // and in each frame
         vertices.encode_import(&mut encoder);
         sweeps.encode_sweeps(&mut encoder, 5);

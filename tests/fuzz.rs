@@ -37,7 +37,7 @@ fn meshes_of_any_shape() {
 #[test]
 fn meshes_of_any_shape_on_a_gpu() {
     let mut random = SplitMix64::new(14);
-    let gpu = Backend::Gpu(gpu_smooth::Gpu::open(None).unwrap());
+    let gpu = Backend::Gpu(gpu_smooth::Gpu::open(None).block().unwrap());
     for _ in 0..rounds(15) {
         checks::any_mesh(&any_bytes(&mut random, 260), &gpu);
     }

@@ -86,7 +86,7 @@ fn the_papers_report_says_what_its_data_say() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let places = [Place::Cpu, Place::Gpu];
-    gather(&Study::tiny(), &places, Some(Gpu::open(None).unwrap()), folder).unwrap();
+    gather(&Study::tiny(), &places, Some(Gpu::open(None).block().unwrap()), folder).unwrap();
     report(folder).unwrap();
 
     let data = folder.join("data");

@@ -87,7 +87,7 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
     // device and the queue are handles to shared objects.
     let gpu = Gpu::new(device.clone(), queue.clone())?;
     let device_mesh = DeviceMesh::new(&gpu, mesh)?;
-    let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
+    let mut smoother = Sweeps::new(&device_mesh, &Options::default()).block()?;
     let stride = size_of::<Vertex>() as u64;
     let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), stride))?;
     let objective = smoother.bind_objective(objectives.slice(..))?;

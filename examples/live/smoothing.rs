@@ -58,7 +58,7 @@ impl Smoothing {
     pub(crate) fn new(gpu: Gpu, mesh: Mesh, scheme: Scheme) -> Result<Self> {
         let topology = Topology::new(&mesh)?.into_owned();
         let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
-        let sweeps = Sweeps::until_converged(&device_mesh, &options(&scheme))?;
+        let sweeps = Sweeps::until_converged(&device_mesh, &options(&scheme)).block()?;
         let untangling = UntanglingSweeps::new(&device_mesh)?;
         // Compiling the kernels of all selectable schemes here prevents a frame from waiting for the compiler.
         Metric::ALL.iter().try_for_each(|&metric| gpu.prepare(&options(&metric.into())))?;
@@ -110,7 +110,7 @@ impl Smoothing {
 
     /// Continues with another scheme, starting from the present vertices.
     pub(crate) fn set_scheme(&mut self, scheme: Scheme) -> Result<()> {
-        self.sweeps = Sweeps::until_converged(&self.device_mesh, &options(&scheme))?;
+        self.sweeps = Sweeps::until_converged(&self.device_mesh, &options(&scheme)).block()?;
         self.objective = self.sweeps.bind_objective(self.numbers.slice(..))?;
         self.scheme = scheme;
         Ok(())
@@ -206,7 +206,7 @@ impl Smoothing {
 
     /// Counts inverted and flat triangles by exact predicates on the device's positions.
     pub(crate) fn count_infeasible(&self) -> Result<usize> {
-        let points = self.device_mesh.read_points()?;
+        let points = self.device_mesh.read_points().block()?;
         Ok(topology::infeasible(&points, self.topology.triangles())?.len())
     }
 }

@@ -76,7 +76,7 @@ pub(crate) fn simulate(
     let hole = hole(&topology, &mesh.points);
 
     // `Gpu::open` creates a device for programs that have none; examples/embed uses a device of its own.
-    let gpu = Gpu::open(None)?;
+    let gpu = Gpu::open(None).block()?;
     let (device, queue) = (gpu.device(), gpu.queue());
     let positions: Vec<[f32; 2]> = mesh.points.iter().map(|p| p.map(|x| x as f32)).collect();
     let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -87,7 +87,7 @@ pub(crate) fn simulate(
     let stride = size_of::<[f32; 2]>() as u64;
     let device_mesh = DeviceMesh::new(&gpu, &mesh)?;
     let bound = device_mesh.bind_vertices(&VertexBuffer::new(buffer.slice(..), stride))?;
-    let mut smoother = Sweeps::new(&device_mesh, &Options::default())?;
+    let mut smoother = Sweeps::new(&device_mesh, &Options::default()).block()?;
 
     let mut left_alone = mesh.points.clone();
     let mut log = Vec::new();
@@ -116,7 +116,7 @@ pub(crate) fn simulate(
         log.push(SweepParams {
             angle,
             took,
-            kept: Quality::of(&device_mesh.read_points()?, &topology)?,
+            kept: Quality::of(&device_mesh.read_points().block()?, &topology)?,
             left: Quality::of(&left_alone, &topology)?,
         });
     }

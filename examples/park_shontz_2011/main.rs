@@ -95,7 +95,7 @@ impl Request {
 
     fn run(self) -> Result<()> {
         let gpu = if self.places.contains(&Place::Gpu) {
-            match Gpu::open(self.adapter.as_deref()) {
+            match Gpu::open(self.adapter.as_deref()).block() {
                 Ok(gpu) => Some(gpu),
                 Err(problem) if self.places.len() == 1 || self.adapter.is_some() => {
                     return Err(problem.into());

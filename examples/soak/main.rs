@@ -58,19 +58,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frames = numbers.next().transpose()?.unwrap_or(10_000);
     let mesh = support::perturb_random(&support::lattice(12, 12), 0.8, 1);
     let smoother = Smoother::new(&mesh)?;
-    let backend = Backend::Gpu(Gpu::open(None)?);
+    let backend = Backend::Gpu(Gpu::open(None).block()?);
     let run = |backend: &Backend| smoother.run(&Options::default()).on(backend).block();
     let expected = run(&backend)?.points;
     soak("runs", runs, |done| {
         let points = match done % 4 {
-            0 => run(&Backend::Gpu(Gpu::open(None)?))?.points,
+            0 => run(&Backend::Gpu(Gpu::open(None).block()?))?.points,
             _ => run(&backend)?.points,
         };
         if points == expected { Ok(()) } else { Err("other points than the first time".into()) }
     })?;
     let Backend::Gpu(gpu) = &backend else { return Ok(()) };
     let device_mesh = DeviceMesh::new(gpu, &mesh)?;
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default())?;
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block()?;
     let vertices = gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("vertices"),
         size: 8 * mesh.points.len() as u64,

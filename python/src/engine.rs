@@ -92,7 +92,7 @@ fn opened(name: Option<&str>) -> Result<Gpu, GpuError> {
         }
         open.swap_remove(at).1.discard();
     }
-    let gpu = Gpu::open(name)?;
+    let gpu = Gpu::open(name).block()?;
     open.push((name.map(str::to_owned), gpu.clone()));
     Ok(gpu)
 }

@@ -15,7 +15,7 @@ mod mesh;
 mod run;
 pub(crate) mod scope;
 
-pub use device::{Gpu, adapters, checked_adapters};
+pub use device::{Gpu, Pending, adapters, checked_adapters};
 pub(crate) use device::{Waiting, ranked_adapters};
 pub use embed::{
     BoundMask, BoundMove, BoundObjective, BoundVertices, Budget, DeviceMesh, Doubt, LastValid,

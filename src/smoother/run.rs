@@ -2,12 +2,12 @@
 
 use std::future::IntoFuture;
 use std::ops::ControlFlow;
-use std::pin::Pin;
 
 use crate::error::SmoothError;
 use crate::mesh::Mesh;
 use crate::options::{Options, Stopping};
 use crate::outcome::Outcome;
+use crate::parallel::BoxedFuture;
 use crate::parallel::pace::{budget_after, paced};
 use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Progress};
 use crate::whole::Device;
@@ -45,12 +45,6 @@ pub struct Run<'r> {
     policy: Box<dyn CheckpointPolicy + 'r>,
     resumed: Option<&'r Checkpoint>,
 }
-
-/// The future of a [`Run`]. The future is `Send`, except in a browser.
-#[cfg(not(target_family = "wasm"))]
-type Running<'r> = Pin<Box<dyn Future<Output = Result<Outcome, SmoothError>> + Send + 'r>>;
-#[cfg(target_family = "wasm")]
-type Running<'r> = Pin<Box<dyn Future<Output = Result<Outcome, SmoothError>> + 'r>>;
 
 impl Smoother<'_> {
     /// Returns a run with these options, on the CPU. The run begins by [`Run::block`] or `.await`.
@@ -126,9 +120,9 @@ impl<'r> Run<'r> {
 /// Dropping the future cancels the run without an outcome. The future is `Send`, except in a browser.
 impl<'r> IntoFuture for Run<'r> {
     type Output = Result<Outcome, SmoothError>;
-    type IntoFuture = Running<'r>;
+    type IntoFuture = BoxedFuture<'r, Result<Outcome, SmoothError>>;
 
-    fn into_future(self) -> Running<'r> {
+    fn into_future(self) -> Self::IntoFuture {
         let device = match self.backend {
             Backend::Cpu => None,
             #[cfg(feature = "gpu")]
@@ -224,7 +218,7 @@ mod tests {
     #[cfg(feature = "gpu")]
     #[test]
     fn an_awaited_run_pauses_while_the_cpu_opens_triangles_for_a_device() {
-        let gpu = crate::Gpu::open(None).unwrap();
+        let gpu = crate::Gpu::open(None).block().unwrap();
         let device = Some(Device::blocking(&gpu));
         assert_polls(device, &Backend::Gpu(gpu.clone()), &Options::default());
     }

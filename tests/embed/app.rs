@@ -131,7 +131,7 @@ impl App {
 
     /// Returns the positions on the device, without encoding a sweep or an import.
     pub(crate) fn points(&self, device_mesh: &DeviceMesh) -> Vec<[f64; 2]> {
-        device_mesh.read_points().unwrap()
+        device_mesh.read_points().block().unwrap()
     }
 
     /// Evaluates the objectives in a separate command buffer.

@@ -27,7 +27,7 @@ fn the_device_measures_how_many_sweeps_fit() {
     let app = App::with_timestamps();
     let mesh = bad_plate(2000);
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let ample = Budget::new(Duration::from_secs(3600)).at_most(16);
     let mut ample = ample.timed_by(&app.gpu).unwrap();
     assert_eq!(frames(&app, &mut sweeps, &mut ample, 6), [1, 2, 4, 8, 16, 16]);
@@ -49,7 +49,7 @@ fn sweeps_that_have_ended_are_not_measured() {
     let app = App::with_timestamps();
     let device_mesh = app.mesh(&bad_plate(300));
     let options = Options::default().max_sweeps(3);
-    let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::until_converged(&device_mesh, &options).block().unwrap();
     let budget = Budget::new(Duration::from_secs(3600));
     let mut budget = budget.timed_by(&app.gpu).unwrap();
     assert_eq!(frames(&app, &mut sweeps, &mut budget, 6), [1, 2, 2, 2, 2, 2]);

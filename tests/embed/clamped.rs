@@ -197,7 +197,7 @@ fn a_dragged_hole_goes_out_and_home_with_sweeps_between_and_inverts_nothing() {
     let app = App::new();
     let mesh = plate(600);
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let vertices = Vertices::usual(&app, &mesh).bind(&device_mesh);
     let hole = hole(&mesh);
     let drag = Drag::new(&app, &device_mesh, &hole, 8.0);

@@ -30,7 +30,7 @@ fn distorted() -> Mesh {
 fn frames(mesh: &Mesh, options: &Options, count: usize) -> (Vec<f64>, Vec<[f64; 2]>) {
     let app = App::new();
     let device_mesh = app.mesh(mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, options).block().unwrap();
     let mut f = Vec::new();
     for _ in 0..count {
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 1));
@@ -82,7 +82,7 @@ fn a_tangled_mesh_is_swept_as_without_corrections() {
     for options in [corrected(Metric::Imr), alone()] {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         let bound = vertices.bind(&device_mesh);
         let v = interior(&mesh)[200];
@@ -123,7 +123,7 @@ fn vertices_that_are_pinned_or_masked_stay_and_others_are_corrected_around_them(
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let before = app.points(&device_mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).block().unwrap();
     let inside = interior(&mesh);
     let pinned: Vec<u32> = inside.iter().copied().step_by(50).collect();
     device_mesh.pin(&pinned).unwrap();
@@ -147,7 +147,7 @@ fn vertices_that_are_pinned_or_masked_stay_and_others_are_corrected_around_them(
     let values = app.objective(&sweeps);
     assert!(values.of(Metric::Imr) < after_one && after_one < first && values.inverted == 0);
     // f must equal the limit of uncorrected sweeps with equal held vertices.
-    let mut alone = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut alone = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     app.submit(|encoder| alone.encode_sweeps(encoder, 200));
     let end = app.objective(&sweeps).of(Metric::Imr);
     assert!(values.of(Metric::Imr) / end - 1.0 < 1e-4, "{values:?} {end}");
@@ -162,7 +162,7 @@ fn judged_sweeps_with_corrections_end_sooner_and_then_leave_every_bit() {
     for method in [Method::Multilevel, Method::RELAXED] {
         let device_mesh = app.mesh(&mesh);
         let options = Options::default().method(method).stopping(Stopping::Tolerance(1e-5));
-        let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::until_converged(&device_mesh, &options).block().unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 120));
         let values = app.objective(&sweeps);
         assert!(values.has_converged(), "{values:?}");
@@ -185,7 +185,8 @@ fn meshes_in_one_encoder_and_in_a_pass_are_corrected_as_alone() {
     for in_a_pass in [false, true] {
         let app = App::new();
         let device_meshes = meshes.each_ref().map(|mesh| app.mesh(mesh));
-        let mut sweeps = device_meshes.each_ref().map(|mesh| Sweeps::new(mesh, &options).unwrap());
+        let mut sweeps =
+            device_meshes.each_ref().map(|mesh| Sweeps::new(mesh, &options).block().unwrap());
         app.submit(|encoder| {
             if in_a_pass {
                 let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -210,7 +211,7 @@ fn a_mesh_with_targets_is_corrected_as_they_show_it() {
     let f = [Method::Multilevel, Method::RELAXED].map(|method| {
         let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
         let options = Options::default().method(method);
-        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
         let counts = if method == Method::Multilevel { [25, 275] } else { [25, 400] };
         counts.map(|count| {
             app.submit(|encoder| sweeps.encode_sweeps(encoder, count));
@@ -231,7 +232,7 @@ fn stretched_meshes_and_hubs_are_swept_without_corrections_and_say_why() {
     let plain = Options::default().scheme(Metric::Imr.into());
     for (mesh, doubt) in [(&stretched, Doubt::Stretched), (&hub, Doubt::Hub(300))] {
         let app = App::new();
-        let made = |options| Sweeps::new(&app.mesh(mesh), options).unwrap().doubt();
+        let made = |options| Sweeps::new(&app.mesh(mesh), options).block().unwrap().doubt();
         assert_eq!([made(&plain), made(&corrected(Metric::Imr))], [Some(doubt); 2]);
         assert_eq!(frames(mesh, &plain, 3), frames(mesh, &corrected(Metric::Imr), 3));
     }
@@ -239,7 +240,8 @@ fn stretched_meshes_and_hubs_are_swept_without_corrections_and_say_why() {
     let targets = Targets::tensors(&vec![[1.0, 0.0, 100.0]; stretched.points.len()]).unwrap();
     let fitting = DeviceMesh::with_targets(&app.gpu, &stretched, &targets).unwrap();
     for device_mesh in [fitting, app.mesh(&distorted())] {
-        let sweeps = Sweeps::until_converged(&device_mesh, &corrected(Metric::Imr)).unwrap();
+        let sweeps =
+            Sweeps::until_converged(&device_mesh, &corrected(Metric::Imr)).block().unwrap();
         assert_eq!(sweeps.doubt(), None);
     }
 }
@@ -269,7 +271,7 @@ fn meshes_and_options_that_cannot_be_corrected_are_refused_with_the_reason() {
         (multilevel("imr+rms"), "encoding corrected sweeps does not go with a scheme of"),
         (multilevel("area"), "cannot be corrected from coarser levels; take another metric"),
     ] {
-        let error = Sweeps::new(&device_mesh, &options).err().unwrap();
+        let error = Sweeps::new(&device_mesh, &options).block().err().unwrap();
         assert!(matches!(error, SmoothError::Option(OptionError::Conflict { .. })), "{error:?}");
         assert!(error.to_string().contains(reason), "{error}");
     }
@@ -281,7 +283,7 @@ fn corrected_sweeps_made_without_blocking_are_the_same() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let options = corrected(Metric::Imr);
-    let mut made = std::pin::pin!(Sweeps::new_async(&device_mesh, &options));
+    let mut made = std::pin::pin!(Sweeps::new(&device_mesh, &options).into_future());
     let mut context = std::task::Context::from_waker(std::task::Waker::noop());
     let mut sweeps = loop {
         match made.as_mut().poll(&mut context) {
@@ -299,7 +301,7 @@ fn corrected_sweeps_made_without_blocking_are_the_same() {
 fn encoding_frame_after_frame_allocates_nothing() {
     let app = App::new();
     let device_mesh = app.mesh(&plate(300));
-    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).block().unwrap();
     let buffer = app.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE);
     let objective = sweeps.bind_objective(buffer.slice(..)).unwrap();
     let mut made = Vec::new();
@@ -323,7 +325,7 @@ fn levels_are_fitted_to_a_mesh_whose_sizes_have_changed() {
     let uploaded = Mesh { points: mesh.points.iter().map(graded).collect(), ..mesh.clone() };
     let app = App::new();
     let device_mesh = app.mesh(&uploaded);
-    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &corrected(Metric::Imr)).block().unwrap();
     let vertices = Vertices::usual(&app, &mesh);
     let bound = vertices.bind(&device_mesh);
     app.submit(|encoder| {

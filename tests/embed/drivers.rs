@@ -28,7 +28,7 @@ fn open(backends: wgpu::Backends) -> Gpu {
     let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     let (device, queue) = block_on(adapter.request_device(&descriptor)).unwrap();
     let gpu = Gpu::new(device, queue).unwrap();
-    gpu.check_arithmetic().unwrap();
+    gpu.check_arithmetic().block().unwrap();
     gpu
 }
 

@@ -27,7 +27,7 @@ fn an_export_writes_x_and_y_of_used_vertices_and_nothing_else() {
     let mesh = with_unused_vertices();
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     for &[offset, stride] in LAYOUTS {
         let vertices = Vertices::new(&app, &mesh, offset, stride);
         let before = app.read(&vertices.buffer);
@@ -91,7 +91,7 @@ fn an_origin_and_a_scale_are_those_of_the_buffer() {
     let (origin, scale) = ([500_000.1, 4_600_000.05], 25.0);
     let place = vertices.place().origin(origin).scale(scale);
     let bound = device_mesh.bind_vertices(&place).unwrap();
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     app.submit(|encoder| {
         sweeps.encode_sweeps(encoder, 2);
         bound.encode_export(encoder);
@@ -125,7 +125,7 @@ fn vertices_that_the_application_leaves_alone_keep_their_full_precision() {
     let app = App::new();
     let [alone, exchanged] = [false, true].map(|exchange| {
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         for _ in 0..20 {
             app.submit(|encoder| {
@@ -155,7 +155,7 @@ fn a_vertex_the_application_moves_is_followed() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let vertices = Vertices::usual(&app, &mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let frame = |sweeps: &mut Sweeps, count| {
         app.submit(|encoder| {
             vertices.bind(&device_mesh).encode_import(encoder);
@@ -204,7 +204,7 @@ fn two_vertex_buffers_can_show_one_mesh() {
     let mesh = bad_plate(500);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let [first, second] = [[0, 8], [16, 24]]
         .map(|[offset, stride]| (Vertices::new(&app, &mesh, offset, stride), stride));
     app.submit(|encoder| {
@@ -228,7 +228,7 @@ fn a_position_that_is_not_finite_is_not_taken() {
     for scheme in ["imr", "rms", "area"] {
         let device_mesh = app.mesh(&mesh);
         let options = Options::default().scheme(scheme.parse().unwrap());
-        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
         for wrong in [[f64::NAN; 2], [1.0, f64::INFINITY], [f64::NEG_INFINITY, 1.0]] {
             let vertices = Vertices::usual(&app, &mesh);
             vertices.put(&app, v, wrong);

@@ -87,7 +87,7 @@ fn futures_can_move_between_threads() {
     let observe: &mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send) = &mut go_on;
     is_send(&smoother.run(&options).on(&on_app).observe(observe));
     is_send(&smoother.run(&options).on(&on_app).into_future());
-    is_send(&device_mesh.read_points_async());
+    is_send(&device_mesh.read_points().into_future());
 }
 
 /// A runtime requires spawned tasks to be `Send` and `'static`.
@@ -122,9 +122,9 @@ fn points_polled_by_the_application_are_those_read_by_blocking() {
     let mesh = bad_plate(600);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 5));
-    let (found, frames) = drive(app.device(), device_mesh.read_points_async());
+    let (found, frames) = drive(app.device(), device_mesh.read_points());
     assert!(frames > 0, "the future blocked the thread");
     assert_eq!(found.unwrap(), app.points(&device_mesh));
 }

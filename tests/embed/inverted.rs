@@ -82,7 +82,7 @@ fn sweeps_leave_no_nan_invert_nothing_and_improve_the_rest() {
             let device_mesh = app.mesh(&sound);
             let method = Method::Paper(Paper { derivatives, ..Paper::default() });
             let options = Options::default().scheme(metric.into()).method(method);
-            let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+            let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
             let vertices = Vertices::usual(&app, &broken);
             app.submit(|encoder| {
                 vertices.bind(&device_mesh).encode_import(encoder);
@@ -106,7 +106,7 @@ fn a_mesh_that_the_application_mends_is_smoothed_again() {
     let (sound, broken) = broken(Throw::Out);
     let app = App::new();
     let device_mesh = app.mesh(&sound);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     for mesh in [&broken, &sound] {
         let vertices = Vertices::usual(&app, mesh);
         app.submit(|encoder| {

@@ -22,7 +22,7 @@ impl Frames {
     fn new(mesh: Mesh, options: &Options) -> Self {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let sweeps = Sweeps::until_converged(&device_mesh, options).unwrap();
+        let sweeps = Sweeps::until_converged(&device_mesh, options).block().unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         Self { app, mesh, device_mesh, sweeps, vertices }
     }
@@ -141,15 +141,15 @@ fn two_schemes_on_one_mesh_are_each_judged_and_evaluations_in_between_do_not_cou
     let mesh = bad_plate(300);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut alone = Sweeps::until_converged(&device_mesh, &options()).unwrap();
+    let mut alone = Sweeps::until_converged(&device_mesh, &options()).block().unwrap();
     app.submit(|encoder| alone.encode_sweeps(encoder, 40));
     let expected = app.objective(&alone);
     assert!(expected.has_converged() && expected.sweeps >= 16, "{expected:?}");
 
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::until_converged(&device_mesh, &options()).unwrap();
+    let mut sweeps = Sweeps::until_converged(&device_mesh, &options()).block().unwrap();
     let other = options().scheme("rms".parse().unwrap());
-    let mut other = Sweeps::until_converged(&device_mesh, &other).unwrap();
+    let mut other = Sweeps::until_converged(&device_mesh, &other).block().unwrap();
     let buffer = app.buffer(size_of::<ObjectiveValues>() as u64, Usage::STORAGE);
     let objective = sweeps.bind_objective(buffer.slice(..)).unwrap();
     app.submit(|encoder| {
@@ -171,7 +171,7 @@ fn sweeps_that_are_not_judged_have_no_stop() {
     let app = App::new();
     let device_mesh = app.mesh(&plate(300));
     let options = options().max_sweeps(1);
-    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 5));
     let values = app.objective(&sweeps);
     assert_eq!((values.stop(), values.sweeps, values.has_converged()), (None, 0, false));

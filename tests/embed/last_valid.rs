@@ -9,7 +9,7 @@ fn a_mesh_that_the_application_has_tangled_goes_back_to_where_it_was_valid() {
     let app = App::new();
     let mesh = bad_plate(600);
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let vertices = Vertices::usual(&app, &mesh);
     let bound = vertices.bind(&device_mesh);
     let last_valid = device_mesh.keep_last_valid().unwrap();
@@ -53,7 +53,7 @@ fn a_mesh_that_was_never_valid_in_a_frame_goes_back_to_where_it_was_uploaded() {
     let device_mesh = app.mesh(&mesh);
     let start = app.points(&device_mesh);
     let options = Options::default().max_sweeps(1);
-    let mut sweeps = Sweeps::until_converged(&device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::until_converged(&device_mesh, &options).block().unwrap();
     let vertices = Vertices::usual(&app, &mesh);
     let bound = vertices.bind(&device_mesh);
     let last_valid = device_mesh.keep_last_valid().unwrap();

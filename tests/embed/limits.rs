@@ -108,7 +108,7 @@ fn a_device_with_exactly_the_required_limits_smooths() {
     let app = App::with_limits(least_limits(size)).unwrap();
     let device_mesh = app.mesh(&mesh);
     let options = Options::default().track_all(true);
-    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
     let vertices = Vertices::new(&app, &mesh, 0, 8);
     app.submit(|encoder| {
         sweeps.encode_sweeps(encoder, 10);
@@ -175,7 +175,7 @@ fn a_mesh_too_large_for_the_device_is_refused() {
     // After the refusal, a smaller mesh is accepted.
     let mesh = bad_plate(600);
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 5));
     let points = app.points(&device_mesh);
     assert!(f_imr(&Mesh { points, ..mesh.clone() }) < f_imr(&mesh));
@@ -225,7 +225,7 @@ fn a_device_with_small_workgroups_is_refused() {
     };
     let result = App::with_limits(limits).and_then(|app| {
         let device_mesh = app.mesh(&bad_plate(300));
-        Sweeps::new(&device_mesh, &Options::default()).map_err(gpu_error).map(drop)
+        Sweeps::new(&device_mesh, &Options::default()).block().map_err(gpu_error).map(drop)
     });
     let text = result.unwrap_err().to_string();
     assert!(text.contains("128") && text.contains("256"), "{text}");

@@ -277,13 +277,14 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         let mesh = bad_plate(500);
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         let usage = wgpu::BufferUsages::STORAGE;
         let published = app.buffer(128, usage | wgpu::BufferUsages::COPY_SRC);
         let bound = vertices.bind(&device_mesh);
         let objective = sweeps.bind_objective(published.slice(..)).unwrap();
-        let mut judged = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
+        let mut judged =
+            Sweeps::until_converged(&device_mesh, &Options::default()).block().unwrap();
         let words = app.buffer(8 * mesh.points.len() as u64, usage);
         let mask = device_mesh.bind_mask(words.slice(..)).unwrap();
         let targets = VertexBuffer::new(words.slice(..), 8);
@@ -314,11 +315,11 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
         if app.device().features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             assert_lost(&Budget::micros(100).timed_by(&app.gpu).err().unwrap());
         }
-        assert_lost(&device_mesh.read_points().unwrap_err());
+        assert_lost(&device_mesh.read_points().block().unwrap_err());
         match DeviceMesh::new(&app.gpu, &mesh) {
             Err(error) => assert_lost(&gpu_error(error)),
             Ok(device_mesh) => {
-                assert_lost(&device_mesh.read_points().unwrap_err());
+                assert_lost(&device_mesh.read_points().block().unwrap_err());
             }
         }
     });
@@ -333,18 +334,18 @@ fn a_new_device_goes_on_from_the_last_positions() {
         {
             let app = App::new();
             let device_mesh = app.mesh(&mesh);
-            let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+            let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
             app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
             mesh.points = app.points(&device_mesh);
             app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
             app.device().destroy();
-            assert_lost(&device_mesh.read_points().unwrap_err());
+            assert_lost(&device_mesh.read_points().block().unwrap_err());
         }
         let saved = f_imr(&mesh);
         assert!(saved < start);
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 20));
         let points = app.points(&device_mesh);
         assert!(f_imr(&Mesh { points, ..mesh.clone() }) < saved);

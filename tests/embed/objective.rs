@@ -30,7 +30,7 @@ fn objectives_are_those_of_the_points_read_back() {
     for mesh in [bad_plate(800), transformed(&bad_plate(300), 1e-4, [2.0, 1.0])] {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).block().unwrap();
         for stage in 0..6 {
             app.submit(|encoder| sweeps.encode_sweeps(encoder, stage));
             let found = app.objective(&sweeps);
@@ -55,7 +55,7 @@ fn the_worst_triangle_is_known_whatever_the_metric() {
     let expected = quality(&mesh, &mesh.points).worst_imr;
     for &metric in Metric::ALL {
         let options = Options::default().scheme(metric.into());
-        let found = app.objective(&Sweeps::new(&device_mesh, &options).unwrap()).worst_imr;
+        let found = app.objective(&Sweeps::new(&device_mesh, &options).block().unwrap()).worst_imr;
         let off = f64::from(found) / expected - 1.0;
         assert!(off.abs() < 1e-4, "{metric}: {found} for {expected}");
     }
@@ -66,7 +66,7 @@ fn several_evaluations_in_one_command_buffer_are_each_of_their_moment() {
     let mesh = bad_plate(500);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).block().unwrap();
     // More sweeps than the history on the device can hold.
     let count = 300;
     let published = readable(&app, WORDS * count);
@@ -94,7 +94,7 @@ fn metrics_not_tracked_are_zero_and_the_rest_of_the_buffer_untouched() {
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
     let options = Options::default().scheme(Metric::Rms.into());
-    let sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    let sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
     for first in [0usize, 1, 63, 64, 70] {
         let published = readable(&app, 100);
         let words: Vec<u32> = (0..100).map(filler).collect();
@@ -121,7 +121,7 @@ fn triangles_the_application_inverts_are_counted() {
     let mesh = bad_plate(800);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
+    let sweeps = Sweeps::new(&device_mesh, &all_tracked()).block().unwrap();
     let vertices = Vertices::usual(&app, &mesh);
     let mut counts = Vec::new();
     for v in interior(&mesh).into_iter().step_by(60) {
@@ -154,7 +154,7 @@ fn the_worst_triangle_is_named() {
     let mesh = bad_plate(900);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let mut named = std::collections::HashSet::new();
     for _ in 0..8 {
         let found = app.objective(&sweeps);
@@ -184,7 +184,7 @@ fn equilateral_triangles_are_named_too() {
     let triangles = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
     let app = App::new();
     let device_mesh = app.mesh(&Mesh { points, triangles, fixed: vec![] });
-    let found = app.objective(&Sweeps::new(&device_mesh, &Options::default()).unwrap());
+    let found = app.objective(&Sweeps::new(&device_mesh, &Options::default()).block().unwrap());
     assert!((found.worst_imr - 1.0).abs() < 1e-6);
     assert!(device_mesh.corners(found.worst_triangle).unwrap().contains(&6));
 }
@@ -195,7 +195,7 @@ fn the_objective_is_that_of_the_floats_as_drawn_if_asked_for() {
     let mesh = transformed(&bad_plate(600), 0.02, [400.0, -300.0]);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &all_tracked()).block().unwrap();
     for (origin, scale) in [([0.0; 2], 1.0), ([399.0, 0.0], 16.0)] {
         let vertices = Vertices::usual(&app, &mesh);
         let place = vertices.place().origin(origin).scale(scale);

@@ -97,7 +97,8 @@ fn an_application_gets_the_same_results_part_by_part() {
         let device_mesh = app.mesh(&mesh);
         let held: Vec<u32> = (0..mesh.points.len() as u32).step_by(17).collect();
         device_mesh.pin(&held).unwrap();
-        let mut sweeps = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
+        let mut sweeps =
+            Sweeps::until_converged(&device_mesh, &Options::default()).block().unwrap();
         let vertices = Vertices::new(&app, &mesh, 0, 8);
         let bound = vertices.bind(&device_mesh);
         let words: Vec<u32> =
@@ -264,7 +265,7 @@ fn encoded_corrections_are_the_same_part_by_part() {
     let points = devices(&mesh).each_ref().map(|app| {
         let device_mesh = app.mesh(&mesh);
         let options = Options::default().method(Method::Multilevel);
-        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
         app.points(&device_mesh)
     });

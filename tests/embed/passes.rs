@@ -44,7 +44,8 @@ fn a_pass_of_the_application_takes_all_that_an_encoder_takes() {
     for in_a_pass in [false, true] {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::until_converged(&device_mesh, &Options::default()).unwrap();
+        let mut sweeps =
+            Sweeps::until_converged(&device_mesh, &Options::default()).block().unwrap();
         let vertices = Vertices::usual(&app, &mesh);
         let bound = vertices.bind(&device_mesh);
         let numbers = app.buffer(128, Usage::STORAGE | Usage::COPY_SRC);

@@ -19,7 +19,7 @@ impl Held {
     fn new(mesh: Mesh) -> Self {
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
         Self { app, mesh, device_mesh, sweeps }
     }
 
@@ -167,7 +167,7 @@ fn a_mask_of_the_application_holds_vertices_beside_pins() {
 fn a_mask_that_changes_nothing_is_no_change_of_the_mesh() {
     let mut held = Held::new(bad_plate(300));
     let options = Options::default().max_sweeps(2);
-    held.sweeps = Sweeps::until_converged(&held.device_mesh, &options).unwrap();
+    held.sweeps = Sweeps::until_converged(&held.device_mesh, &options).block().unwrap();
     let buffer = mask(&held, |v| v % 5 == 0);
     let bound = held.device_mesh.bind_mask(buffer.slice(12..)).unwrap();
     let mut frame = || {

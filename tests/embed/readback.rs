@@ -18,7 +18,7 @@ fn the_latest_values_are_those_of_the_last_frame_that_is_done() {
     let app = App::new();
     let mesh = bad_plate(300);
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let numbers =
         app.buffer(8 + size_of::<ObjectiveValues>() as u64, Usage::STORAGE | Usage::COPY_SRC);
     let objective = sweeps.bind_objective(numbers.slice(8..)).unwrap();

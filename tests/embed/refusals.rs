@@ -105,7 +105,7 @@ fn coordinates_that_single_precision_tangles_are_refused_with_an_origin() {
 fn assert_objective_refused(bytes: u64, usage: Usage, offset: u64, text: &str) {
     let app = App::new();
     let device_mesh = app.mesh(&lattice(5, 5));
-    let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let buffer = app.buffer(bytes, usage);
     let error = sweeps.bind_objective(buffer.slice(offset..)).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
@@ -141,7 +141,7 @@ fn buffers_and_meshes_of_another_device_are_refused() {
     let (app, other) = (App::new(), App::new());
     let mesh = bad_plate(300);
     let device_mesh = app.mesh(&mesh);
-    let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let vertices = Vertices::usual(&other, &mesh);
     let error = device_mesh.bind_vertices(&vertices.place()).err().unwrap();
     assert!(matches!(error, GpuError::Buffer(_)), "{error:?}");
@@ -188,7 +188,7 @@ fn errors_of_an_encoder_reach_the_application_when_it_finishes_it() {
     let (app, other) = (App::new(), App::new());
     let mesh = bad_plate(300);
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let vertices = Vertices::usual(&app, &mesh).bind(&device_mesh);
     let mut encoder = other.encoder();
     vertices.encode_import(&mut encoder);
@@ -266,7 +266,7 @@ fn options_out_of_range_are_refused() {
             "encoding sweeps does not go with Guard::Worst: only a whole run can do this; drop it, or do a whole run",
         ),
     ] {
-        let error = Sweeps::new(&device_mesh, &options).err().unwrap();
+        let error = Sweeps::new(&device_mesh, &options).block().err().unwrap();
         assert!(matches!(error, SmoothError::Option { .. }), "{error:?}");
         assert_eq!(error.to_string(), text);
     }

@@ -55,7 +55,7 @@ impl Sliding {
     }
 
     fn sweeps(&self) -> Sweeps {
-        Sweeps::new(&self.device_mesh, &Options::default()).unwrap()
+        Sweeps::new(&self.device_mesh, &Options::default()).block().unwrap()
     }
 
     /// Returns the vertices whose move sliding does not allow.
@@ -124,7 +124,8 @@ fn vertices_slide_in_corrected_sweeps_that_end_by_themselves() {
     let mut ends = Vec::new();
     for method in [Method::Auto, Method::Multilevel] {
         let sliding = Sliding::new(sliding.mesh.clone(), sliding.slide.clone());
-        let mut sweeps = Sweeps::until_converged(&sliding.device_mesh, &options(method)).unwrap();
+        let mut sweeps =
+            Sweeps::until_converged(&sliding.device_mesh, &options(method)).block().unwrap();
         let points = sliding.swept(&mut sweeps, 400);
         assert_eq!(sliding.app.objective(&sweeps).stop(), Some(Stop::Converged));
         assert_eq!(sliding.misplaced(&points), []);

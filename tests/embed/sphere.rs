@@ -98,7 +98,7 @@ fn coordinates_of_the_projection_are_exported_and_imported() {
     let vertices = Vertices::usual(&app, &projected);
     let place = vertices.place().in_mercator_projection();
     let bound = device_mesh.bind_vertices(&place).unwrap();
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     app.submit(|encoder| {
         bound.encode_import(encoder);
         sweeps.encode_sweeps(encoder, 3);
@@ -136,7 +136,7 @@ fn fixed_vertices_leave_sweeps_in_the_projection() {
             }
             let device_mesh = smoother.to_device(&app.gpu).unwrap();
             device_mesh.pin(&held).unwrap();
-            let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+            let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
             let metric = options.scheme.base();
             let on_device = f64::from(app.objective(&sweeps).of(metric));
             let expected = smoother.f(metric, &given.points).unwrap();

@@ -70,7 +70,7 @@ fn encoded_sweeps_are_those_of_a_run() {
 
         let app = App::new();
         let device_mesh = app.mesh(&mesh);
-        let mut encoded = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut encoded = Sweeps::new(&device_mesh, &options).block().unwrap();
         // Three calls in one command buffer, one of them without sweeps; the rest in other command buffers.
         app.submit(|encoder| [1, 0, 2].into_iter().for_each(|n| encoded.encode_sweeps(encoder, n)));
         app.submit(|encoder| encoded.encode_sweeps(encoder, 1));
@@ -90,8 +90,8 @@ fn two_meshes_and_two_schemes_in_one_encoder_do_as_alone() {
 
     let app = App::new();
     let meshes = [app.mesh(&plate), app.mesh(&other)];
-    let mut first = Sweeps::new(&meshes[0], &imr).unwrap();
-    let mut second = Sweeps::new(&meshes[1], &edge).unwrap();
+    let mut first = Sweeps::new(&meshes[0], &imr).block().unwrap();
+    let mut second = Sweeps::new(&meshes[1], &edge).block().unwrap();
     app.submit(|encoder| {
         for _ in 0..3 {
             first.encode_sweeps(encoder, 3);
@@ -109,7 +109,7 @@ fn two_schemes_take_turns_on_one_mesh() {
     // A single submission for all calls, and a submission per call.
     let [together, apart] = [true, false].map(|together| {
         let device_mesh = app.mesh(&mesh);
-        let bind = |scheme| Sweeps::new(&device_mesh, &options(scheme)).unwrap();
+        let bind = |scheme| Sweeps::new(&device_mesh, &options(scheme)).block().unwrap();
         let (mut imr, mut edge) = (bind("imr"), bind("edge"));
         let mut turn = |encoder: &mut CommandEncoder| {
             imr.encode_sweeps(encoder, 2);
@@ -136,11 +136,11 @@ fn a_restarted_scheme_starts_with_plain_sweeps_again() {
     // Seven sweeps, then seven more: after a restart, with new sweeps, or continued.
     let [restarted, anew, on] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 7));
         match case {
             0 => sweeps.restart(),
-            1 => sweeps = Sweeps::new(&device_mesh, &options).unwrap(),
+            1 => sweeps = Sweeps::new(&device_mesh, &options).block().unwrap(),
             _ => {}
         }
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 7));
@@ -155,7 +155,7 @@ fn sweeps_outlive_the_mesh_they_are_bound_to() {
     let mesh = bad_plate(700);
     let app = App::new();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     drop(device_mesh);
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 3));
     app.device().poll(gpu_smooth::wgpu::PollType::wait_indefinitely()).unwrap();

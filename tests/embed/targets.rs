@@ -46,7 +46,7 @@ fn assert_encoded_as_run(mesh: &Mesh, targets: &Targets) {
     assert_eq!(run.best_sweep, 9);
 
     let device_mesh = DeviceMesh::with_targets(&app.gpu, mesh, targets).unwrap();
-    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 9));
     let found = app.points(&device_mesh);
     let mut moved = 0;
@@ -61,7 +61,7 @@ fn assert_encoded_as_run(mesh: &Mesh, targets: &Targets) {
 
     // Without targets, equal sweeps lead to other positions.
     let plain = DeviceMesh::new(&app.gpu, mesh).unwrap();
-    let mut sweeps = Sweeps::new(&plain, &options).unwrap();
+    let mut sweeps = Sweeps::new(&plain, &options).block().unwrap();
     app.submit(|encoder| sweeps.encode_sweeps(encoder, 9));
     assert_ne!(app.points(&plain), found);
 }
@@ -78,7 +78,7 @@ fn targets_that_do_not_fit_are_refused() {
     let device_mesh = DeviceMesh::with_targets(&app.gpu, &mesh, &targets).unwrap();
     let differences = Paper { derivatives: Derivatives::FiniteDifference, ..Paper::default() };
     let options = Options::default().method(Method::Paper(differences));
-    let error = Sweeps::new(&device_mesh, &options).err().unwrap();
+    let error = Sweeps::new(&device_mesh, &options).block().err().unwrap();
     assert!(
         matches!(
             error,
@@ -110,7 +110,7 @@ fn a_mesh_from_a_smoother_is_swept_to_the_same_bits() {
         }
         let taken = smoother.to_device(&app.gpu).unwrap();
         let swept = [&alone, &taken].map(|device_mesh| {
-            let mut sweeps = Sweeps::new(device_mesh, &options).unwrap();
+            let mut sweeps = Sweeps::new(device_mesh, &options).block().unwrap();
             app.submit(|encoder| sweeps.encode_sweeps(encoder, 6));
             app.points(device_mesh)
         });

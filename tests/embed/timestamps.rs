@@ -20,7 +20,7 @@ use crate::app::{App, Vertices, bad_plate};
 fn timed_frame(app: &App, mesh: &Mesh, timestamps: &mut Timestamps, count: u32) -> Vec<Span> {
     let device_mesh = app.mesh(mesh);
     let options = Options::default().scheme("edge+imr".parse().unwrap());
-    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
     let bound = Vertices::usual(app, mesh).bind(&device_mesh);
     let objective = sweeps.bind_objective(app.buffer(128, Usage::STORAGE).slice(..)).unwrap();
     let mut encoder = app.encoder();
@@ -31,7 +31,7 @@ fn timed_frame(app: &App, mesh: &Mesh, timestamps: &mut Timestamps, count: u32) 
     bound.encode_export(&mut timed);
     let spans = timed.resolve().unwrap();
     app.gpu.queue().submit([encoder.finish()]);
-    spans.read().unwrap()
+    spans.read().block().unwrap()
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn timing_changes_nothing_else() {
     let mut timestamps = Timestamps::new(&app.gpu).unwrap();
     let [plain, timed, unresolved] = [0, 1, 2].map(|case| {
         let device_mesh = app.mesh(&mesh);
-        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
         app.submit(|encoder| {
             if case == 0 {
                 return sweeps.encode_sweeps(encoder, 9);
@@ -112,7 +112,7 @@ fn two_frames_in_flight_are_each_their_own() {
     let (app, mesh) = (App::with_timestamps(), bad_plate(2000));
     let colors = Smoother::new(&mesh).unwrap().colors();
     let device_mesh = app.mesh(&mesh);
-    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
     let mut timestamps = Timestamps::new(&app.gpu).unwrap();
     let frames = [1, 30].map(|count| {
         let mut encoder = app.encoder();
@@ -123,7 +123,7 @@ fn two_frames_in_flight_are_each_their_own() {
         spans
     });
     let [first, second] = frames.map(|spans| {
-        let mut future = pin!(spans.read_async());
+        let mut future = pin!(spans.read().into_future());
         let mut context = Context::from_waker(Waker::noop());
         loop {
             if let Poll::Ready(spans) = future.as_mut().poll(&mut context) {
@@ -144,7 +144,7 @@ fn an_empty_encoder_has_no_timed_kernels() {
     let mut encoder = app.encoder();
     let spans = timestamps.time(&mut encoder).resolve().unwrap();
     app.gpu.queue().submit([encoder.finish()]);
-    assert_eq!(spans.read().unwrap(), []);
+    assert_eq!(spans.read().block().unwrap(), []);
 }
 
 #[test]

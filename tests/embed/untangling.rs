@@ -33,7 +33,7 @@ impl Frames {
     }
 
     fn of(app: App, mesh: Mesh, device_mesh: DeviceMesh) -> Self {
-        let sweeps = Sweeps::new(&device_mesh, &Options::default()).unwrap();
+        let sweeps = Sweeps::new(&device_mesh, &Options::default()).block().unwrap();
         let untangling = UntanglingSweeps::new(&device_mesh).unwrap();
         // The buffer has words of the application before, between and after the coordinates.
         let vertices = Vertices::new(&app, &mesh, 20, 16);
@@ -213,7 +213,7 @@ fn a_valid_mesh_keeps_every_bit_and_only_vertices_near_inverted_triangles_move()
     assert_eq!(frames.points(), before);
     // Untangling leaves a valid mesh unchanged, so sweeps that have ended do not restart.
     let options = Options::default().max_sweeps(1);
-    let mut judged = Sweeps::until_converged(&frames.device_mesh, &options).unwrap();
+    let mut judged = Sweeps::until_converged(&frames.device_mesh, &options).block().unwrap();
     frames.app.submit(|encoder| judged.encode_sweeps(encoder, 1));
     frames.app.submit(|encoder| frames.untangling.encode_untangle(encoder, 5));
     assert!(frames.app.objective(&judged).stop().is_some());

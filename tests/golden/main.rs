@@ -311,8 +311,9 @@ fn results_on_two_threads_have_the_recorded_bits() {
 /// Small meshes without pairs of changes, because lavapipe needs a second to compile each kernel.
 #[test]
 fn results_on_lavapipe_have_the_recorded_bits() {
-    let gpu =
-        gpu_smooth::Gpu::open(Some("llvmpipe")).expect("lavapipe is needed: tests/run installs it");
+    let gpu = gpu_smooth::Gpu::open(Some("llvmpipe"))
+        .block()
+        .expect("lavapipe is needed: tests/run installs it");
     let driver = format!("{} {}", gpu.adapter().name, gpu.adapter().driver);
     let backend = Backend::Gpu(gpu);
     let mut lines = format!("{driver}\n");

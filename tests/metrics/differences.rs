@@ -80,7 +80,7 @@ fn over_relaxed(
 #[test]
 fn runs_by_differences_end_near_the_optimum_on_both_engines() {
     let mesh = plate();
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     for &metric in Metric::ALL {
         let [start, exact] = over_relaxed(&mesh, metric, Derivatives::Analytic, None);
         for device in [None, Some(&gpu)] {
@@ -106,7 +106,7 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
 fn the_paper_method_by_differences_ends_near_the_optimum_on_both_engines() {
     let mesh = plate();
     let smoother = Smoother::new(&mesh).unwrap();
-    let backends = [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())];
+    let backends = [Backend::Cpu, Backend::Gpu(Gpu::open(None).block().unwrap())];
     for &metric in
         Metric::ALL.iter().filter(|metric| metric.ideal_squared() > 0.0 || metric.has_barrier())
     {
@@ -131,7 +131,7 @@ fn the_best_state_is_returned_though_differences_may_raise_f() {
     let derivatives = Derivatives::FiniteDifference;
     let method = Method::Paper(Paper { derivatives, ..Paper::default() });
     let options = Options::default().scheme(Metric::Rms.into()).method(method);
-    for backend in [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())] {
+    for backend in [Backend::Cpu, Backend::Gpu(Gpu::open(None).block().unwrap())] {
         let outcome = smoother.run(&options).on(&backend).block().unwrap();
         let history: Vec<f64> =
             outcome.history.iter().map(|f| f.of(Metric::Rms).unwrap()).collect();

@@ -25,7 +25,7 @@ struct Work {
 }
 
 fn open() -> Gpu {
-    Gpu::open(Some("llvmpipe")).expect("lavapipe is needed: tests/run installs it")
+    Gpu::open(Some("llvmpipe")).block().expect("lavapipe is needed: tests/run installs it")
 }
 
 fn perturbed(vertices: usize) -> Mesh {

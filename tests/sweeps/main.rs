@@ -76,7 +76,8 @@ fn all_schemes() -> Vec<Scheme> {
 fn backends() -> &'static [Backend; 2] {
     static BACKENDS: OnceLock<[Backend; 2]> = OnceLock::new();
     BACKENDS.get_or_init(|| {
-        let gpu = Gpu::open(None).expect("these tests need a wgpu adapter, be it a software one");
+        let gpu =
+            Gpu::open(None).block().expect("these tests need a wgpu adapter, be it a software one");
         [Backend::Cpu, Backend::Gpu(gpu)]
     })
 }

@@ -161,11 +161,11 @@ fn every_metric_is_tracked_on_request() {
 fn an_unknown_adapter_is_an_error_that_lists_those_there_are() {
     let Backend::Gpu(gpu) = &backends()[1] else { panic!("the second backend is the GPU") };
     let there = &gpu.adapter().name;
-    let error = Gpu::open(Some("no such adapter")).expect_err("there is none of that name");
+    let error = Gpu::open(Some("no such adapter")).block().expect_err("there is none of that name");
     assert!(matches!(error, GpuError::NoAdapter { .. }));
     let text = error.to_string();
     assert!(text.contains("'no such adapter'") && text.contains(there.as_str()), "{text}");
     // A part of the name suffices, in upper or lower case.
     let part = there[..there.len() / 2].to_uppercase();
-    assert!(Gpu::open(Some(&part)).is_ok(), "{part}");
+    assert!(Gpu::open(Some(&part)).block().is_ok(), "{part}");
 }

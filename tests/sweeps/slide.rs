@@ -430,7 +430,7 @@ fn f_by_the_areas_of_the_result_does_not_rise_where_vertices_slide() {
 #[test]
 fn both_engines_slide_vertices_by_sweeps_alone() {
     // No other test gives this device work.
-    let engines = [Backend::Cpu, Backend::Gpu(Gpu::open(None).unwrap())];
+    let engines = [Backend::Cpu, Backend::Gpu(Gpu::open(None).block().unwrap())];
     let (halves, lines) = halves();
     let cases = [
         ("halves", halves, Slide { lines, ..Slide::default() }),

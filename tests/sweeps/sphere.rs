@@ -165,11 +165,11 @@ fn frames_of_a_mesh_with_a_sliver_reach_the_optimum_of_the_projection() {
     let [Backend::Cpu, Backend::Gpu(gpu)] = backends() else { panic!("a device is missing") };
     let best = f(&mesh, &run(&smoother, &options, &Backend::Cpu).points);
     let device_mesh = smoother.to_device(gpu).unwrap();
-    let mut sweeps = Sweeps::new(&device_mesh, &options).unwrap();
+    let mut sweeps = Sweeps::new(&device_mesh, &options).block().unwrap();
     let mut encoder = gpu.device().create_command_encoder(&Default::default());
     sweeps.encode_sweeps(&mut encoder, 60);
     gpu.queue().submit([encoder.finish()]);
-    let mut points = device_mesh.read_points().unwrap();
+    let mut points = device_mesh.read_points().block().unwrap();
     assert_eq!(smoother.certify(&mut points).unwrap(), 0);
     let end = f(&mesh, &points);
     assert!((end / best - 1.0).abs() < 1e-5, "{end} {best}");

@@ -120,7 +120,7 @@ pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, CliError> {
 /// Opens an adapter after a trial in a child process. A driver that crashes would otherwise end this process without
 /// a message.
 fn tried_and_opened(name: Option<&str>) -> Result<Gpu, GpuError> {
-    driver_probe::drivers(Trial::Adapter(name)).and_then(|()| Gpu::open(name))
+    driver_probe::drivers(Trial::Adapter(name)).and_then(|()| Gpu::open(name).block())
 }
 
 /// Tries the default adapter in a child process.

@@ -5,16 +5,16 @@ use gpu_smooth::{Backend, Gpu, GpuError, Mesh, Options, SmoothError, Smoother, g
 /// Returns the error of a buffer of another device, the result of a run after that, and the error of a run on a lost
 /// device. The devices are opened for these calls.
 pub(crate) async fn all(mesh: &Mesh) -> Result<Vec<String>, GpuError> {
-    let gpu = Gpu::open_async(None).await?;
+    let gpu = Gpu::open(None).await?;
     let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("of another device"),
         size: 64,
         usage: wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    let other = Gpu::open_async(None).await?;
+    let other = Gpu::open(None).await?;
     let refused = match Readback::<f32>::new(&other, buffer.slice(..), 4) {
-        Ok(_) => other.errors_async().await,
+        Ok(_) => other.errors().await,
         Err(error) => Err(error),
     };
     let valid = run(mesh, &other).await;

@@ -45,7 +45,7 @@ impl Page {
     /// Makes a mesh of approximately `vertices` vertices, and requests a device from the browser.
     pub async fn open(vertices: usize) -> Page {
         console_error_panic_hook::set_once();
-        let gpu = Gpu::open_async(None).await.map_err(|error| error.to_string());
+        let gpu = Gpu::open(None).await.map_err(|error| error.to_string());
         Page { plate: Plate::new(vertices), gpu }
     }
 

@@ -57,7 +57,7 @@ impl Scene {
         let targets = buffer("targets", 8 * plate.hole.len() as u64, usage);
 
         let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), 8))?;
-        let sweeps = Sweeps::until_converged_async(&device_mesh, &options).await?;
+        let sweeps = Sweeps::until_converged(&device_mesh, &options).await?;
         // Browsers round timestamps to approximately a tenth of a millisecond.
         let budget = Budget::micros(BUDGET.0).at_most(BUDGET.1);
         let budget = match gpu.device().features().contains(Gpu::optional_features()) {

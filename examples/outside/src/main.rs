@@ -175,7 +175,7 @@ fn open(mesh: &Mesh) -> Result<Gpu> {
         ..Default::default()
     }))?;
     let gpu = Gpu::new(device, queue)?;
-    gpu.check_arithmetic()?;
+    gpu.check_arithmetic().block()?;
     gpu.prepare(&scene::options())?;
     Ok(gpu)
 }

@@ -73,7 +73,7 @@ impl Scene {
         let targets = buffer("targets", 8 * count as u64, Usage::STORAGE | Usage::COPY_DST);
 
         let bound = device_mesh.bind_vertices(&VertexBuffer::new(vertices.slice(..), STRIDE))?;
-        let sweeps = Sweeps::until_converged(&device_mesh, &options())?;
+        let sweeps = Sweeps::until_converged(&device_mesh, &options()).block()?;
         let untangling = UntanglingSweeps::new(&device_mesh)?;
         let objective = sweeps.bind_objective(numbers.slice(..))?;
         let budget = Budget::micros(2000).at_most(20);

@@ -2,7 +2,7 @@
 
 use crate::adapter::AdapterSummary;
 use crate::error::GpuError;
-use crate::gpu::device::blocking::blocking;
+use crate::gpu::device::pending::blocking;
 
 impl AdapterSummary {
     pub(crate) fn new(info: &wgpu::AdapterInfo) -> Self {
@@ -29,7 +29,7 @@ impl AdapterSummary {
 }
 
 /// Lists the adapters of this machine that can compute, in order of preference, without opening any. In a browser the
-/// list is empty; [`Gpu::open_async`](crate::gpu::Gpu::open_async) finds the browser's only adapter.
+/// list is empty; an awaited [`Gpu::open`](crate::gpu::Gpu::open) finds the browser's only adapter.
 pub fn adapters() -> Vec<AdapterSummary> {
     ranked_adapters().iter().map(|adapter| AdapterSummary::new(&adapter.get_info())).collect()
 }
@@ -37,11 +37,11 @@ pub fn adapters() -> Vec<AdapterSummary> {
 /// Returns the adapters that can compute, fastest kind first. Adapters of OpenGL are listed only if other backends have
 /// none: they repeat the same devices, and their driver starts slowly.
 pub(crate) fn ranked_adapters() -> Vec<wgpu::Adapter> {
-    blocking(async { Ok::<_, GpuError>(ranked_adapters_async().await) }).unwrap_or_default()
+    blocking(async { Ok::<_, GpuError>(awaited_adapters().await) }).unwrap_or_default()
 }
 
 /// Returns the adapters that can compute like [`ranked_adapters`], without blocking.
-pub(crate) async fn ranked_adapters_async() -> Vec<wgpu::Adapter> {
+pub(crate) async fn awaited_adapters() -> Vec<wgpu::Adapter> {
     let compiled = wgpu::Instance::enabled_backend_features();
     let native = usable_adapters(wgpu::Backends::PRIMARY, compiled).await;
     match native.is_empty() {
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn a_build_without_a_backend_has_no_adapter() {
         assert!(adapters().is_empty() && crate::gpu::checked_adapters().is_empty());
-        assert!(matches!(Gpu::open(None), Err(GpuError::NoAdapter { .. })));
+        assert!(matches!(Gpu::open(None).block(), Err(GpuError::NoAdapter { .. })));
         let size = crate::MeshSize { vertices: 3_000_000, triangles: 6_000_000 };
         let (backend, reason) = crate::Backend::auto(size, &crate::Options::default());
         assert!(matches!(backend, crate::Backend::Cpu), "{reason}");
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn an_adapter_without_a_name_is_called_unnamed() {
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         let info = gpu.device.adapter_info();
         assert_eq!(AdapterSummary::new(&info), *gpu.adapter());
         let unnamed = wgpu::AdapterInfo { name: String::new(), ..info };

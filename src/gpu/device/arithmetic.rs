@@ -4,9 +4,9 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::{filled, zeroed};
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::pending::{Pending, Waiting};
+use crate::gpu::device::readback;
 use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::layouts::ArithmeticBindings;
 use crate::gpu::kernels::table::Kernel;
@@ -22,21 +22,12 @@ impl Gpu {
     /// second float of each. The kernels guard against reordered sums; this call runs one tiny kernel and compares its
     /// results with exact ones. [`Gpu::open`] and the runs of [`Smoother`](crate::Smoother) check the arithmetic
     /// themselves. An application that encodes sweeps on its own device ([`Gpu::new`]) should call this method when it
-    /// starts. Any thread may call this method, which polls the device and blocks until all submitted work is done.
+    /// starts. Any thread may call this method, which waits until all submitted work is done.
     ///
     /// # Errors
     /// [`GpuError::Arithmetic`] if digits are lost, or another [`GpuError`] if the device fails.
-    pub fn check_arithmetic(&self) -> Result<(), GpuError> {
-        blocking(self.arithmetic_checked(Waiting::Block))
-    }
-
-    /// Checks the arithmetic of the adapter like [`check_arithmetic`](Self::check_arithmetic), without blocking. The
-    /// application polls the device: the future completes after a poll that finds the kernel done.
-    ///
-    /// # Errors
-    /// [`GpuError::Arithmetic`] if digits are lost, or another [`GpuError`] if the device fails.
-    pub async fn check_arithmetic_async(&self) -> Result<(), GpuError> {
-        self.arithmetic_checked(Waiting::Await).await
+    pub fn check_arithmetic(&self) -> Pending<'_, ()> {
+        Pending::new(|waiting| Box::pin(self.arithmetic_checked(waiting)))
     }
 
     pub(crate) async fn arithmetic_checked(&self, waiting: Waiting) -> Result<(), GpuError> {
@@ -222,9 +213,9 @@ mod tests {
 
     #[test]
     fn an_adapter_that_keeps_all_digits_passes() {
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         assert_eq!(fault_after(&gpu, &[]), None);
-        gpu.check_arithmetic().unwrap();
+        gpu.check_arithmetic().block().unwrap();
     }
 
     /// Each row: a sum as written in the kernels, a form to which a compiler could simplify the sum, and the fault that
@@ -264,7 +255,7 @@ mod tests {
 
     #[test]
     fn sums_folded_by_fast_math_are_found() {
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         for (right, wrong, operation) in FOLDED {
             assert_eq!(fault_after(&gpu, &[(right, wrong)]), Some(operation), "{wrong}");
         }
@@ -272,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_nan_area_that_passes_for_positive_is_found() {
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         // `x > 0` in a form that a compiler may choose if it assumes that there are no NaNs.
         let careless = [("opaque_bits(x) - 1u < 0x7f7fffffu", "!(x <= 0.0)")];
         let operation = "an area that is inverted, flat or not a number passes for positive";
@@ -283,11 +274,11 @@ mod tests {
 
     #[test]
     fn an_adapter_that_drops_digits_is_named_with_the_fault() {
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         let opened = Gpu::new(gpu.device().clone(), gpu.queue().clone()).unwrap();
         let found = fault_after(&opened, &[(FOLDED[1].0, FOLDED[1].1)]);
         opened.arithmetic.set(found).unwrap();
-        let error = opened.check_arithmetic().unwrap_err();
+        let error = opened.check_arithmetic().block().unwrap_err();
         assert!(matches!(error, GpuError::Arithmetic { .. }));
         let text = error.to_string();
         for part in [&gpu.adapter().name, "the rounding error"] {
@@ -300,7 +291,7 @@ mod tests {
         use crate::{Backend, Mesh, Options, SmoothError, Smoother};
         use std::ops::ControlFlow;
 
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         let opened = Gpu::new(gpu.device().clone(), gpu.queue().clone()).unwrap();
         opened.arithmetic.set(Some("digits are lost")).unwrap();
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];

@@ -142,12 +142,13 @@ pub(crate) fn zeroed(gpu: &Gpu, label: &str, size: u64, usage: Usage) -> wgpu::B
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::device::readback::{self, Waiting};
+    use crate::gpu::device::pending::Waiting;
+    use crate::gpu::device::readback;
     use crate::parallel::pace::now;
 
     #[test]
     fn buffers_hold_their_contents_however_large() {
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         let piece = PIECE / size_of::<u32>();
         for length in [1, piece, piece + 1, (UNDER_WAY + 1) * piece - 1] {
             let contents: Vec<u32> =

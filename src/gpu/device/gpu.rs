@@ -7,6 +7,7 @@ use std::time::Duration;
 use crate::adapter::AdapterSummary;
 use crate::error::{GpuError, SmoothError};
 use crate::gpu::device::limits;
+use crate::gpu::device::pending::Pending;
 use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::row::User;
@@ -44,7 +45,7 @@ impl Gpu {
     ///
     /// `new` does not check the adapter's arithmetic, as the check waits for the device. Runs of
     /// [`Smoother`](crate::Smoother) check the arithmetic first. An application that encodes sweeps itself calls
-    /// [`Gpu::check_arithmetic`] or [`Gpu::check_arithmetic_async`].
+    /// [`Gpu::check_arithmetic`].
     ///
     /// # Panics
     /// This library does not panic, but wgpu itself panics if resources of two *instances* are combined. An application
@@ -160,8 +161,8 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::OutOfMemory`], [`GpuError::Buffer`] or [`GpuError::Refused`] for earlier calls, and
     /// [`GpuError::Lost`] if the device is lost.
-    pub async fn errors_async(&self) -> Result<(), GpuError> {
-        self.device.check_async().await
+    pub fn errors(&self) -> Pending<'_, ()> {
+        Pending::new(|_| Box::pin(self.device.check_async()))
     }
 }
 

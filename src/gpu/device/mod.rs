@@ -2,11 +2,11 @@
 
 mod adapters;
 mod arithmetic;
-pub(crate) mod blocking;
 pub(crate) mod buffers;
 mod gpu;
 pub(crate) mod limits;
 mod open;
+pub(crate) mod pending;
 pub(crate) mod readback;
 pub(crate) mod size;
 
@@ -14,4 +14,5 @@ pub use adapters::adapters;
 pub(crate) use adapters::ranked_adapters;
 pub use gpu::Gpu;
 pub use open::checked_adapters;
-pub(crate) use readback::Waiting;
+pub use pending::Pending;
+pub(crate) use pending::Waiting;

@@ -3,39 +3,31 @@
 use crate::adapter::AdapterSummary;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::adapters::{ranked_adapters, ranked_adapters_async};
-use crate::gpu::device::blocking::blocking;
-use crate::gpu::device::readback::Waiting;
+use crate::gpu::device::adapters::{awaited_adapters, ranked_adapters};
+use crate::gpu::device::pending::{Pending, Waiting, blocking};
 use crate::gpu::scope::{WatchedDevice, caught};
 
 impl Gpu {
     /// Opens the best adapter whose name contains `name` (case is ignored), or the best of all adapters for `None`.
     /// Discrete GPUs are preferred to integrated, virtual, other and software adapters, in this order. An adapter that
-    /// fails [`Gpu::check_arithmetic`] is skipped. Blocks the thread, so a page in a browser calls
-    /// [`open_async`](Self::open_async) instead.
+    /// fails [`Gpu::check_arithmetic`] is skipped. Except in a browser, the future of an awaited call blocks its thread
+    /// while the arithmetic is checked.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] if the machine has no adapter with this name; [`GpuError::NoDevice`] if the adapter
-    /// refuses to create a device; [`GpuError::Arithmetic`] for the best adapter if every adapter fails the check;
-    /// [`GpuError::WouldBlock`] in a browser; or another [`GpuError`] if the device fails.
-    pub fn open(name: Option<&str>) -> Result<Self, GpuError> {
-        blocking(Self::open_async(name))
+    /// refuses to create a device; [`GpuError::Arithmetic`] for the best adapter if every adapter fails the check; or
+    /// another [`GpuError`] if the device fails.
+    pub fn open(name: Option<&str>) -> Pending<'_, Self> {
+        Pending::new(move |_| Box::pin(Self::best(name)))
     }
 
-    /// Opens the best adapter like [`open`](Self::open), without blocking a page in a browser. On other targets the
-    /// future blocks its thread while the arithmetic is checked, as `open` does.
-    ///
-    /// # Errors
-    /// [`GpuError::NoAdapter`], [`GpuError::NoDevice`], [`GpuError::Arithmetic`] or another [`GpuError`] if the device
-    /// fails; [`open`](Self::open) gives the conditions.
-    pub async fn open_async(name: Option<&str>) -> Result<Self, GpuError> {
-        let adapters = ranked_adapters_async().await;
+    async fn best(name: Option<&str>) -> Result<Self, GpuError> {
+        let adapters = awaited_adapters().await;
         let has_name = |adapter: &&wgpu::Adapter| {
             let text = adapter.get_info().name.to_lowercase();
             name.is_none_or(|name| text.contains(&name.to_lowercase()))
         };
-        let start = async |adapter| Self::start_async(adapter).await;
-        match first_that_passes(adapters.iter().filter(has_name), start).await {
+        match first_that_passes(adapters.iter().filter(has_name), Self::started).await {
             Some(opened) => opened,
             None => {
                 let names: Vec<_> = adapters.iter().map(|a| a.get_info().name).collect();
@@ -47,10 +39,10 @@ impl Gpu {
 
     /// Opens a device with all limits of the adapter, and checks the adapter's arithmetic.
     pub(crate) fn start(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        blocking(Self::start_async(adapter))
+        blocking(Self::started(adapter))
     }
 
-    async fn start_async(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+    async fn started(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let summary = AdapterSummary::new(&adapter.get_info());
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("gpu-smooth device"),
@@ -87,9 +79,9 @@ pub fn checked_adapters() -> Vec<(AdapterSummary, Result<(), GpuError>)> {
 /// Opens candidates in order until one does not fail the check of its arithmetic, and returns its result: a device, or
 /// any other error. If every candidate fails the check, returns the error of the first candidate. `None` without
 /// candidates.
-async fn first_that_passes<A, G>(
+async fn first_that_passes<A, G, F: Future<Output = Result<G, GpuError>>>(
     candidates: impl Iterator<Item = A>,
-    open: impl AsyncFn(A) -> Result<G, GpuError>,
+    open: impl Fn(A) -> F,
 ) -> Option<Result<G, GpuError>> {
     let mut failed = None;
     for candidate in candidates {
@@ -131,6 +123,6 @@ mod tests {
     fn the_adapter_that_is_opened_is_the_first_that_passes() {
         let checked = checked_adapters();
         let (first, _) = checked.iter().find(|(_, usable)| usable.is_ok()).unwrap();
-        assert_eq!(Gpu::open(None).unwrap().adapter(), first);
+        assert_eq!(Gpu::open(None).block().unwrap().adapter(), first);
     }
 }

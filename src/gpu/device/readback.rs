@@ -9,20 +9,12 @@ use web_time::Instant;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
+use crate::gpu::device::pending::Waiting;
 use crate::gpu::scope::{Count, poll, scoped};
 use crate::parallel::paced;
 
 /// Number of values that are copied between two pauses.
 const CHUNK: usize = 1 << 15;
-
-/// The party that polls the device while a readback is in flight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Waiting {
-    /// This library, blocking the thread until the device is done.
-    Block,
-    /// The application, which polls the device anyway. The future completes after a poll that finds the copy done.
-    Await,
-}
 
 /// Copies `count` values from the start of `source` to the host, after everything submitted so far.
 pub(crate) async fn read<T: Pod + Send>(

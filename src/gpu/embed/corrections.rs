@@ -2,7 +2,7 @@
 //! the device.
 
 use crate::error::GpuError;
-use crate::gpu::device::readback::Waiting;
+use crate::gpu::device::pending::Waiting;
 use crate::gpu::embed::DeviceMesh;
 use crate::gpu::encode::Passes;
 use crate::gpu::encode::sealed::Target;

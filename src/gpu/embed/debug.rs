@@ -59,13 +59,13 @@ mod tests {
 
     #[test]
     fn debug_output_of_handles_tells_them_apart() {
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
         let mesh = DeviceMesh::new(&gpu, &Mesh { points, triangles, fixed: vec![] }).unwrap();
         assert_eq!(format!("{mesh:?}"), "DeviceMesh { vertices: 5, triangles: 4, .. }");
         let options = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
-        let sweeps = Sweeps::new(&mesh, &options).unwrap();
+        let sweeps = Sweeps::new(&mesh, &options).block().unwrap();
         assert_eq!(format!("{sweeps:?}"), "Sweeps { scheme: \"edge+imr\", .. }");
         assert!(format!("{gpu:?}").contains(&gpu.adapter().name));
         assert_eq!(format!("{:?}", mesh.keep_last_valid().unwrap()), "LastValid { .. }");

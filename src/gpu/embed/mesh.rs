@@ -9,9 +9,8 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::error::{MeshError, SmoothError};
 use crate::gpu::device::Gpu;
-use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::filled;
-use crate::gpu::device::readback::Waiting;
+use crate::gpu::device::pending::{Pending, Waiting};
 use crate::gpu::embed::clamped_move::Moves;
 use crate::gpu::embed::objective::Run;
 use crate::gpu::embed::pins::{Change, Pins, SlidingPins};
@@ -340,22 +339,14 @@ impl DeviceMesh {
         place.ok_or(MeshError::IndexOutOfRange { triangle: None, vertex, vertices })
     }
 
-    /// Returns the positions in the order and unit of the mesh. Polls the device and blocks until it has finished all
-    /// submitted work. A vertex of no triangle has its position at upload.
+    /// Returns the positions in the order and unit of the mesh, once the device has finished all work submitted before. A
+    /// vertex of no triangle has its position at upload. If the call is awaited, the copy is submitted when the future is
+    /// first polled.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
-    pub fn read_points(&self) -> Result<Vec<[f64; 2]>, GpuError> {
-        blocking(self.wait_for_points(Waiting::Block))
-    }
-
-    /// Returns the positions like [`read_points`](Self::read_points), without blocking. The copy is submitted when the
-    /// future is first polled; the future completes after the application has polled the device.
-    ///
-    /// # Errors
-    /// [`GpuError::Lost`] if the device is lost.
-    pub async fn read_points_async(&self) -> Result<Vec<[f64; 2]>, GpuError> {
-        self.wait_for_points(Waiting::Await).await
+    pub fn read_points(&self) -> Pending<'_, Vec<[f64; 2]>> {
+        Pending::new(|waiting| Box::pin(self.wait_for_points(waiting)))
     }
 
     async fn wait_for_points(&self, waiting: Waiting) -> Result<Vec<[f64; 2]>, GpuError> {

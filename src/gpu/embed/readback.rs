@@ -158,7 +158,7 @@ impl<T: Pod> Readback<T> {
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost. In a browser also the errors of earlier calls, as
-    /// [`Gpu::errors_async`] describes.
+    /// [`Gpu::errors`] describes.
     pub fn latest(&mut self) -> Result<Option<&[T]>, GpuError> {
         self.device.check()?;
         self.collect()?;

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use crate::error::{GpuError, SmoothError};
 use crate::gpu::device::Gpu;
-use crate::gpu::device::blocking::blocking;
-use crate::gpu::device::readback::Waiting;
+use crate::gpu::device::pending::{Pending, Waiting};
 use crate::gpu::embed::corrections::EncodedCorrections;
 use crate::gpu::embed::objective::Run;
 use crate::gpu::embed::{BoundObjective, Budget, DeviceMesh, Doubt};
@@ -63,8 +62,8 @@ impl Sweeps {
     /// and alternating metrics have corrections only in whole runs ([`Smoother`](crate::Smoother)). Sweeps on a mesh with
     /// stretched triangles or a vertex of many neighbors are not corrected; [`doubt`](Self::doubt) tells.
     ///
-    /// The call builds the levels on the host, after it has waited for all submitted work and read back a number for each
-    /// free vertex. The numbers come from a copy of the mesh after ten sweeps, so levels of a rough mesh fit the mesh
+    /// For corrected sweeps, the call builds the levels on the host, after it has waited for all submitted work and read back
+    /// a number for each free vertex. Other sweeps wait for nothing. The numbers come from a copy of the mesh after ten sweeps, so levels of a rough mesh fit the mesh
     /// that the first sweeps make of it. The aggregates of the levels never change; each correction fits the levels to
     /// the present sizes of elements. Levels take some 70 bytes on the device per vertex, and the copy another 16 bytes
     /// during the call.
@@ -74,20 +73,10 @@ impl Sweeps {
     ///
     /// # Errors
     /// [`SmoothError::Option`] for an option out of range, an option of whole runs alone, or a scheme whose corrections
-    /// cannot be encoded; [`GpuError::Limit`] if the levels are too large for the device; [`GpuError::WouldBlock`] for
-    /// corrected sweeps in a browser, where [`new_async`](Self::new_async) makes them; another [`GpuError`] if the device
+    /// cannot be encoded; [`GpuError::Limit`] if the levels are too large for the device; another [`GpuError`] if the device
     /// fails.
-    pub fn new(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
-        blocking(Self::by(mesh, options, Ending::Never, Waiting::Block))
-    }
-
-    /// Binds options to a mesh like [`new`](Self::new), without blocking. If the sweeps are corrected, the future
-    /// completes after the application has polled the device, otherwise at once.
-    ///
-    /// # Errors
-    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
-    pub async fn new_async(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
-        Self::by(mesh, options, Ending::Never, Waiting::Await).await
+    pub fn new<'a>(mesh: &'a DeviceMesh, options: &'a Options) -> Pending<'a, Self, SmoothError> {
+        Pending::new(|waiting| Box::pin(Self::by(mesh, options, Ending::Never, waiting)))
     }
 
     /// Binds options to a mesh like [`new`](Self::new), for sweeps that end by the stop rule on the device. Once f is
@@ -104,20 +93,11 @@ impl Sweeps {
     ///
     /// # Errors
     /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
-    pub fn until_converged(mesh: &DeviceMesh, options: &Options) -> Result<Self, SmoothError> {
-        blocking(Self::by(mesh, options, Ending::SelfStopping, Waiting::Block))
-    }
-
-    /// Binds options to a mesh like [`until_converged`](Self::until_converged), without blocking. If the sweeps are
-    /// corrected, the future completes after the application has polled the device, otherwise at once.
-    ///
-    /// # Errors
-    /// [`SmoothError::Option`] or [`SmoothError::Gpu`]; [`new`](Self::new) gives the conditions.
-    pub async fn until_converged_async(
-        mesh: &DeviceMesh,
-        options: &Options,
-    ) -> Result<Self, SmoothError> {
-        Self::by(mesh, options, Ending::SelfStopping, Waiting::Await).await
+    pub fn until_converged<'a>(
+        mesh: &'a DeviceMesh,
+        options: &'a Options,
+    ) -> Pending<'a, Self, SmoothError> {
+        Pending::new(|waiting| Box::pin(Self::by(mesh, options, Ending::SelfStopping, waiting)))
     }
 
     async fn by(

@@ -4,9 +4,9 @@ use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::blocking::blocking;
 use crate::gpu::device::buffers::zeroed;
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::pending::{Pending, Waiting};
+use crate::gpu::device::readback;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::scope::scoped;
 
@@ -33,7 +33,7 @@ const SPAN: u64 = 2 * wgpu::QUERY_SIZE as u64;
 /// let spans = timed.resolve()?;
 /// gpu.queue().submit([encoder.finish()]);
 ///
-/// for span in spans.read()? {
+/// for span in spans.read().block()? {
 ///     println!("{} {:?}: {} ns", span.kernel.label(), span.color, span.nanoseconds);
 /// }
 /// # Ok(())
@@ -139,21 +139,12 @@ pub struct Span {
 }
 
 impl Spans {
-    /// Returns the times in the order of encoding. Blocks until the device has finished all submitted work.
+    /// Returns the times in the order of encoding, once the device has finished all submitted work.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device is lost.
-    pub fn read(self) -> Result<Vec<Span>, GpuError> {
-        blocking(self.wait(Waiting::Block))
-    }
-
-    /// Returns the times like [`read`](Self::read), without blocking. The future completes once the application has
-    /// polled the device.
-    ///
-    /// # Errors
-    /// [`GpuError::Lost`] if the device is lost.
-    pub async fn read_async(self) -> Result<Vec<Span>, GpuError> {
-        self.wait(Waiting::Await).await
+    pub fn read(self) -> Pending<'static, Vec<Span>> {
+        Pending::new(|waiting| Box::pin(self.wait(waiting)))
     }
 
     async fn wait(self, waiting: Waiting) -> Result<Vec<Span>, GpuError> {

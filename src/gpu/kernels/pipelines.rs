@@ -196,7 +196,7 @@ mod tests {
         use crate::gpu::{DeviceMesh, Gpu, Sweeps, VertexBuffer};
         use crate::{Mesh, Options};
 
-        let gpu = Gpu::open(None).unwrap();
+        let gpu = Gpu::open(None).block().unwrap();
         let made = || gpu.pipelines.made.lock().unwrap().len();
         let options = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
         assert_eq!(made(), 0);
@@ -207,7 +207,7 @@ mod tests {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
         let mesh = DeviceMesh::new(&gpu, &Mesh { points, triangles, fixed: vec![] }).unwrap();
-        let sweeps = Sweeps::new(&mesh, &options).unwrap();
+        let sweeps = Sweeps::new(&mesh, &options).block().unwrap();
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: 64,

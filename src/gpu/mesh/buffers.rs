@@ -8,7 +8,8 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{
     bytes, filled, filled_with_pauses, rows, write_by_pieces, zeroed,
 };
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::pending::Waiting;
+use crate::gpu::device::readback;
 use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
 use crate::gpu::kernels::layouts::BoundPositions;
 use crate::gpu::kernels::uniforms::split;

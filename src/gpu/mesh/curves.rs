@@ -8,7 +8,8 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, write_by_pieces, zeroed};
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::pending::Waiting;
+use crate::gpu::device::readback;
 use crate::gpu::device::size::check_limit;
 use crate::gpu::kernels::uniforms::{
     CurvePlace, Knot, NO_GUARD, SlidingVertex, pair, split, unpair,

@@ -114,7 +114,7 @@ fn visited(gpu: &Gpu, mesh: &Mesh, slide: &Slide, metric: Metric) -> Both {
 /// The visits of one color are independent of each other, so both engines take equal steps up to rounding.
 #[test]
 fn both_engines_visit_vertices_on_curves_alike() {
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     for (name, mesh, slide) in cases() {
         let metrics = if name == "pairs" { Metric::ALL } else { &[Metric::Imr, Metric::Rms] };
         // The distance of a line from a given vertex grows with the square of a step, and single precision needs a reserve.

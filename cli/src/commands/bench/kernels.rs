@@ -33,7 +33,7 @@ pub(crate) fn time(
 ) -> Result<Option<Vec<KernelTime>>, SmoothError> {
     let Ok(mut timestamps) = Timestamps::new(gpu) else { return Ok(None) };
     let device_mesh = DeviceMesh::new(gpu, mesh)?;
-    let mut sweeps = Sweeps::new(&device_mesh, options)?;
+    let mut sweeps = Sweeps::new(&device_mesh, options).block()?;
     let values = gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("objectives"),
         size: size_of::<gpu_smooth::gpu::ObjectiveValues>() as u64,
@@ -54,7 +54,7 @@ pub(crate) fn time(
     let mut kernels: Vec<KernelTime> = Vec::new();
     // Runs do not copy their objectives to a buffer of the application.
     let of_run = |kernel: &Kernel| *kernel != Kernel::WriteObjective;
-    for span in spans.read()?.into_iter().filter(|span| of_run(&span.kernel)) {
+    for span in spans.read().block()?.into_iter().filter(|span| of_run(&span.kernel)) {
         let seconds = span.nanoseconds * 1e-9 / f64::from(TIMED);
         match kernels.iter_mut().find(|known| known.kernel == span.kernel) {
             Some(known) => {

@@ -16,7 +16,8 @@ use glam::DVec2;
 
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
-use crate::gpu::device::readback::{self, Waiting};
+use crate::gpu::device::pending::Waiting;
+use crate::gpu::device::readback;
 use crate::gpu::encode::Passes;
 use crate::gpu::encode::sealed::Target;
 use crate::gpu::kernels::uniforms::{StepState, unpair};

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::cpu::CpuEngine;
 use crate::gpu::Gpu;
-use crate::gpu::device::readback::Waiting;
+use crate::gpu::device::pending::Waiting;
 use crate::gpu::run::GpuEngine;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
@@ -113,7 +113,7 @@ fn compare_at(mut engines: Engines<'_>, problem: &Problem, metric: Metric, by: [
 
 #[test]
 fn steps_of_the_device_are_those_of_the_cpu() {
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     let lattice_of_21 = problem(&lattice(21, 1.0));
     for metric in Metric::ALL.iter().filter(|metric| metric.curved().is_some()) {
         compare(&gpu, &lattice_of_21, *metric);
@@ -138,7 +138,7 @@ fn on_curves(mesh: &Mesh, slide: &Slide, problem: &Problem) -> OnCurves {
 /// Vertices slide around a circle, on straight sides with corners between them, and in pairs on opposite sides.
 #[test]
 fn steps_of_the_device_slide_vertices_as_the_cpu_does() {
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     let mut sides = lattice(21, 1.0);
     for (k, point) in (0_u32..).zip(&mut sides.points) {
         let off = 0.2 * (f64::from(k / 21 + k % 21) * 1.3).sin();
@@ -169,7 +169,7 @@ fn steps_of_the_device_slide_vertices_as_the_cpu_does() {
 /// A submission holds a few iterations and two trials. Steps that need more go on in further submissions.
 #[test]
 fn long_steps_take_several_submissions() {
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     let problem = problem(&hub(40));
     let mut engines = Engines::new(&gpu, &problem, Metric::Imr, 0);
     let request = StepRequest { forcing: 1e-6, least_ritz: 1e-3, ..REQUEST };
@@ -182,7 +182,7 @@ fn long_steps_take_several_submissions() {
 /// An engine stops in the middle of the iterations if `goes_on` returns false. The sweep before the step counts.
 #[test]
 fn a_step_that_is_given_up_leaves_the_vertices_where_the_sweep_has_moved_them() {
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     let mesh = hub(40);
     let problem = problem(&mesh);
     let request = StepRequest { forcing: 1e-6, least_ritz: 1e-3, ..REQUEST };
@@ -216,7 +216,7 @@ fn a_step_that_is_given_up_leaves_the_vertices_where_the_sweep_has_moved_them() 
 /// The device judges conjugate gradients by the bound of the CPU engine: both follow from the coefficients of the iterations.
 #[test]
 fn the_bound_is_that_of_the_coefficients() {
-    let gpu = Gpu::open(None).unwrap();
+    let gpu = Gpu::open(None).block().unwrap();
     let problem = problem(&lattice(21, 1.0));
     for least_ritz in [0.1, 0.9] {
         let mut engines = Engines::new(&gpu, &problem, Metric::Imr, 3);
