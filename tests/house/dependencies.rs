@@ -16,13 +16,16 @@ use syn::{Attribute, Item, ItemMod, ItemUse, UseTree, Visibility};
 pub(crate) type Uses = BTreeMap<String, BTreeSet<String>>;
 
 /// Names of nested modules, starting at the root of the crate.
-type ModulePath = Vec<String>;
+pub(crate) type ModulePath = Vec<String>;
 
-/// Returns the uses of all files in a crate's source folder.
-pub(crate) fn of_crate(source: &Path) -> Uses {
+/// The files of a crate, parsed, by their modules: each with its path, such as `run/drive`. Modules for tests are left out.
+pub(crate) type Parsed = BTreeMap<ModulePath, (String, syn::File)>;
+
+/// Parses all files in a crate's source folder.
+pub(crate) fn parsed(source: &Path) -> Parsed {
     let mut texts = BTreeMap::new();
     collect(source, source, &mut texts);
-    of_texts(&texts)
+    parsed_texts(&texts)
 }
 
 fn collect(folder: &Path, source: &Path, texts: &mut BTreeMap<String, String>) {
@@ -38,8 +41,8 @@ fn collect(folder: &Path, source: &Path, texts: &mut BTreeMap<String, String>) {
     }
 }
 
-/// Returns the uses of files with the given contents.
-pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
+/// Parses files with the given contents.
+pub(crate) fn parsed_texts(texts: &BTreeMap<String, String>) -> Parsed {
     let mut parsed = BTreeMap::new();
     // The main file of a crate with a library uses the library from outside.
     let has_library = texts.contains_key("lib");
@@ -58,6 +61,11 @@ pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
         }
     }
     parsed.retain(|module, _| !(1..=module.len()).any(|n| skipped.contains(&module[..n])));
+    parsed
+}
+
+/// Returns the files that each file uses.
+pub(crate) fn uses_of(parsed: &Parsed) -> Uses {
     let exports: BTreeMap<&ModulePath, BTreeMap<String, ModulePath>> = parsed
         .iter()
         .map(|(module, (_, file))| {
@@ -91,7 +99,7 @@ pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
     };
     // The module that defines each method, by the definition of its type.
     let mut methods: BTreeMap<(ModulePath, String), ModulePath> = BTreeMap::new();
-    for (module, (_, file)) in &parsed {
+    for (module, (_, file)) in parsed {
         let names = names_in(module);
         for item in &file.items {
             let Item::Impl(item) = item else { continue };
@@ -108,7 +116,7 @@ pub(crate) fn of_texts(texts: &BTreeMap<String, String>) -> Uses {
         }
     }
     let mut uses = Uses::new();
-    for (module, (name, file)) in &parsed {
+    for (module, (name, file)) in parsed {
         let names = names_in(module);
         let mut paths = Paths {
             module: module.clone(),
@@ -156,11 +164,11 @@ fn module_of(name: &str) -> ModulePath {
     parts
 }
 
-fn child(module: &[String], name: &str) -> ModulePath {
+pub(crate) fn child(module: &[String], name: &str) -> ModulePath {
     [module, &[name.to_owned()]].concat()
 }
 
-fn is_for_tests(attributes: &[Attribute]) -> bool {
+pub(crate) fn is_for_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let tokens = || attribute.meta.require_list().map(|list| list.tokens.to_string());
         attribute.path().is_ident("cfg")
@@ -169,7 +177,7 @@ fn is_for_tests(attributes: &[Attribute]) -> bool {
 }
 
 /// Makes a path absolute; `None` for paths out of the crate.
-fn absolute(path: &[String], module: &[String]) -> Option<ModulePath> {
+pub(crate) fn absolute(path: &[String], module: &[String]) -> Option<ModulePath> {
     let ups = path.iter().take_while(|part| *part == "super").count();
     match path.first()?.as_str() {
         "crate" => Some(path[1..].to_vec()),
@@ -180,7 +188,7 @@ fn absolute(path: &[String], module: &[String]) -> Option<ModulePath> {
 }
 
 /// Returns the names that an import declares, with their full paths.
-fn leaves(item: &ItemUse, module: &[String]) -> Vec<(String, ModulePath)> {
+pub(crate) fn leaves(item: &ItemUse, module: &[String]) -> Vec<(String, ModulePath)> {
     fn walk(tree: &UseTree, before: &[String], found: &mut Vec<(String, ModulePath)>) {
         let with = |name: &syn::Ident| child(before, &name.to_string());
         match tree {

@@ -1,5 +1,6 @@
 //! Rules of this project that the compiler does not check.
 
+mod api;
 mod dependencies;
 mod documents;
 
@@ -41,13 +42,36 @@ fn rust_files(directory: &Path, found: &mut Vec<PathBuf>) {
 /// Source folders of the crates.
 const CRATES: [&str; 5] = ["src", "mesh-io/src", "job/src", "cli/src", "python/src"];
 
-/// Returns the uses of all files of a crate. All tests share them, as parsing the sources takes most of their time.
-fn uses_of(source: &'static str) -> &'static Uses {
-    static USES: OnceLock<BTreeMap<&str, Uses>> = OnceLock::new();
-    let all = USES.get_or_init(|| {
-        CRATES.map(|source| (source, dependencies::of_crate(&root().join(source)))).into()
+/// Each crate for users, by its name and source folder.
+const PUBLIC_CRATES: [(&str, &str); 3] =
+    [("gpu-smooth", "src"), ("gpu-smooth-job", "job/src"), ("mesh-io", "mesh-io/src")];
+
+/// A crate by its sources.
+struct Crate {
+    /// The files that each file uses.
+    uses: Uses,
+    /// The public items, of the crates for users alone.
+    public_items: Vec<String>,
+}
+
+/// Returns a crate by its source folder. All tests share the crates, as parsing the sources takes most of their time.
+fn crate_of(source: &str) -> &'static Crate {
+    static CRATES_PARSED: OnceLock<BTreeMap<&str, Crate>> = OnceLock::new();
+    let all = CRATES_PARSED.get_or_init(|| {
+        let of_folder = |source: &'static str| {
+            let parsed = dependencies::parsed(&root().join(source));
+            let is_for_users = PUBLIC_CRATES.iter().any(|(_, folder)| *folder == source);
+            let public_items = if is_for_users { api::public_items(&parsed) } else { Vec::new() };
+            (source, Crate { uses: dependencies::uses_of(&parsed), public_items })
+        };
+        CRATES.map(of_folder).into()
     });
-    let uses = &all[source];
+    &all[source]
+}
+
+/// Returns the uses of all files of a crate.
+fn uses_of(source: &str) -> &'static Uses {
+    let uses = &crate_of(source).uses;
     let count: usize = uses.values().map(BTreeSet::len).sum();
     let least = match source {
         "job/src" => 5,
@@ -127,12 +151,15 @@ fn only_requests_and_commands_name_the_arguments_of_the_command_line() {
     assert_eq!(naming, ["commands", "lib", "request"]);
 }
 
+/// Parses files given by their paths and texts.
+fn parsed_texts(files: &[(&str, &str)]) -> dependencies::Parsed {
+    let texts = files.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
+    dependencies::parsed_texts(&texts.collect())
+}
+
 #[test]
 fn every_kind_of_use_and_of_circle_is_found() {
-    let texts = |files: &[(&str, &str)]| {
-        files.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
-    };
-    let uses = dependencies::of_texts(&texts(&[
+    let uses = dependencies::uses_of(&parsed_texts(&[
         ("lib", "mod a; mod b; pub use b::Deep;"),
         ("a", "use crate::b::{Deep, own}; #[cfg(test)] mod tests { use crate::d::D; }"),
         ("b/mod", "mod deep; mod other; pub(crate) use deep::Deep; pub(crate) fn own() {}"),
