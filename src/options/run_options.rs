@@ -14,21 +14,32 @@ use crate::precision::Precision;
 
 /// Declares the options of a run, each with its description, type and default. A setter has the name of its option.
 macro_rules! options {
-    ($(#[$doc:meta])* $options:ident { $($(#[$of:meta])* $name:ident: $kind:ty = $default:expr,)* }) => {
-        $(#[$doc])*
+    ($($(#[$of:meta])* $name:ident: $kind:ty = $default:expr,)*) => {
+        /// The options of a run. The mesh, its targets and its sliding vertices are not options: they belong to the
+        /// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR, with Newton steps of all vertices at the end, until at
+        /// most 1e-6 of f is left to gain, and makes neither the least angle nor the worst inverse mean ratio worse; see
+        /// [`Floored`](crate::outcome::Floored).
+        ///
+        /// Each option has a setter, as versions to come may have more options:
+        ///
+        /// ```
+        /// use gpu_smooth::{Metric, Options, Stopping};
+        ///
+        /// let options = Options::default().scheme(Metric::Rms.into()).stopping(Stopping::Tolerance(1e-4));
+        /// ```
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
-        pub struct $options {
+        pub struct Options {
             $($(#[$of])* pub $name: $kind,)*
         }
 
-        impl Default for $options {
+        impl Default for Options {
             fn default() -> Self {
                 Self { $($name: $default,)* }
             }
         }
 
-        impl $options {
+        impl Options {
             $(
                 #[doc = concat!("Sets [`", stringify!($name), "`](Self#structfield.", stringify!($name), ").")]
                 #[must_use]
@@ -42,51 +53,37 @@ macro_rules! options {
 }
 
 options! {
-    /// The options of a run. The mesh, its targets and its sliding vertices are not options: they belong to the
-    /// [`Smoother`](crate::Smoother). [`Options::default`] smooths by IMR, with Newton steps of all vertices at the end, until at
-    /// most 1e-6 of f is left to gain, and makes neither the least angle nor the worst inverse mean ratio worse; see
-    /// [`Floored`](crate::outcome::Floored).
-    ///
-    /// Each option has a setter, as versions to come may have more options:
-    ///
-    /// ```
-    /// use gpu_smooth::{Metric, Options, Stopping};
-    ///
-    /// let options = Options::default().scheme(Metric::Rms.into()).stopping(Stopping::Tolerance(1e-4));
-    /// ```
-    Options {
-        /// The metric, or several metrics that alternate. The first metric judges convergence.
-        scheme: Scheme = Metric::Imr.into(),
-        /// The method by which sweeps lower the objective.
-        method: Method = Method::Auto,
-        /// The criterion that ends the run before `max_sweeps` sweeps.
-        stopping: Stopping = Stopping::default(),
-        /// Largest number of sweeps.
-        max_sweeps: u32 = 1000,
-        /// A limit on the inverse mean ratio of triangles after a step. No step ever inverts a triangle.
-        guard: Guard = Guard::ByMetric,
-        /// Largest distance of a vertex from its position before the run, divided by the mean length of its edges before
-        /// the run. Above 0; `None` for no bound. Only for whole runs.
-        max_move: Option<f64> = None,
-        /// Whether every triangle must keep an altitude of at least the least altitude in the mesh before the run, which
-        /// bounds the time step of explicit solvers. Only for whole runs.
-        keep_altitude: bool = false,
-        /// Measure by which the worst triangles are improved after the last sweep, on the CPU; `None` for no improvement.
-        /// Free vertices around the worst thousandth of the triangles (at least 10, at most 1000 triangles) move so that
-        /// the worst triangle around them becomes less bad, and no other triangle around them becomes worse than that
-        /// triangle was. f may rise a little. If the worst triangle of the mesh becomes no better, no vertex moves. Only
-        /// for whole runs, and not after a canceled run.
-        improve_worst: Option<WorstBy> = None,
-        /// Precision of the file or buffer that will store the result. The run rounds all positions, fixed vertices
-        /// included, to this precision before the final checks: the rounded mesh has no inverted triangle and a lower f.
-        stored: Precision = Precision::Double,
-        /// Exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`] in runs
-        /// with corrections, up to an exponent that suffices for the tolerance, and [`PNormExponent::FIXED`] in runs of
-        /// sweeps alone.
-        edge_norm: Option<PNormExponent> = None,
-        /// Whether the history holds the objective of every metric, or of the base metric alone.
-        track_all: bool = false,
-    }
+    /// The metric, or several metrics that alternate. The first metric judges convergence.
+    scheme: Scheme = Metric::Imr.into(),
+    /// The method by which sweeps lower the objective.
+    method: Method = Method::Auto,
+    /// The criterion that ends the run before `max_sweeps` sweeps.
+    stopping: Stopping = Stopping::default(),
+    /// Largest number of sweeps.
+    max_sweeps: u32 = 1000,
+    /// A limit on the inverse mean ratio of triangles after a step. No step ever inverts a triangle.
+    guard: Guard = Guard::ByMetric,
+    /// Largest distance of a vertex from its position before the run, divided by the mean length of its edges before
+    /// the run. Above 0; `None` for no bound. Only for whole runs.
+    max_move: Option<f64> = None,
+    /// Whether every triangle must keep an altitude of at least the least altitude in the mesh before the run, which
+    /// bounds the time step of explicit solvers. Only for whole runs.
+    keep_altitude: bool = false,
+    /// Measure by which the worst triangles are improved after the last sweep, on the CPU; `None` for no improvement.
+    /// Free vertices around the worst thousandth of the triangles (at least 10, at most 1000 triangles) move so that
+    /// the worst triangle around them becomes less bad, and no other triangle around them becomes worse than that
+    /// triangle was. f may rise a little. If the worst triangle of the mesh becomes no better, no vertex moves. Only
+    /// for whole runs, and not after a canceled run.
+    improve_worst: Option<WorstBy> = None,
+    /// Precision of the file or buffer that will store the result. The run rounds all positions, fixed vertices
+    /// included, to this precision before the final checks: the rounded mesh has no inverted triangle and a lower f.
+    stored: Precision = Precision::Double,
+    /// Exponent of the p-norm that replaces EDGE in Newton's method. `None` takes [`PNormExponent::CORRECTED`] in runs
+    /// with corrections, up to an exponent that suffices for the tolerance, and [`PNormExponent::FIXED`] in runs of
+    /// sweeps alone.
+    edge_norm: Option<PNormExponent> = None,
+    /// Whether the history holds the objective of every metric, or of the base metric alone.
+    track_all: bool = false,
 }
 
 impl Options {
