@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pyvista
 
-from gpu_smooth import _native, _pyvista
+from gpu_smooth._arrays import quality
+from gpu_smooth._meshes import smooth
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -23,14 +23,13 @@ class Accessor:
 
     def smooth(self, **options: Unpack[SmoothOptions]) -> Any:
         """Return a copy of the mesh with moved vertices; see `gpu_smooth.smooth` for the options and exceptions."""
-        return _pyvista.smooth(self._mesh, dict(options))
+        return smooth(self._mesh, dict(options))
 
     def quality(
         self, measure: str = "imr", *, surface: Surface = "plane", z: ThirdCoordinate = "coordinate"
     ) -> Doubles:
         """Return the quality of each triangle, of shape (m,); see `gpu_smooth.quality`."""
-        triangles = _pyvista.cells_of(self._mesh).triangles
-        return _native.quality(np.asarray(self._mesh.points), triangles, measure, surface, z)
+        return quality(self._mesh, measure=measure, surface=surface, z=z)
 
 
 pyvista.register_dataset_accessor("gpu_smooth", pyvista.UnstructuredGrid)(Accessor)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from gpu_smooth import _native
 from gpu_smooth._native import Quality
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 
 def quality(
-    points: Array,
-    triangles: Array,
+    points: Array | Any,
+    triangles: Array | None = None,
     measure: str = "imr",
     *,
     surface: Surface = "plane",
@@ -25,8 +25,8 @@ def quality(
 
     Parameters
     ----------
-    points : array_like of float, shape (n, 2) or (n, 3)
-        Positions of the vertices.
+    points : array_like of float, shape (n, 2) or (n, 3); or a mesh
+        Positions of the vertices. In place of both arrays, a mesh that `smooth` takes may be passed.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0.
     measure : str, default "imr"
@@ -54,6 +54,10 @@ def quality(
     >>> gpu_smooth.quality([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]], "max-angle").tolist()
     [90.0]
     """
+    if triangles is None:
+        from gpu_smooth import _meshes
+
+        points, triangles = _meshes.points_and_triangles(points)
     return _native.quality(points, triangles, measure, surface, z)
 
 

@@ -32,6 +32,8 @@ class Cells(NamedTuple):
     """Region of each triangle, of shape (m,); None without regions."""
     ends: Integers = np.empty(0, np.int64)
     """Vertices at which groups of lines or vertices end, of shape (k,). They stay where others slide."""
+    periodic: Integers = np.empty((0, 2), np.int64)
+    """Pairs of vertices that slide together, of shape (k, 2)."""
 
     def options(self, given: dict[str, Any], vertices: int) -> dict[str, Any]:
         """Return options with the constraints of the cells, beside those that were given."""
@@ -56,6 +58,8 @@ class Cells(NamedTuple):
         found = {"fixed": fixed, "lines": lines}
         if self.regions is not None:
             found["regions"] = self.regions
+        if given.get("slide") and len(self.periodic):
+            found["periodic"] = self.periodic
         return {**found, **{name: value for name, value in given.items() if name not in ("fixed", "lines")}}
 
 

@@ -44,8 +44,14 @@ def ends_of_lines(lines: Integers) -> Integers:
 
 def ends_of_vertices(vertices: Integers, triangles: Integers, lines: Integers) -> Integers:
     """Return those of the vertices from which an edge of the boundary or of a line leads to another vertex."""
-    sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges, counts = np.unique(sides, axis=0, return_counts=True)
-    curves = np.concatenate([edges[counts == 1], lines])
+    curves = np.concatenate([boundary_of(triangles), lines])
     first, second = np.isin(curves, vertices).T
     return np.unique(np.concatenate([curves[first & ~second, 0], curves[second & ~first, 1]]))
+
+
+def boundary_of(triangles: Integers) -> Integers:
+    """Return the edges of exactly one triangle, of shape (k, 2)."""
+    sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges, counts = np.unique(sides, axis=0, return_counts=True)
+    boundary: Integers = edges[counts == 1]
+    return boundary

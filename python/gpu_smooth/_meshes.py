@@ -1,29 +1,84 @@
-"""Meshes of other packages in place of arrays."""
+"""Meshes of other packages and of files in place of arrays."""
 
 from __future__ import annotations
 
+import functools
 import os
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from gpu_smooth import _native
+from gpu_smooth._cells import with_groups
+from gpu_smooth._files import MeshFile
+
+if TYPE_CHECKING:
+    from gpu_smooth._options import Integers
+
+
+class MeshArrays(NamedTuple):
+    """A mesh of another package or of a file as arguments of `smooth`."""
+
+    points: Any
+    """Positions of the vertices, of shape (n, 2) or (n, 3)."""
+    triangles: Integers
+    """Vertices of each triangle, of shape (m, 3)."""
+    options: dict[str, Any]
+    """Options with the fixed vertices, lines and regions of the mesh."""
+    with_points: Callable[[Any], Any] | None
+    """Function that returns the mesh with other points; None for a `MeshFile`, which does not change."""
+
+
+def arrays_of(mesh: Any, options: dict[str, Any]) -> MeshArrays:
+    """Return a mesh as arguments of `smooth`, with the constraints of its cells beside the given options."""
+    package = _package_of(mesh)
+    options = with_groups(options, lambda: package.groups_of(mesh))
+    cells = package.cells_of(mesh)
+    if options.get("slide"):
+        cells = cells._replace(ends=package.ends_of(mesh, cells))
+    points = package.points_of(mesh)
+    with_points = None if isinstance(mesh, MeshFile) else functools.partial(package.with_points, mesh)
+    return MeshArrays(points, cells.triangles, cells.options(options, len(points)), with_points)
 
 
 def smooth(mesh: Any, options: dict[str, Any]) -> Any:
-    """Smooth a mesh of meshio or PyVista, and return a mesh of the same kind."""
+    """Smooth a mesh, and return a mesh of the same kind; the new points of a `MeshFile`."""
+    points, triangles, options, with_points = arrays_of(mesh, options)
+    moved = _native.smooth(points, triangles, **options)
+    return moved if with_points is None else with_points(moved)
+
+
+def points_and_triangles(mesh: Any) -> tuple[Any, Integers]:
+    """Return the points and the triangles of a mesh."""
+    package = _package_of(mesh)
+    return package.points_of(mesh), package.cells_of(mesh).triangles
+
+
+def _package_of(mesh: Any) -> Any:
+    """Return the module for the meshes of a package."""
+    if isinstance(mesh, MeshFile):
+        from gpu_smooth import _mesh_files
+
+        return _mesh_files
     if isinstance(mesh, (str, os.PathLike)):
         raise TypeError(
             "points and triangles are needed, not the name of a file. gpu_smooth.MeshFile reads a file, and "
             "gpu_smooth.smooth_file smooths one"
         )
     # The package of a mesh is imported already, so that no package is imported for a wrong argument.
-    module = type(mesh).__module__.partition(".")[0]
-    if module == "meshio":
+    packages = {kind.__module__.partition(".")[0] for kind in type(mesh).__mro__}
+    if "meshio" in packages:
         from gpu_smooth import _meshio
 
-        return _meshio.smooth(mesh, options)
-    if any(kind.__module__.partition(".")[0] == "pyvista" for kind in type(mesh).__mro__):
+        return _meshio
+    if "pyvista" in packages:
         from gpu_smooth import _pyvista
 
-        return _pyvista.smooth(mesh, options)
+        return _pyvista
+    if "skfem" in packages:
+        from gpu_smooth import _skfem
+
+        return _skfem
     raise TypeError(
-        "points and triangles are needed, or a mesh of meshio or PyVista, not an object of type "
+        "points and triangles are needed, or a mesh of meshio, PyVista or scikit-fem, or a MeshFile, not an object of type "
         f"{type(mesh).__name__}"
     )

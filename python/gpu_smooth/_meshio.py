@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from gpu_smooth import _native
 from gpu_smooth._cells import REGIONS, Cells, whole, with_groups
 from gpu_smooth._ends import ends_of_lines, ends_of_numbers, ends_of_vertices
 from gpu_smooth._errors import MeshError
@@ -98,13 +97,13 @@ def ends_of(mesh: Any, cells: Cells) -> Any:
     return np.concatenate(found)
 
 
-def smooth(mesh: Any, options: dict[str, Any]) -> Any:
+def points_of(mesh: Any) -> Any:
+    """Return the points of a `meshio.Mesh`."""
+    return np.asarray(mesh.points)
+
+
+def with_points(mesh: Any, points: Any) -> Any:
     """Return a copy of a `meshio.Mesh` with moved vertices. The copy shares cells and data with the mesh."""
-    cells = cells_of(mesh)
-    points = np.asarray(mesh.points)
-    options = with_groups(options, lambda: groups_of(mesh))
-    if options.get("slide"):
-        cells = cells._replace(ends=ends_of(mesh, cells))
-    smoothed = copy.copy(mesh)
-    smoothed.points = _native.smooth(points, cells.triangles, **cells.options(options, len(points)))
-    return smoothed
+    moved = copy.copy(mesh)
+    moved.points = points
+    return moved

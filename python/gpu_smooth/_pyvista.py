@@ -1,12 +1,12 @@
-"""Meshes of PyVista, and the accessor `gpu_smooth` of its datasets."""
+"""Meshes of PyVista."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from gpu_smooth import _native
 from gpu_smooth._cells import REGIONS, Cells, whole
 from gpu_smooth._ends import ends_of_numbers
 from gpu_smooth._errors import MeshError
@@ -93,11 +93,23 @@ def cells_of(mesh: Any) -> Cells:
     return Cells(triangles, lines, anchored.astype(np.int64), of_triangles, ends)
 
 
-def smooth(mesh: Any, options: dict[str, Any]) -> Any:
+def points_of(mesh: Any) -> Any:
+    """Return the points of a PyVista mesh, of shape (n, 3)."""
+    return np.asarray(mesh.points)
+
+
+def groups_of(mesh: Any) -> dict[str, Callable[[], Any]]:
+    """Return no groups: meshes of PyVista have no names for vertices."""
+    return {}
+
+
+def ends_of(mesh: Any, cells: Cells) -> Any:
+    """Return the vertices at which lines of one number end."""
+    return cells.ends
+
+
+def with_points(mesh: Any, points: Any) -> Any:
     """Return a copy of a PyVista mesh with moved vertices."""
-    cells = cells_of(mesh)
-    points = np.asarray(mesh.points)
-    moved = _native.smooth(points, cells.triangles, **cells.options(options, len(points)))
-    smoothed = mesh.copy(deep=True)
-    smoothed.points = moved
-    return smoothed
+    moved = mesh.copy(deep=True)
+    moved.points = points
+    return moved

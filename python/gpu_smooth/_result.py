@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import types
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -35,8 +36,9 @@ class Result:
     A notebook shows the result as a picture. `run` and `Smoother.run` return results. A result may be pickled.
     """
 
-    def __init__(self, outcome: Outcome) -> None:
+    def __init__(self, outcome: Outcome, with_points: Callable[[Any], Any] | None = None) -> None:
         self._outcome = outcome
+        self._with_points = with_points
         self.points: Floats = outcome.points()
         """Points after the run, in the shape and the type of the points that were passed."""
 
@@ -44,6 +46,14 @@ class Result:
     def triangles(self) -> Integers:
         """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
         return self._outcome.triangles()
+
+    @property
+    def mesh(self) -> Any:
+        """Mesh of the kind that was passed, with moved vertices and with all other cells, groups and data.
+
+        A copy with each access. None if arrays were passed, or a `MeshFile`, which `MeshFile.write` writes with `points`.
+        """
+        return None if self._with_points is None else self._with_points(self.points)
 
     @functools.cached_property
     def points_before(self) -> Floats:

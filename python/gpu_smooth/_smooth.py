@@ -11,6 +11,7 @@ from gpu_smooth._result import Result
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from gpu_smooth._files import MeshFile
     from gpu_smooth._options import (
         Array,
         Floats,
@@ -28,8 +29,8 @@ class Smoother:
 
     Parameters
     ----------
-    points : array_like of float, shape (n, 2) or (n, 3)
-        Positions of the vertices.
+    points : array_like of float, shape (n, 2) or (n, 3); or a mesh
+        Positions of the vertices. In place of both arrays, a mesh that `smooth` takes may be passed.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0.
     **options
@@ -54,11 +55,19 @@ class Smoother:
     'converged'
     """
 
-    def __init__(self, points: Array, triangles: Array, **options: Unpack[MeshOptions]) -> None:
+    def __init__(
+        self, points: Array | Any, triangles: Array | None = None, **options: Unpack[MeshOptions]
+    ) -> None:
         run_options = sorted(set(options) & RUN_OPTIONS)
         if run_options:
             raise TypeError(f"{run_options[0]!r} is an option of a run: pass it to Smoother.run")
-        self._native = _native.Smoother(points, triangles, **options)
+        of_mesh: dict[str, Any] = dict(options)
+        self._with_points = None
+        if triangles is None:
+            from gpu_smooth import _meshes
+
+            points, triangles, of_mesh, self._with_points = _meshes.arrays_of(points, of_mesh)
+        self._native = _native.Smoother(points, triangles, **of_mesh)
 
     def run(self, points: Array | None = None, **options: Unpack[RunOptions]) -> Result:
         """Smooth the mesh, from other points or from those that were passed to the constructor.
@@ -103,7 +112,7 @@ class Smoother:
         >>> points[4].round(3).tolist()
         [2.0, 1.0]
         """
-        return Result(self._native.run(points, **options))
+        return Result(self._native.run(points, **options), self._with_points)
 
     @property
     def free(self) -> Any:
@@ -137,6 +146,8 @@ RUN_OPTIONS = frozenset(_native.run_options())
 @overload
 def smooth(points: Array, triangles: Array, **options: Unpack[SmoothOptions]) -> Floats: ...
 @overload
+def smooth(points: MeshFile, triangles: None = None, **options: Unpack[SmoothOptions]) -> Floats: ...
+@overload
 def smooth(points: Mesh, triangles: None = None, **options: Unpack[SmoothOptions]) -> Mesh: ...
 def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     """Move the interior vertices of a mesh so that its triangles get better shapes, and return the new points.
@@ -148,13 +159,14 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     points : array_like of float, shape (n, 2) or (n, 3); or a mesh
         Positions of the vertices, in any unit. Vertices with three coordinates lie in one plane of any orientation, and
         are moved in the plane; `z` makes exceptions. The result has the same shape, and is float32 if the array is. In
-        place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid` or a `pyvista.PolyData` may be passed. A
-        mesh of the same kind is then returned, with all other cells, groups and data. Vertices of other cells and
-        between regions stay.
+        place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid`, a `pyvista.PolyData` or a `skfem.MeshTri` may
+        be passed. A mesh of the same kind is then returned, with all other cells, groups and data. Vertices of other cells,
+        of boundaries of scikit-fem, and between regions stay. A `MeshFile` may be passed too; the new points are then
+        returned, for `MeshFile.write`.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0, in either winding.
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
-        Vertices that neither move nor slide. For a `meshio.Mesh`, also the name of a group, or a list of names.
+        Vertices that neither move nor slide. For a mesh with named groups, also the name of a group, or a list of names.
     lines : array_like of int, shape (k, 2), optional
         Edges of triangles, such as those on a line between two materials. Their vertices stay, or slide along the lines.
     regions : array_like of int, shape (m,), optional
@@ -174,7 +186,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         Boundary layers whose vertices stay: `"auto"` for the layers that are found above walls, `"none"`, `"rows=N"` for
         the first N rows, or `"within=DISTANCE"` for all vertices within a distance of walls, in the unit of the points.
         Walls are the boundary, `lines` and lines between regions; a tuple such as `("rows=3", walls)` has the vertices of
-        the only walls that count, as `fixed` takes vertices. For a `meshio.Mesh`, `"rows=3,GROUP"` names groups of walls.
+        the only walls that count, as `fixed` takes vertices. For a mesh with named groups, `"rows=3,GROUP"` names groups of walls.
         If no other vertex is free, the points do not move, and a warning says so.
     only_bad : float, optional
         Let only vertices move that are near a triangle with an inverse mean ratio above this number.
@@ -270,7 +282,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     Returns
     -------
     numpy.ndarray or mesh
-        The new points, or a mesh of the kind that was passed.
+        The new points, or a mesh of the kind that was passed; the new points of a `MeshFile`.
 
     Raises
     ------
@@ -309,13 +321,14 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     return _native.smooth(points, triangles, **options)
 
 
-def run(points: Array, triangles: Array, **options: Unpack[SmoothOptions]) -> Result:
+def run(points: Array | Any, triangles: Array | None = None, **options: Unpack[SmoothOptions]) -> Result:
     """Smooth a mesh, and return the new points with a report.
 
     Parameters
     ----------
-    points : array_like of float, shape (n, 2) or (n, 3)
-        Positions of the vertices.
+    points : array_like of float, shape (n, 2) or (n, 3); or a mesh
+        Positions of the vertices. In place of both arrays, a mesh that `smooth` takes may be passed; `Result.mesh` is then a
+        mesh of the same kind.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0.
     **options

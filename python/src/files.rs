@@ -26,6 +26,11 @@ enum Refused {
     Writing(WriteError),
 }
 
+/// Returns indices as an array.
+fn indices<'py>(py: Python<'py>, list: &[u32]) -> Bound<'py, PyArray1<i64>> {
+    PyArray1::from_vec(py, list.iter().map(|&index| i64::from(index)).collect())
+}
+
 #[pymethods]
 impl MeshFile {
     #[new]
@@ -88,7 +93,33 @@ impl MeshFile {
         anchored.extend(&self.0.constraints().anchored);
         anchored.sort_unstable();
         anchored.dedup();
-        Ok(PyArray1::from_vec(py, anchored.into_iter().map(i64::from).collect()))
+        Ok(indices(py, &anchored))
+    }
+
+    /// The vertices that neither move nor slide, without the ends of groups.
+    #[getter]
+    fn anchored_alone<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        indices(py, &self.0.constraints().anchored)
+    }
+
+    /// The vertices that the file constrains: those on lines, and those that neither move nor slide.
+    #[getter]
+    fn constrained<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        indices(py, &self.0.constraints().vertices)
+    }
+
+    #[getter]
+    fn has_third_coordinates(&self) -> bool {
+        self.0.has_third_coordinates()
+    }
+
+    /// Returns the points with their third coordinates, of shape (n, 3); of shape (n, 2) if these are equal.
+    fn points_in_space<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let space = threads::detached(py, || gpu_smooth_job::points_in_space(&self.0))?;
+        match space.map_err(|error| error::of_reading(py, &error))? {
+            Some(space) => arrays::matrix(py, space.as_flattened().to_vec(), [space.len(), 3]),
+            None => self.points(py),
+        }
     }
 
     #[getter]
@@ -114,17 +145,14 @@ impl MeshFile {
     fn groups<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let groups = threads::detached(py, || self.0.groups())?;
         let groups = groups.map_err(|error| error::of_reading(py, &error))?;
-        let indices = |list: &[u32]| {
-            PyArray1::from_vec(py, list.iter().map(|&index| i64::from(index)).collect())
-        };
         let row = |group: &mesh_io::Group| {
             let row = PyDict::new(py);
             row.set_item("kind", &group.kind)?;
             row.set_item("dimension", group.dimension)?;
             row.set_item("name", &group.name)?;
             row.set_item("tag", group.tag)?;
-            row.set_item("vertices", indices(group.vertices()))?;
-            row.set_item("triangles", indices(group.triangles()))?;
+            row.set_item("vertices", indices(py, group.vertices()))?;
+            row.set_item("triangles", indices(py, group.triangles()))?;
             Ok(row)
         };
         groups.iter().map(row).collect()

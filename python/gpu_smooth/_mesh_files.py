@@ -1,0 +1,48 @@
+"""Meshes of files in place of arrays."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gpu_smooth._cells import Cells
+from gpu_smooth._ends import boundary_of
+
+if TYPE_CHECKING:
+    from gpu_smooth._files import MeshFile
+
+
+def points_of(file: MeshFile) -> Any:
+    """Return the points of a file, of shape (n, 3) if its third coordinates differ."""
+    return file._native.points_in_space() if file._native.has_third_coordinates else file.points
+
+
+def cells_of(file: MeshFile) -> Cells:
+    """Return the cells of a file. Vertices that the file constrains stay, apart from those that may slide along lines."""
+    triangles, lines, regions = file.triangles, file.lines, file.regions
+    on_curves = np.union1d(boundary_of(triangles), lines)
+    if regions is not None:
+        low, high = np.full(len(file.points), regions.max(initial=0)), np.zeros(len(file.points), np.int64)
+        np.minimum.at(low, triangles.ravel(), np.repeat(regions, 3))
+        np.maximum.at(high, triangles.ravel(), np.repeat(regions, 3))
+        on_curves = np.union1d(on_curves, np.flatnonzero(low < high))
+    constrained = np.setdiff1d(file._native.constrained, on_curves)
+    anchored = np.union1d(file._native.anchored_alone, constrained)
+    return Cells(triangles, lines, anchored, regions, periodic=file.periodic)
+
+
+def groups_of(file: MeshFile) -> dict[str, Callable[[], Any]]:
+    """Return the named groups of a file, such as physical groups of gmsh."""
+    groups: dict[str, list[Any]] = {}
+    for group in file.groups:
+        if group.name is not None:
+            groups.setdefault(group.name, []).append(group.vertices)
+    return {name: functools.partial(np.concatenate, own) for name, own in groups.items()}
+
+
+def ends_of(file: MeshFile, cells: Cells) -> Any:
+    """Return the vertices at which groups of a file end."""
+    return file.anchored
