@@ -2,6 +2,7 @@
 
 use crate::content::curve_edges::CurveEdges;
 use crate::content::group::{Group, Groups};
+use crate::content::numbering::is_nearly_all;
 
 /// Least number of places at which the numbers of groups are compared. At fewer places, numbers always denote groups.
 const MIN_PLACES: usize = 6;
@@ -59,9 +60,9 @@ fn chosen(
 }
 
 /// Returns whether numbers count their members: nearly all of `places` differ, and there are nearly as many `groups` as
-/// `members`. Nearly all are more than three of four.
+/// `members`.
 fn is_numbering(places: usize, differing: usize, groups: usize, members: usize) -> bool {
-    places >= MIN_PLACES && 4 * differing > 3 * places && 4 * groups > 3 * members
+    places >= MIN_PLACES && is_nearly_all(differing, places) && is_nearly_all(groups, members)
 }
 
 /// Returns whether the numbers of groups of lines count edges.

@@ -8,5 +8,6 @@ pub(crate) mod group_ends;
 pub(crate) mod group_keys;
 pub(crate) mod group_label;
 pub(crate) mod id_index;
+pub(crate) mod numbering;
 pub(crate) mod regions;
 pub(crate) mod remark;

@@ -23,6 +23,13 @@ impl<N: Clone + Eq + Hash> Interner<N> {
         }
     }
 
+    /// Returns the values in the order of their numbers.
+    pub(crate) fn into_names(self) -> Vec<N> {
+        let mut names: Vec<(u32, N)> = self.numbers.into_iter().map(|(n, i)| (i, n)).collect();
+        names.sort_unstable_by_key(|&(number, _)| number);
+        names.into_iter().map(|(_, name)| name).collect()
+    }
+
     fn look_up(&mut self, name: N) -> u32 {
         // There are at most as many values as elements, fewer than 2^32.
         let next = self.numbers.len() as u32;

@@ -38,6 +38,9 @@ pub enum Remark {
     /// The regions of the triangles are those of the format, or of cell data under a usual name. Cell data under other
     /// names, which look like regions too, divide these regions further.
     FurtherRegionArrays(Vec<String>),
+    /// Numbers in the place of regions differ for nearly every triangle. The numbers count triangles, and are neither
+    /// regions nor groups.
+    CountedTriangles,
     /// The file says that coordinates are longitude and latitude in degrees (UGRID).
     Degrees,
     /// Any other fact, as a sentence.
@@ -68,6 +71,9 @@ impl fmt::Display for Remark {
             Remark::FurtherRegionArrays(names) => {
                 write!(f, "the cell data `{}` divide the regions further", names.join("`, `"))
             }
+            Remark::CountedTriangles => f.write_str(
+                "numbers that differ for nearly every triangle count triangles, and are no regions",
+            ),
             Remark::Degrees => f.write_str("coordinates are longitude and latitude in degrees"),
             Remark::Text(text) => f.write_str(text),
         }

@@ -79,6 +79,7 @@ impl ContentBuilder {
         for group in content.groups.iter_mut().chain(of_vertices) {
             group.name = keys.name_of(&group.kind, group.dimension, &group.label);
         }
+        content.remove_counters();
         let first = content.z_values.first().copied();
         if content.z_values.iter().all(|&z| Some(z) == first) {
             content.common_z = first.unwrap_or(0.0);

@@ -11,6 +11,7 @@ pub(crate) mod blocks;
 pub(crate) mod capabilities;
 pub(crate) mod content;
 pub(crate) mod content_builder;
+pub(crate) mod counters;
 pub(crate) mod group_numbers;
 pub(crate) mod name_rules;
 pub(crate) mod rows;

@@ -37,7 +37,8 @@ impl MeshFile {
     /// | others | none |
     ///
     /// Points, lines and surfaces with equal tags are separate groups. The tag 0 is no group where programs write 0 for
-    /// untagged items, as in gmsh and for markers and references of vertices.
+    /// untagged items, as in gmsh and for markers and references of vertices. Tags without names that differ for nearly
+    /// every triangle count triangles, and are no groups.
     ///
     /// # Errors
     /// [`ReadError`] if the description of groups is damaged, such as gmsh's `$Entities`, which [`read`](Self::read)

@@ -3,6 +3,7 @@
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;
 use crate::content::group_label::GroupLabel;
+use crate::content::numbering::counts_triangles;
 use crate::visit::items::CellKind;
 use std::collections::HashMap;
 
@@ -92,8 +93,33 @@ impl GroupTable {
         self.keys.set_name(kind, dimension, tag, name);
     }
 
-    /// Completes the groups of a mesh with the given triangles and vertex count.
+    /// Removes the unnamed groups of surfaces of each kind whose numbers count triangles.
+    fn remove_counters(&mut self, triangles: usize) {
+        let Self { groups, keys } = self;
+        let is_numbered = |Group { kind, dimension, name, tag, .. }: &Group| {
+            let is_unnamed = |tag| keys.name_of(kind, 2, &GroupLabel::Tag(tag)).is_none();
+            *dimension == 2
+                && match name {
+                    Some(name) => name.parse::<f64>().is_ok(),
+                    None => tag.is_some_and(is_unnamed),
+                }
+        };
+        let mut numbers: HashMap<String, usize> = HashMap::new();
+        for GroupMembers { group, .. } in &*groups {
+            if is_numbered(group) && !group.triangles.is_empty() {
+                *numbers.entry(group.kind.clone()).or_insert(0) += 1;
+            }
+        }
+        numbers.retain(|_, count| counts_triangles(*count, triangles));
+        groups.retain(|GroupMembers { group, .. }| {
+            !(numbers.contains_key(&group.kind) && is_numbered(group))
+        });
+    }
+
+    /// Completes the groups of a mesh with the given triangles and vertex count. Groups whose numbers count triangles are
+    /// left out.
     pub(crate) fn finish(mut self, triangles: &[[u32; 3]], vertices: usize) -> Groups {
+        self.remove_counters(triangles.len());
         // Maps each kind to its position in the order of first use, by which groups are sorted.
         let mut order: HashMap<String, usize> = HashMap::new();
         for GroupMembers { group, .. } in &self.groups {

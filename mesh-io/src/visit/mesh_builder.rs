@@ -3,6 +3,7 @@
 use crate::content::constraints::{Constraints, PeriodicPairs};
 use crate::content::faces::Faces;
 use crate::content::id_index::IdIndexBuilder;
+use crate::content::numbering::{further_name, joined_regions};
 use crate::content::regions::{Interner, TriangleRegions};
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
@@ -47,7 +48,7 @@ pub(crate) fn parse_by(
     let has_z = assembler.has_z;
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
-    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
+    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, region_names, .. } = assembler;
     let MeshBuilder { cell_arrays, fractional, other_faces, .. } = assembler;
     let ghost_array = assembler.ghost_array.filter(|_| !assembler.has_ghosts);
     if quadrilaterals > 0 {
@@ -68,7 +69,13 @@ pub(crate) fn parse_by(
             return Err(source.error_at(location, problem, CORRECT));
         }
     }
-    let regions = regions.finish();
+    let mut regions = regions.finish();
+    if let Some(own) = &regions
+        && let Some(joined) = joined_regions(own, &region_names.into_names())
+    {
+        remarks.push(Remark::CountedTriangles);
+        regions = Some(joined).filter(|joined| joined.iter().any(|region| *region != joined[0]));
+    }
     let (x_at, owners) = match copies {
         None => (x_at.finish(), None),
         Some(RepeatedVertices { x_at, vertices }) => (Offsets::List(x_at), Some(vertices)),
@@ -381,10 +388,7 @@ impl MeshVisitor for MeshBuilder {
     fn further_region(&mut self, kind: CellKind, region: [i64; 2]) {
         let Self { regions, region_names, .. } = self;
         if kind == CellKind::Triangle {
-            // No file has tags near the least integer.
-            regions.replace_last(|before| {
-                region_names.intern([i64::MIN + i64::from(before), region[0]])
-            });
+            regions.replace_last(|before| region_names.intern(further_name(before, region[0])));
         }
     }
 

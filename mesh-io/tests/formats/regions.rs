@@ -3,7 +3,7 @@
 use super::Folder;
 use super::facts::{between_regions, fixed, freed, mesh_of};
 use super::long::{points, triangles};
-use mesh_io::MeshFile;
+use mesh_io::{Conversion, Format, MeshFile, Remark};
 use std::fs;
 use support::Mesh;
 use support::{lattice, write_regions};
@@ -118,4 +118,62 @@ fn vertices_fixed_by_other_means_are_not_counted_between_regions() {
     assert_eq!(between_regions(&file), [15, 18, 19]);
     assert_eq!(fixed(&file), [16, 17, 15, 18, 19]);
     assert_eq!(file.constraints().vertices, [16, 17]);
+}
+
+/// The first of the two numbers of regions divides the mesh in halves; the second counts triangles.
+#[test]
+fn numbers_that_count_triangles_are_neither_regions_nor_groups() {
+    let mesh = lattice(6, 4);
+    let halves: Vec<u32> = (0..mesh.triangles.len() as u32).map(|t| t / 24).collect();
+    let names: Vec<_> = (0..mesh.triangles.len() as i32).map(|t| [1 + t / 24, t + 1]).collect();
+    for files in write_regions(&mesh, &names) {
+        let folder = folder(&files);
+        let file = folder.read(files[0].0);
+        let format = file.format();
+        assert_eq!(file.remarks(), [Remark::CountedTriangles], "{format}");
+        // In this version of gmsh's format, the entity alone identifies a region.
+        let has_halves = !matches!(format, Format::Gmsh41 | Format::Gmsh41Binary);
+        assert_eq!(file.regions(), has_halves.then_some(&halves[..]), "{format}");
+        let groups = file.groups().unwrap();
+        let surfaces = groups.iter().filter(|group| group.dimension == 2);
+        let triangles: Vec<_> = surfaces.map(|group| group.triangles().len()).collect();
+        assert_eq!(triangles, if has_halves { vec![24, 24] } else { vec![] }, "{format}");
+        for format in [Format::Gmsh41, Format::Gmsh22, Format::Sms2dm] {
+            Conversion::new(&file, format).unwrap().unwrap().write(&folder.path("out")).unwrap();
+            let back = folder.read("out");
+            assert_eq!(back.regions(), file.regions());
+            assert_eq!(back.remarks(), []);
+        }
+    }
+}
+
+/// WAVEWATCH III's dialect: no physical group, the number of the triangle as the entity, and points on the boundary.
+#[test]
+fn triangles_of_a_wavewatch_file_are_one_region() {
+    let mesh = lattice(6, 4);
+    let mut text = format!("$MeshFormat\n2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", mesh.points.len());
+    for (node, [x, y]) in (1..).zip(&mesh.points) {
+        text += &format!("{node} {x:.8} {y:.8} {}.5\n", 20 + node);
+    }
+    text += &format!(
+        "$EndNodes\n$Elements\n{}\n1 15 2 0 0 1\n2 15 2 0 0 2\n",
+        mesh.triangles.len() + 2
+    );
+    for (t, triangle) in (1..).zip(&mesh.triangles) {
+        let [a, b, c] = triangle.map(|v| v + 1);
+        text += &format!("{} 2 3 0 {t} 0 {a} {b} {c}\n", t + 2);
+    }
+    text += "$EndElements\n";
+    let folder = Folder::new(&[("in.msh", &text)]);
+    let file = folder.read("in.msh");
+    assert_eq!((file.regions(), between_regions(&file)), (None, Vec::new()));
+    assert_eq!(file.groups().unwrap().iter().count(), 0);
+    file.write(&folder.path("out.msh"), file.points()).unwrap();
+    assert_eq!(folder.text("out.msh"), text);
+    let conversion = Conversion::new(&file, Format::Gmsh41).unwrap().unwrap();
+    assert!(!conversion.losses().iter().any(|lost| lost.contains("group")));
+    assert!(
+        conversion.text().unwrap().contains("$Elements\n2 "),
+        "points and one block of triangles"
+    );
 }

@@ -191,7 +191,7 @@ fn triangles(
     let read = |cursor: &mut _| triangle(cursor, node, numbers, columns);
     each_row(cursor, count, "triangles", visitor, read, |cursor, visitor, _, triangle| {
         let (tag, [a, b, c], text) = triangle;
-        let region = [i64::from(attributes.region(text, visitor)), 0];
+        let region = attributes.region(text, visitor);
         visitor.element(
             cursor,
             &Element { id: tag, kind: CellKind::Triangle, region, nodes: [a, b, c, 0] },
@@ -224,30 +224,31 @@ fn triangle<'a>(
     Ok((number, corners, cursor.tokens(columns)))
 }
 
-/// Numbers the regions: triangles with equal attributes belong to one region.
+/// Numbers the attributes: triangles with equal attributes belong to one region.
 #[derive(Default)]
 struct Attributes<'a> {
     /// The number of attributes of each triangle.
     columns: u64,
     texts: Interner<&'a [u8]>,
-    /// The region of each attribute text, by the text's number in `texts`.
-    regions: Vec<u32>,
+    /// The region of each attribute text, by the text's number in `texts`: the number of the first attribute, and the
+    /// number of the further ones together.
+    regions: Vec<[i64; 2]>,
     names: Interner<String>,
     /// The attribute text of the last triangle, whose groups the visitor has, and its region.
-    last: Option<(&'a [u8], u32)>,
+    last: Option<(&'a [u8], [i64; 2])>,
 }
 
 impl<'a> Attributes<'a> {
     /// Returns the region of triangles with these attributes, and hands their groups to a visitor that asks for groups.
     #[inline]
-    fn region(&mut self, text: &'a [u8], visitor: &mut dyn MeshVisitor) -> u32 {
+    fn region(&mut self, text: &'a [u8], visitor: &mut dyn MeshVisitor) -> [i64; 2] {
         match self.last {
             Some((last, region)) if last == text => region,
             _ => self.next_region(text, visitor),
         }
     }
 
-    fn next_region(&mut self, text: &'a [u8], visitor: &mut dyn MeshVisitor) -> u32 {
+    fn next_region(&mut self, text: &'a [u8], visitor: &mut dyn MeshVisitor) -> [i64; 2] {
         if self.columns > 0 && visitor.asks_for_groups() {
             self.send_groups(text, visitor);
         }
@@ -257,10 +258,12 @@ impl<'a> Attributes<'a> {
     }
 
     #[inline]
-    fn number(&mut self, text: &'a [u8]) -> u32 {
+    fn number(&mut self, text: &'a [u8]) -> [i64; 2] {
         let number = self.texts.intern(text) as usize;
         if number == self.regions.len() {
-            self.regions.push(self.names.intern(normalized(text)));
+            let mut all = tokens(text);
+            let parts = [normalized(all.next().into_iter()), normalized(all)];
+            self.regions.push(parts.map(|part| i64::from(self.names.intern(part))));
         }
         self.regions[number]
     }
@@ -283,9 +286,9 @@ fn tokens(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(is_between).filter(|token| !token.is_empty())
 }
 
-/// Normalizes the text of attributes, so that equal numbers have equal texts.
-fn normalized(attributes: &[u8]) -> String {
-    let normalized = tokens(attributes).map(|token| match float(token) {
+/// Normalizes the tokens of attributes, so that equal numbers have equal texts.
+fn normalized<'a>(attributes: impl Iterator<Item = &'a [u8]>) -> String {
+    let normalized = attributes.map(|token| match float(token) {
         // Adding zero makes a negative zero positive.
         Some(number) => format!("{:?} ", number + 0.0),
         None => format!("{} ", String::from_utf8_lossy(token)),
@@ -338,7 +341,8 @@ mod tests {
     fn attributes_are_numbers_however_they_are_written() {
         let mut attributes = Attributes::default();
         let texts = ["1 2", "1.0\t 2e0", "2 1", "1", "0", "-0.0", "land", "sea", "+1 2", "land"];
-        let regions = texts.map(|text| attributes.number(text.as_bytes()));
+        let mut regions = Interner::default();
+        let regions = texts.map(|text| regions.intern(attributes.number(text.as_bytes())));
         assert_eq!(regions, [0, 0, 1, 2, 3, 3, 4, 5, 0, 4]);
     }
 }

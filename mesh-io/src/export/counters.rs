@@ -1,0 +1,62 @@
+//! Removes groups whose numbers count triangles from a content.
+
+use super::content::{Content, ContentGroup};
+use crate::content::numbering::counts_triangles;
+use crate::visit::items::CellKind;
+use std::collections::{HashMap, HashSet};
+
+impl Content {
+    /// Removes the unnamed groups of surfaces of each kind whose numbers count triangles.
+    pub(crate) fn remove_counters(&mut self) {
+        let triangles = self.cells.kinds.iter().filter(|kind| **kind == CellKind::Triangle).count();
+        if !counts_triangles(self.groups.len(), triangles) {
+            return;
+        }
+        let kinds = self.counting_kinds(triangles);
+        let is_counter =
+            |group: &ContentGroup| is_numbered(group) && kinds.contains(group.kind.as_str());
+        let (mut left, mut numbers) = (Vec::new(), Vec::with_capacity(self.groups.len()));
+        for group in &self.groups {
+            numbers.push((!is_counter(group)).then_some(left.len() as u32));
+            if !is_counter(group) {
+                left.push(group.clone());
+            }
+        }
+        // Sets that differed by removed groups alone become one set, as writers make a block of elements for each set.
+        let (mut sets, mut known) = (Vec::new(), HashMap::new());
+        let renumbered = self.sets.iter().map(|set| {
+            let set: Vec<u32> = set.iter().filter_map(|&group| numbers[group as usize]).collect();
+            *known.entry(set.clone()).or_insert_with(|| {
+                sets.push(set);
+                sets.len() as u32 - 1
+            })
+        });
+        let renumbered: Vec<u32> = renumbered.collect();
+        self.cells.sets.iter_mut().for_each(|set| *set = renumbered[*set as usize]);
+        (self.groups, self.sets) = (left, sets);
+    }
+
+    /// Returns the kinds of groups whose numbers count triangles.
+    fn counting_kinds(&self, triangles: usize) -> HashSet<String> {
+        let mut has_triangles = vec![false; self.groups.len()];
+        for (kind, &set) in self.cells.kinds.iter().zip(&self.cells.sets) {
+            if *kind == CellKind::Triangle {
+                self.sets[set as usize].iter().for_each(|&own| has_triangles[own as usize] = true);
+            }
+        }
+        let mut numbers: HashMap<&str, usize> = HashMap::new();
+        for (group, _) in self.groups.iter().zip(has_triangles).filter(|(_, has)| *has) {
+            if is_numbered(group) {
+                *numbers.entry(&group.kind).or_insert(0) += 1;
+            }
+        }
+        numbers.retain(|_, count| counts_triangles(*count, triangles));
+        numbers.into_keys().map(str::to_owned).collect()
+    }
+}
+
+/// Returns whether a number alone identifies a group of surfaces.
+fn is_numbered(group: &ContentGroup) -> bool {
+    let is_number = group.name().is_none_or(|name| name.parse::<f64>().is_ok());
+    group.dimension == 2 && is_number
+}
