@@ -64,13 +64,16 @@ pub(crate) fn adapted(adapted: Adapted) -> String {
 
 /// Returns a remark if a file says that its coordinates are longitude and latitude, or if a mesh in a format of coastal
 /// models seems to have longitudes and latitudes, at latitudes above 20°, where a degree of longitude is shorter by more
-/// than 6 %. `None` for other meshes.
+/// than 6 %. `None` for other meshes, and if a file says that its coordinates have another unit.
 pub(crate) fn degrees(file: &LoadedMesh) -> Option<String> {
     if file.source.remarks().contains(&Remark::Degrees) {
         return Some(format!(
             "{}: --surface sphere smooths them as longitude and latitude",
             Remark::Degrees
         ));
+    }
+    if file.source.says_degrees() == Some(false) {
+        return None;
     }
     let is_of_oceans = matches!(
         file.source.format(),

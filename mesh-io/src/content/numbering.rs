@@ -15,8 +15,8 @@ pub(crate) fn is_nearly_all(part: usize, whole: usize) -> bool {
     4 * part > 3 * whole
 }
 
-/// Returns whether `numbers` different numbers of `triangles` triangles count the triangles: if there are at least 16
-/// triangles, and nearly every triangle has a number of its own.
+/// Returns whether numbers count triangles. `numbers` is the number of different ones, `triangles` the number of all
+/// triangles. Numbers of fewer than 16 triangles count none.
 pub(crate) fn counts_triangles(numbers: usize, triangles: usize) -> bool {
     triangles >= MIN_TRIANGLES && is_nearly_all(numbers, triangles)
 }

@@ -41,6 +41,12 @@ pub enum Remark {
     /// Numbers in the place of regions differ for nearly every triangle. The numbers count triangles, and are neither
     /// regions nor groups.
     CountedTriangles,
+    /// The file lists edges and no faces (UGRID and nets of Delft3D FM), so cells were found from the edges. An island of
+    /// three to six edges counts as a cell.
+    CellsOfEdges {
+        /// Number of cells of four to six edges with a triangle at each edge, which may be islands.
+        islands: u64,
+    },
     /// The file says that coordinates are longitude and latitude in degrees (UGRID).
     Degrees,
     /// Any other fact, as a sentence.
@@ -74,6 +80,14 @@ impl fmt::Display for Remark {
             Remark::CountedTriangles => f.write_str(
                 "numbers that differ for nearly every triangle count triangles, and are no regions",
             ),
+            Remark::CellsOfEdges { islands } => {
+                f.write_str("cells were found from edges, as the file lists no faces, and an island of three to six edges counts as a cell")?;
+                match islands {
+                    0 => Ok(()),
+                    1 => f.write_str(": 1 cell among triangles alone may be an island"),
+                    n => write!(f, ": {n} cells among triangles alone may be islands"),
+                }
+            }
             Remark::Degrees => f.write_str("coordinates are longitude and latitude in degrees"),
             Remark::Text(text) => f.write_str(text),
         }

@@ -231,12 +231,12 @@ const ROWS: &[Row] = &[
     ),
     row(
         &[Format::Ugrid],
-        "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4, by UGRID 0.9 and 1.0; `float` and `double`; numbers of nodes from 0 or 1; time steps and layers are kept",
+        "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4, by UGRID 0.9 and 1.0; nets of Delft3D FM (`NetNode`, `NetLink`), and edges without faces; `float` and `double`; numbers of nodes from 0 or 1; time steps and layers are kept",
         [
-            "quadrilaterals, polygons",
+            "quadrilaterals, polygons, edges at no face",
             "variables of faces that look like regions",
             "nothing; variables of nodes for `--fix-array`",
-            "one mesh of faces; as described below; netCDF-4 as for HDF5",
+            "one mesh of faces or edges; as described below; netCDF-4 as for HDF5",
         ],
     ),
     row(

@@ -196,6 +196,12 @@ impl MeshFile {
         self.parsed.has_z && !matches!(self.format(), Format::Sms2dm | Format::Mike)
     }
 
+    /// Returns whether the file says that x is longitude and y latitude in degrees (UGRID). `Some(false)` if it gives
+    /// another unit, such as meters; `None` if it gives no unit.
+    pub fn says_degrees(&self) -> Option<bool> {
+        self.parsed.says_degrees
+    }
+
     /// Returns whether vertices have parameters on surfaces of a model, as in gmsh 4.1. [`write`](Self::write) keeps
     /// the parameters; [`plane_parameters`](Self::plane_parameters) updates them.
     pub fn has_parameters(&self) -> bool {

@@ -43,6 +43,7 @@ pub(crate) fn parse_by(
         encoded,
         repeated_vertices: copies,
         file_index,
+        says_degrees,
     } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
     let has_z = assembler.has_z;
@@ -100,6 +101,7 @@ pub(crate) fn parse_by(
         has_parameters,
         has_centers,
         has_z,
+        says_degrees,
     })
 }
 

@@ -45,4 +45,6 @@ pub(crate) struct ParsedMesh {
     pub(crate) has_centers: bool,
     /// Whether points have third coordinates that differ.
     pub(crate) has_z: bool,
+    /// Whether the file says that coordinates are longitude and latitude in degrees; `None` if it gives no unit.
+    pub(crate) says_degrees: Option<bool>,
 }

@@ -41,6 +41,9 @@ pub(crate) struct CoordinateStorage {
     /// The index of the file with the coordinates, in the order of
     /// [`Source::files`](crate::disk::source::Source::files).
     pub(crate) file_index: usize,
+    /// Whether attributes of the coordinates say that they are longitude and latitude in degrees; `None` if no attribute
+    /// gives a unit.
+    pub(crate) says_degrees: Option<bool>,
 }
 
 /// All occurrences of coordinates in a file that repeats vertices, such as an STL.
@@ -60,6 +63,7 @@ impl CoordinateStorage {
             encoded: None,
             repeated_vertices: None,
             file_index: 0,
+            says_degrees: None,
         }
     }
 }

@@ -23,6 +23,7 @@ mod made;
 mod mesh_tags;
 mod names;
 mod nastran;
+mod nets;
 mod others;
 mod packed;
 mod parameters;

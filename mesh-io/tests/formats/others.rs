@@ -202,7 +202,10 @@ fn only_moved_coordinates_change_in_every_variant() {
             let again = folder.read(made.name);
             let rounded: Vec<_> = to.iter().map(|p| p.map(|x| made.precision.rounded(x))).collect();
             assert_eq!(bits(again.points()), bits(&rounded));
-            assert_eq!(again.triangles(), file.triangles());
+            // The cells of a net depend on its coordinates, and these moves invert triangles.
+            if !made.lists_edges() {
+                assert_eq!(again.triangles(), file.triangles());
+            }
             if made.is_text() {
                 assert_text_moved(made, &bytes, &after, &to);
             } else {

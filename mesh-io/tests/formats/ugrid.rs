@@ -8,9 +8,10 @@ use super::others::folder;
 use mesh_io::{Format, MeshFile, Remark};
 use std::fs;
 
+/// Returns the samples with faces.
 fn samples() -> Vec<Made> {
     let mut all = all(&base());
-    all.retain(|made| made.format == Format::Ugrid);
+    all.retain(|made| made.format == Format::Ugrid && !made.lists_edges());
     all
 }
 

@@ -1,5 +1,6 @@
 //! Centers and corner coordinates of faces and edges in a UGRID file, which depend on the node coordinates.
 
+use super::faces::Faces;
 use super::mesh::{Mesh, axis_of};
 use super::table::{Table, TableKind};
 use crate::formats::netcdf_points::{PointData, RecordParts};
@@ -7,9 +8,9 @@ use crate::netcdf::{NumberType, Variable};
 use crate::visit::items::Centers;
 use crate::visit::visitor::MeshVisitor;
 
-/// Connectivity tables of a mesh.
+/// Connectivity of a mesh.
 pub(super) struct Tables<'h, 'a> {
-    pub(super) faces: Table<'h, 'a>,
+    pub(super) faces: Faces<'h, 'a>,
     /// Table of edges; `None` if the file has no edges or a damaged table.
     edges: Option<Table<'h, 'a>>,
 }
@@ -26,8 +27,8 @@ pub(super) struct CenterVariable<'h> {
 }
 
 impl<'h, 'a> Mesh<'h, 'a> {
-    /// Combines the table of faces with that of edges, if the file has edges.
-    pub(super) fn tables(&self, faces: Table<'h, 'a>) -> Tables<'h, 'a> {
+    /// Combines the faces with the table of edges, if the file has edges.
+    pub(super) fn tables(&self, faces: Faces<'h, 'a>) -> Tables<'h, 'a> {
         let edges = self.named("edge_node_connectivity").into_iter().next();
         let edges = edges.and_then(|edges| Table::find(self, edges, TableKind::Edges).ok());
         Tables { faces, edges }
@@ -47,8 +48,8 @@ impl<'h, 'a> Mesh<'h, 'a> {
                 found.push(CenterVariable { variable, of, axis, of_corners: false });
             }
         }
-        let counts = [Some(&tables.faces), tables.edges.as_ref()];
-        let counts = counts.map(|table| table.map(|table| table.count as u64));
+        let counts = [Some(tables.faces.count()), tables.edges.as_ref().map(|edges| edges.count)];
+        let counts = counts.map(|count| count.map(|count| count as u64));
         for variable in &self.header.variables {
             let is_known = found.iter().any(|known| known.variable.name == variable.name);
             let (Some(axis), &[length], false) = (axis_of(variable), &variable.shape[..], is_known)
@@ -81,53 +82,79 @@ impl<'h, 'a> Mesh<'h, 'a> {
         points: &mut PointData<'h, 'a>,
         visitor: &mut dyn MeshVisitor,
     ) -> Vec<&'h Variable> {
+        let Tables { faces, edges } = tables;
+        let first = faces.table().first;
         let left = places.iter().filter(|&place| {
-            let table = match place.of {
-                TableKind::Faces => Some(&tables.faces),
-                TableKind::Edges => tables.edges.as_ref(),
+            let sent = match (place.of, edges) {
+                (TableKind::Faces, _) => {
+                    let nodes = |face, nodes: &mut Vec<u64>| faces.nodes(face, nodes).ok();
+                    let elements =
+                        Elements { count: faces.count(), corners: faces.corners(), nodes };
+                    elements.send(place, points, visitor)
+                }
+                (TableKind::Edges, Some(edges)) => {
+                    // Edges may be numbered from another number than faces.
+                    let nodes = |edge, nodes: &mut Vec<u64>| {
+                        edges.nodes(edge, nodes).ok()?;
+                        nodes
+                            .iter_mut()
+                            .for_each(|n| *n = (*n + first).saturating_sub(edges.first));
+                        Some(())
+                    };
+                    let elements = Elements { count: edges.count, corners: edges.corners, nodes };
+                    elements.send(place, points, visitor)
+                }
+                (TableKind::Edges, None) => None,
             };
-            let first = tables.faces.first;
-            table.and_then(|table| send(table, first, place, points, visitor)).is_none()
+            sent.is_none()
         });
         left.map(|place| place.variable).collect()
     }
 }
 
-/// Visits a variable with a number per element of a table, or per corner. `first` is the id of the first node. `None`
-/// if the variable is no list of real x or y coordinates of the right shape, or if an element of the table is damaged.
-fn send<'h, 'a>(
-    table: &Table<'h, 'a>,
-    first: u64,
-    &CenterVariable { variable, axis, of_corners, .. }: &CenterVariable<'h>,
-    points: &mut PointData<'h, 'a>,
-    visitor: &mut dyn MeshVisitor,
-) -> Option<()> {
-    let each = if of_corners { table.corners } else { 1 };
-    let shape = [table.count as u64, each as u64];
-    let shape = if of_corners { &shape[..] } else { &shape[..1] };
-    let is_real = matches!(variable.number, NumberType::Real(_));
-    if axis > 1 || variable.shape != shape || variable.is_record || !is_real {
-        return None;
-    }
-    if !visitor.center_array(&variable.name, axis) {
-        return Some(());
-    }
-    let (mut nodes, mut ends, mut of_one) = (Vec::new(), Vec::new(), Vec::new());
-    for element in 0..table.count {
-        table.nodes(element, &mut of_one).ok()?;
-        let ids = of_one.iter().map(|node| (node + first).saturating_sub(table.first));
-        if !of_corners {
-            nodes.extend(ids);
-            ends.push(nodes.len());
-            continue;
+/// The faces or the edges of a mesh. `nodes` writes the ids of the nodes of an element to a list, and returns `None` for a
+/// damaged element.
+struct Elements<N> {
+    count: usize,
+    /// The largest number of corners of an element.
+    corners: usize,
+    nodes: N,
+}
+
+impl<N: Fn(usize, &mut Vec<u64>) -> Option<()>> Elements<N> {
+    /// Visits a variable with a number per element, or per corner. `None` if the variable is no list of real x or y
+    /// coordinates of the right shape, or if an element is damaged.
+    fn send<'h>(
+        &self,
+        &CenterVariable { variable, axis, of_corners, .. }: &CenterVariable<'h>,
+        points: &mut PointData<'h, '_>,
+        visitor: &mut dyn MeshVisitor,
+    ) -> Option<()> {
+        let each = if of_corners { self.corners } else { 1 };
+        let shape = [self.count as u64, each as u64];
+        let shape = if of_corners { &shape[..] } else { &shape[..1] };
+        let is_real = matches!(variable.number, NumberType::Real(_));
+        if axis > 1 || variable.shape != shape || variable.is_record || !is_real {
+            return None;
         }
-        let ids: Vec<u64> = ids.collect();
-        for corner in 0..each {
-            nodes.extend(ids.get(corner));
-            ends.push(nodes.len());
+        if !visitor.center_array(&variable.name, axis) {
+            return Some(());
         }
+        let (mut nodes, mut ends, mut of_one) = (Vec::new(), Vec::new(), Vec::new());
+        for element in 0..self.count {
+            (self.nodes)(element, &mut of_one)?;
+            if !of_corners {
+                nodes.extend_from_slice(&of_one);
+                ends.push(nodes.len());
+                continue;
+            }
+            for corner in 0..each {
+                nodes.extend(of_one.get(corner));
+                ends.push(nodes.len());
+            }
+        }
+        let numbers = points.numbers(variable, 0, 0, &RecordParts::WHOLE, variable.missing())?;
+        visitor.center_numbers(Centers { nodes, ends, numbers });
+        Some(())
     }
-    let numbers = points.numbers(variable, 0, 0, &RecordParts::WHOLE, variable.missing())?;
-    visitor.center_numbers(Centers { nodes, ends, numbers });
-    Some(())
 }

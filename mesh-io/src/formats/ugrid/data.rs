@@ -2,11 +2,14 @@
 
 use super::centers::Tables;
 use super::mesh::Mesh;
-use super::table::Table;
+use super::table::{Table, TableKind};
 use crate::content::remark::Remark;
 use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};
 use crate::visit::visitor::MeshVisitor;
+
+/// Start of the names of the variables of edges in older nets of Delft3D FM.
+const LINK: &[u8] = b"NetLink";
 
 /// Owners of the numbers of a variable.
 #[derive(Clone, Copy, PartialEq)]
@@ -19,13 +22,15 @@ impl<'h, 'a> Mesh<'h, 'a> {
     /// Visits data of nodes and faces, then the coordinates of faces and edges. Variables with coordinates that stay
     /// unchanged become a remark. Damaged data are skipped, as the mesh does not depend on data.
     pub(super) fn data(&self, tables: &Tables<'h, 'a>, visitor: &mut dyn MeshVisitor) {
-        let faces = &tables.faces;
-        let lengths = [self.nodes as u64, faces.count as u64];
+        let faces = tables.faces.listed();
+        // The order of the faces of a file without a table of faces is unknown, so no variable belongs to such faces.
+        let lengths = [self.nodes as u64, faces.map_or(u64::MAX, |faces| faces.count as u64)];
         let places = self.center_variables(tables);
         let is_data = |variable: &&Variable| {
-            ![self.x, self.y, self.face_nodes].iter().any(|own| own.name == variable.name)
+            ![self.x, self.y, self.connectivity.1].iter().any(|own| own.name == variable.name)
                 && !places.iter().any(|own| own.variable.name == variable.name)
                 && variable.text("cf_role").is_none()
+                && !self.is_about_links(variable)
         };
         let mut points = PointData::new(self.header);
         for variable in self.header.variables.iter().filter(is_data) {
@@ -40,7 +45,9 @@ impl<'h, 'a> Mesh<'h, 'a> {
                 }
             }
         }
-        if visitor.asks_for_cell_arrays() {
+        if let Some(faces) = faces
+            && visitor.asks_for_cell_arrays()
+        {
             for variable in self.header.variables.iter().filter(is_data) {
                 if let Some((DataLocation::Faces, parts)) = self.located(variable, lengths) {
                     self.of_faces(faces, variable, &parts, &mut points, visitor);
@@ -60,6 +67,11 @@ impl<'h, 'a> Mesh<'h, 'a> {
         }
     }
 
+    /// Returns whether a variable is about the links of an older net of Delft3D FM.
+    fn is_about_links(&self, variable: &Variable) -> bool {
+        self.is_of_links() && variable.name.starts_with(LINK)
+    }
+
     /// Returns the owners of a variable's numbers and the layout of its records. `lengths` are the numbers of nodes and
     /// faces. `None` for text, for variables of edges or of another mesh, and if the shape fits neither nodes nor
     /// faces, or both.
@@ -69,7 +81,8 @@ impl<'h, 'a> Mesh<'h, 'a> {
         lengths: [u64; 2],
     ) -> Option<(DataLocation, RecordParts)> {
         let is_numeric = matches!(variable.number, NumberType::Real(_) | NumberType::Whole(_));
-        if !is_numeric || variable.text("mesh").is_some_and(|mesh| mesh != self.own.name) {
+        let is_own = |mesh| self.own.is_some_and(|own| own.name == mesh);
+        if !is_numeric || variable.text("mesh").is_some_and(|mesh| !is_own(mesh)) {
             return None;
         }
         let location = match variable.text("location") {
@@ -117,9 +130,15 @@ impl<'h, 'a> Mesh<'h, 'a> {
     /// Reports content that a conversion loses. Edges, neighbors and coordinates of faces follow from the mesh, and
     /// attributes of variables are comments, so neither is reported.
     fn left_out(&self, visitor: &mut dyn MeshVisitor) {
-        let variables = &self.header.variables;
-        if variables.iter().any(|variable| variable.text("location") == Some(b"edge")) {
+        let has = |is_lost: &dyn Fn(&Variable) -> bool| self.header.variables.iter().any(is_lost);
+        let is_at = |variable: &Variable, place: &[u8]| variable.text("location") == Some(place);
+        let is_of_links =
+            |own: &Variable| self.is_about_links(own) && own.name != self.connectivity.1.name;
+        if has(&|variable| is_at(variable, b"edge") || is_of_links(variable)) {
             visitor.unsupported("variables of edges");
+        }
+        if self.connectivity.0 == TableKind::Edges && has(&|variable| is_at(variable, b"face")) {
+            visitor.unsupported("variables of faces");
         }
         if self.header.records > 1 {
             visitor.unsupported("times of time steps");

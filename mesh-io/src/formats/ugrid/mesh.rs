@@ -1,5 +1,6 @@
 //! The mesh of a UGRID file: the variables of its coordinates and faces.
 
+use super::table::TableKind;
 use crate::error::ReadError;
 use crate::formats::axes::{Axes, BinaryReals};
 use crate::formats::netcdf_axes::axes;
@@ -10,21 +11,35 @@ use crate::text::token::quoted;
 /// A two-dimensional mesh and its variables.
 pub(super) struct Mesh<'h, 'a> {
     pub(super) header: &'h Header<'a>,
-    /// The mesh variable, with the `cf_role` `mesh_topology`.
-    pub(super) own: &'h Variable,
+    /// The mesh variable, with the `cf_role` `mesh_topology`. `None` in older nets of Delft3D FM, whose variables have
+    /// fixed names.
+    pub(super) own: Option<&'h Variable>,
     /// Variable of x or longitude, with a number per node.
     pub(super) x: &'h Variable,
     /// Variable of y or latitude, of the same type, byte order and shape as `x`.
     pub(super) y: &'h Variable,
     /// Number of nodes.
     pub(super) nodes: usize,
-    /// Connectivity variable: the nodes of each face.
-    pub(super) face_nodes: &'h Variable,
+    /// Connectivity variable: the nodes of each face, or of each edge in a file without faces.
+    pub(super) connectivity: (TableKind, &'h Variable),
 }
+
+/// Names of variables and of the dimension of edges in older nets of Delft3D FM, by the attribute of UGRID that would
+/// name them.
+const NET_NAMES: [(&str, &str); 3] = [
+    ("node_coordinates", "NetNode_x NetNode_y"),
+    ("edge_node_connectivity", "NetLink"),
+    ("edge_dimension", "nNetLink"),
+];
 
 /// Returns whether a variable is the mesh variable of a UGRID mesh, of any dimension.
 pub(super) fn is_mesh(variable: &Variable) -> bool {
     variable.text("cf_role") == Some(b"mesh_topology")
+}
+
+/// Returns whether a file is an older net of Delft3D FM.
+pub(super) fn is_net(header: &Header<'_>) -> bool {
+    ["NetNode_x", "NetNode_y", "NetLink"].iter().all(|name| header.variable(name).is_some())
 }
 
 /// Units of longitudes and latitudes by the CF conventions, sections 4.1 and 4.2.
@@ -39,55 +54,63 @@ impl<'h, 'a> Mesh<'h, 'a> {
     /// Finds the two-dimensional mesh of a file. A mesh without `topology_dimension` counts as two-dimensional.
     ///
     /// # Errors
-    /// If the file has no such mesh or several, or if variables of coordinates or faces are missing or unsuitable.
+    /// If the file has no such mesh or several, or if variables of coordinates, or of both faces and edges, are missing or
+    /// unsuitable.
     pub(super) fn find(header: &'h Header<'a>) -> Result<Mesh<'h, 'a>, ReadError> {
-        let has_faces = |variable: &&Variable| {
-            variable.whole("topology_dimension").is_none_or(|dimension| dimension == 2)
+        let own = mesh_variable(header)?;
+        let is_part = |attribute: &'static str| {
+            move |name: &[u8]| words(attribute_of(own, attribute)).any(|own| own == name)
         };
-        let all = header.variables.iter().filter(|variable| is_mesh(variable));
-        let of_faces: Vec<_> = all.filter(has_faces).collect();
-        let start = Cursor::at_byte_offset(header.source, 0);
-        let own = match of_faces[..] {
-            [own] => own,
-            [] => {
-                let problem = "a UGRID file without a mesh of faces (topology_dimension 2)";
-                return Err(start.error(problem, "Save the mesh with its faces"));
-            }
-            _ => {
-                let names: Vec<_> = of_faces.iter().map(|own| quoted(&own.name)).collect();
-                let problem = format!("several meshes: {}", names.join(", "));
-                return Err(start.error(problem, "Save each mesh to a separate file"));
-            }
-        };
-        let parts = ["node_coordinates", "face_node_connectivity"];
-        let is_part = |name: &[u8]| {
-            parts.iter().flat_map(|attribute| names(own, attribute)).any(|own| own == name)
-        };
-        if let Some(error) = header.unread(is_part) {
-            return Err(error);
-        }
+        let unread = |attribute| header.unread(is_part(attribute)).map_or(Ok(()), Err);
+        unread("node_coordinates")?;
+        unread("face_node_connectivity")?;
         let [x, y] = coordinates(header, own)?;
         let nodes = node_count(header, [x, y])?;
-        let named = own.text("face_node_connectivity");
-        let Some(face_nodes) = named.and_then(|name| variable(header, name)) else {
-            let problem = format!(
-                "the mesh {} has no variable that its face_node_connectivity names, so no faces",
-                quoted(&own.name)
-            );
-            let place = Cursor::at_byte_offset(header.source, header.start_of(own));
-            return Err(place.error(problem, REMEDY));
+        let named = |attribute| variable(header, attribute_of(own, attribute));
+        let connectivity = match named("face_node_connectivity") {
+            Some(faces) => (TableKind::Faces, faces),
+            None => {
+                unread("edge_node_connectivity")?;
+                let edges =
+                    named("edge_node_connectivity").ok_or_else(|| without_faces(header, own))?;
+                (TableKind::Edges, edges)
+            }
         };
-        Ok(Mesh { header, own, x, y, nodes, face_nodes })
+        Ok(Mesh { header, own, x, y, nodes, connectivity })
     }
 
-    /// Returns whether attributes say that x is longitude and y latitude.
-    pub(super) fn is_in_degrees(&self) -> bool {
+    /// Returns whether the file is an older net of Delft3D FM, of nodes and links.
+    pub(super) fn is_of_links(&self) -> bool {
+        self.own.is_none()
+    }
+
+    /// Returns the text of an attribute of the mesh variable, or the name that stands for it in an older net of D-Flow
+    /// FM; empty without either.
+    pub(super) fn attribute(&self, attribute: &str) -> &'h [u8] {
+        attribute_of(self.own, attribute)
+    }
+
+    /// Returns whether attributes say that x is longitude and y latitude in degrees, or that coordinates have another unit.
+    /// `None` if attributes say neither. Units take precedence over standard names, as longitudes may be in radians.
+    pub(super) fn says_degrees(&self) -> Option<bool> {
         const NAMES: [(&[u8], &[&[u8]]); 2] =
             [(b"longitude", &DEGREES_EAST), (b"latitude", &DEGREES_NORTH)];
-        [self.x, self.y].into_iter().zip(NAMES).all(|(variable, (name, units))| {
-            variable.text("standard_name") == Some(name)
-                || variable.text("units").is_some_and(|unit| units.contains(&unit))
-        })
+        let of = |variable: &Variable, (name, units): (&[u8], &[&[u8]])| {
+            let is_angle = variable.text("standard_name") == Some(name);
+            match variable.text("units").unwrap_or_default() {
+                b"" => is_angle.then_some(true),
+                unit if units.contains(&unit) => Some(true),
+                b"degrees" | b"degree" => is_angle.then_some(true),
+                _ => Some(false),
+            }
+        };
+        let [x, y] = [0, 1].map(|axis| of([self.x, self.y][axis], NAMES[axis]));
+        (x == y).then_some(x)?
+    }
+
+    /// Returns whether attributes say that x is longitude and y latitude in degrees.
+    pub(super) fn is_in_degrees(&self) -> bool {
+        self.says_degrees() == Some(true)
     }
 
     /// Locates the coordinates of the nodes.
@@ -104,7 +127,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
 
     /// Returns the variables named by an attribute of the mesh variable, without names that the file lacks.
     pub(super) fn named(&self, attribute: &str) -> Vec<&'h Variable> {
-        names(self.own, attribute).filter_map(|name| self.variable(name)).collect()
+        words(self.attribute(attribute)).filter_map(|name| self.variable(name)).collect()
     }
 
     pub(super) fn variable(&self, name: &[u8]) -> Option<&'h Variable> {
@@ -112,9 +135,44 @@ impl<'h, 'a> Mesh<'h, 'a> {
     }
 }
 
-/// Returns the words of an attribute: names of variables, separated by blanks.
-fn names<'v>(variable: &'v Variable, attribute: &str) -> impl Iterator<Item = &'v [u8]> + use<'v> {
-    let text = variable.text(attribute).unwrap_or_default();
+/// Returns the mesh variable; `None` for an older net of Delft3D FM.
+fn mesh_variable<'h>(header: &'h Header<'_>) -> Result<Option<&'h Variable>, ReadError> {
+    let has_faces = |variable: &&Variable| {
+        variable.whole("topology_dimension").is_none_or(|dimension| dimension == 2)
+    };
+    let all: Vec<_> = header.variables.iter().filter(|variable| is_mesh(variable)).collect();
+    if all.is_empty() {
+        return Ok(None);
+    }
+    let of_faces: Vec<_> = all.into_iter().filter(has_faces).collect();
+    let start = Cursor::at_byte_offset(header.source, 0);
+    match of_faces[..] {
+        [own] => Ok(Some(own)),
+        [] => {
+            let problem = "a UGRID file without a mesh of faces (topology_dimension 2)";
+            Err(start.error(problem, "Save the mesh with its faces"))
+        }
+        _ => {
+            let names: Vec<_> = of_faces.iter().map(|own| quoted(&own.name)).collect();
+            let problem = format!("several meshes: {}", names.join(", "));
+            Err(start.error(problem, "Save each mesh to a separate file"))
+        }
+    }
+}
+
+/// Returns the text of an attribute of the mesh variable, or the name of [`NET_NAMES`].
+fn attribute_of<'h>(own: Option<&'h Variable>, attribute: &str) -> &'h [u8] {
+    match own {
+        Some(own) => own.text(attribute).unwrap_or_default(),
+        None => {
+            let known = NET_NAMES.iter().find(|(known, _)| *known == attribute);
+            known.map_or(b"", |(_, name)| name.as_bytes())
+        }
+    }
+}
+
+/// Returns the words of a text: names of variables, separated by blanks.
+fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty())
 }
 
@@ -124,23 +182,33 @@ fn variable<'h>(header: &'h Header<'_>, name: &[u8]) -> Option<&'h Variable> {
 
 /// Returns the variables of x and y, or of longitude and latitude, in this order. If `node_coordinates` names more than
 /// two variables, the first two count.
-fn coordinates<'h>(header: &'h Header<'_>, own: &Variable) -> Result<[&'h Variable; 2], ReadError> {
-    let named = names(own, "node_coordinates").filter_map(|name| variable(header, name));
-    let found: Vec<_> = named.take(2).collect();
+fn coordinates<'h>(
+    header: &'h Header<'_>,
+    own: Option<&'h Variable>,
+) -> Result<[&'h Variable; 2], ReadError> {
+    let named = words(attribute_of(own, "node_coordinates"));
+    let found: Vec<_> = named.filter_map(|name| variable(header, name)).take(2).collect();
     match found[..] {
         [first, second] if axis_of(first) == Some(1) && axis_of(second) != Some(1) => {
             Ok([second, first])
         }
         [first, second] => Ok([first, second]),
-        _ => {
-            let problem = format!(
-                "the mesh {} has no two variables that its node_coordinates names",
-                quoted(&own.name)
-            );
-            let place = Cursor::at_byte_offset(header.source, header.start_of(own));
-            Err(place.error(problem, REMEDY))
-        }
+        _ => Err(lacking(header, own, "has no two variables that its node_coordinates names")),
     }
+}
+
+#[cold]
+fn without_faces(header: &Header<'_>, own: Option<&Variable>) -> ReadError {
+    let lack = "has no variable that its face_node_connectivity names, and none that its \
+                edge_node_connectivity names, so neither faces nor edges";
+    lacking(header, own, lack)
+}
+
+#[cold]
+fn lacking(header: &Header<'_>, own: Option<&Variable>, lack: &str) -> ReadError {
+    let (name, start) =
+        own.map_or((String::new(), 0), |own| (quoted(&own.name), header.start_of(own)));
+    Cursor::at_byte_offset(header.source, start).error(format!("the mesh {name} {lack}"), REMEDY)
 }
 
 /// Returns the axis of a coordinate variable by its attributes: 0 for x or longitude, 1 for y or latitude, `None` if no

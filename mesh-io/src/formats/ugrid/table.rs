@@ -25,7 +25,7 @@ pub(super) struct Table<'h, 'a> {
 }
 
 /// Elements of a connectivity table.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum TableKind {
     Faces,
     Edges,
@@ -77,13 +77,13 @@ impl<'h, 'a> Table<'h, 'a> {
         };
         // The mesh may name the dimension of its elements. Otherwise the longer dimension counts elements, as the
         // shorter one counts corners.
-        let dimension = mesh.own.text(dimension).and_then(|name| str::from_utf8(name).ok());
+        let dimension = str::from_utf8(mesh.attribute(dimension)).ok();
         let has_rows = match dimension.and_then(|name| header.dimension(name)) {
             Some(length) if (length == rows) != (length == columns) => length == rows,
             _ => rows >= columns,
         };
         let (count, corners) = if has_rows { (rows, columns) } else { (columns, rows) };
-        if corners < least {
+        if corners < least || (corners > 2 && matches!(what, TableKind::Edges)) {
             return Err(wrong(&format!("have {corners} corners")));
         }
         let (count, corners) = (count as usize, corners as usize);
@@ -103,6 +103,8 @@ impl<'h, 'a> Table<'h, 'a> {
         let first = match variable.whole("start_index") {
             Some(first @ (0 | 1)) => first as u64,
             Some(other) => return Err(wrong(&format!("start at number {other}, not at 0 or 1"))),
+            // Delft3D FM counts from 1, and its older nets do not say so.
+            None if mesh.is_of_links() => table.likely_first(0),
             None => table.likely_first(mesh.nodes as u64),
         };
         Ok(Table { first, ..table })

@@ -8,6 +8,7 @@ mod gmsh;
 mod grids;
 mod nastran;
 mod netcdf;
+pub(crate) mod nets;
 mod ply;
 mod text;
 pub(crate) mod ugrid;
@@ -65,6 +66,11 @@ impl Made {
         self.coordinates.is_empty()
     }
 
+    /// Returns whether the file lists edges, from which readers find the triangles.
+    pub(crate) fn lists_edges(&self) -> bool {
+        self.what.starts_with("net of edges")
+    }
+
     /// Returns the points as a reader gets them, rounded to the precision of the file.
     pub(crate) fn points(&self) -> Vec<[f64; 2]> {
         self.mesh.points.iter().map(|p| p.map(|x| self.precision.rounded(x))).collect()
@@ -101,6 +107,7 @@ pub(crate) fn all(mesh: &Mesh) -> Vec<Made> {
         binary::all,
         exodus::all,
         ugrid::all,
+        nets::all,
         xdmf::all,
         abaqus::all,
         nastran::all,

@@ -29,15 +29,15 @@ pub(super) struct NetCdf {
 }
 
 /// A finished file, with the byte ranges of its variables and of the lengths of its dimensions, by name.
-pub(super) struct Built {
-    pub(super) bytes: Vec<u8>,
+pub(crate) struct Built {
+    pub(crate) bytes: Vec<u8>,
     places: Vec<(String, Range<usize>)>,
     lengths: Vec<(&'static str, Range<usize>)>,
 }
 
 impl Built {
     /// Returns the byte range of a variable, of its first record if it has records.
-    pub(super) fn variable(&self, name: &str) -> Option<Range<usize>> {
+    pub(crate) fn variable(&self, name: &str) -> Option<Range<usize>> {
         let found = self.places.iter().find(|(own, _)| own == name);
         found.map(|(_, range)| range.clone())
     }
