@@ -1,5 +1,6 @@
 //! Centers of faces and edges, from the coordinates of their corners.
 
+use crate::mesh_file::net_centers::{inner_circumcenter, inner_local_circumcenter, local_centroid};
 use std::ops::RangeInclusive;
 
 /// Function from the corners of an element to its center; `None` if the corners have no such center.
@@ -17,13 +18,15 @@ pub(super) struct CenterCoordinate {
 impl CenterCoordinate {
     /// Returns the functions for the centers that programs store, in the order in which arrays are tested.
     pub(super) fn functions(self) -> &'static [CenterFunction] {
-        const LENGTHS: [CenterFunction; 3] = [mean, centroid, circumcenter];
-        const DEGREES: [CenterFunction; 5] = [
+        const LENGTHS: [CenterFunction; 4] = [mean, centroid, circumcenter, inner_circumcenter];
+        const DEGREES: [CenterFunction; 7] = [
             |corners| mean(&continued(corners)),
             |corners| centroid(&continued(corners)),
             |corners| circumcenter(&continued(corners)),
             spherical_mean,
             spherical_circumcenter,
+            |corners| local_centroid(&continued(corners)),
+            |corners| inner_local_circumcenter(&continued(corners)),
         ];
         if self.is_in_degrees { &DEGREES } else { &LENGTHS }
     }
@@ -63,7 +66,7 @@ fn continued(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
     corners.iter().map(|&[x, y]| [x + 360.0 * ((first - x) / 360.0).round(), y]).collect()
 }
 
-fn mean(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
+pub(super) fn mean(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
     let &first = corners.first()?;
     // Sums differences to the first corner, which loses no digits far from the origin.
     let offset = |axis: usize| corners.iter().map(|corner| corner[axis] - first[axis]).sum::<f64>();
@@ -83,7 +86,7 @@ fn centroid(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
     (area != 0.0).then(|| [0, 1].map(|axis| first[axis] + moment[axis] / area))
 }
 
-fn circumcenter(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
+pub(super) fn circumcenter(corners: &[[f64; 2]]) -> Option<[f64; 2]> {
     let &[a, b, c] = corners else { return None };
     let [b, c] = [b, c].map(|corner| [corner[0] - a[0], corner[1] - a[1]]);
     let doubled = 2.0 * (b[0] * c[1] - b[1] * c[0]);

@@ -9,6 +9,8 @@ use crate::text::cursor::Cursor;
 use crate::visit::field::PointField;
 use crate::visit::items::Centers;
 use crate::visit::visitor::MeshVisitor;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// Relative tolerance for recognizing a stored center, in units of the distance between the computed center and the
 /// farthest corner along the axis.
@@ -24,8 +26,9 @@ struct Array {
 impl MeshFile {
     /// Returns the stored centers of faces and edges, updated for vertices at `points`, as fields for
     /// [`write_with_fields`](Self::write_with_fields). A field has one coordinate of the centers, with a number per
-    /// face or edge. An array is updated if all its numbers are means of corners, all are centroids, or all are
-    /// circumcenters of triangles. If the file says that coordinates are in degrees, corners are continued across the
+    /// face or edge. An array is updated if all numbers of triangles are means of corners, all are centroids, or all are
+    /// circumcenters, also those of Delft3D FM, which never leave their triangle. The numbers of edges, and of faces with
+    /// more corners, must be of one kind too unless no vertex of such an element has moved. If the file says that coordinates are in degrees, corners are continued across the
     /// date line, and centers on the sphere are recognized too. The second list holds the names of the remaining arrays.
     /// Without centers in the file, both lists are empty.
     ///
@@ -89,9 +92,10 @@ impl<'c> Elements<'c> {
         starts.zip(self.ends).map(|(start, &end)| &self.vertices[start..end])
     }
 
-    /// Returns the numbers for the new positions of vertices; elements without a moved vertex keep their numbers.
-    /// `None` if no center function reproduces all numbers from the old positions. `error` bounds the rounding error of
-    /// numbers of a size.
+    /// Returns the numbers for the new positions of vertices; elements without a moved vertex keep their numbers. A center
+    /// function is found for each number of corners of which an element has a moved vertex. `None` if no function
+    /// reproduces all numbers of such elements from the old positions. `error` bounds the rounding error of numbers of a
+    /// size.
     fn moved(
         &self,
         numbers: &[f64],
@@ -99,19 +103,18 @@ impl<'c> Elements<'c> {
         [old, new]: [&[[f64; 2]]; 2],
         error: impl Fn(f64) -> f64,
     ) -> Option<Vec<f64>> {
-        let axis = coordinate.axis;
         let mut corners = Vec::new();
-        let mut at = |points: &[[f64; 2]], element: &[u32], recipe: CenterFunction| {
+        let mut at = |points: &[[f64; 2]], element: &[u32], function: CenterFunction| {
             corners.clear();
             corners.extend(element.iter().map(|&vertex| points[vertex as usize]));
-            let center = recipe(&corners)?[axis];
-            let far = corners.iter().map(|corner| (corner[axis] - center).abs());
+            let center = function(&corners)?[coordinate.axis];
+            let far = corners.iter().map(|corner| (corner[coordinate.axis] - center).abs());
             Some((center, far.fold(0.0, f64::max)))
         };
-        let mut fits = |recipe: CenterFunction| {
-            self.each().zip(numbers).filter(|(element, _)| !element.is_empty()).all(
+        let mut fits = |function: CenterFunction, count: usize| {
+            self.each().zip(numbers).filter(|(element, _)| element.len() == count).all(
                 |(element, &number)| {
-                    let found = at(old, element, recipe);
+                    let found = at(old, element, function);
                     found.is_some_and(|(center, reach)| {
                         (coordinate.near(center, number) - number).abs()
                             <= CENTER_TOLERANCE * reach + 4.0 * error(center.abs())
@@ -119,16 +122,22 @@ impl<'c> Elements<'c> {
                 },
             )
         };
-        let recipe = coordinate.functions().iter().copied().find(|&recipe| fits(recipe))?;
+        let has_moved =
+            |&v: &u32| old[v as usize].map(f64::to_bits) != new[v as usize].map(f64::to_bits);
+        // The function for each number of corners.
+        let mut functions: HashMap<usize, CenterFunction> = HashMap::new();
+        for element in self.each().filter(|element| element.iter().any(has_moved)) {
+            if let Entry::Vacant(entry) = functions.entry(element.len()) {
+                let mut all = coordinate.functions().iter().copied();
+                entry.insert(all.find(|&function| fits(function, element.len()))?);
+            }
+        }
         let range = coordinate.range(numbers);
         let updated = self.each().zip(numbers).map(|(element, &number)| {
-            let has_moved =
-                |&v: &u32| old[v as usize].map(f64::to_bits) != new[v as usize].map(f64::to_bits);
-            match element.iter().any(has_moved) {
-                true => at(new, element, recipe)
-                    .map_or(number, |(center, _)| within(&range, coordinate.near(center, number))),
-                false => number,
-            }
+            let function = functions.get(&element.len());
+            let function = function.filter(|_| element.iter().any(has_moved));
+            let center = function.and_then(|&function| at(new, element, function));
+            center.map_or(number, |(center, _)| within(&range, coordinate.near(center, number)))
         });
         Some(updated.collect())
     }

@@ -9,6 +9,7 @@ mod ghost_arrays;
 pub(crate) mod groups;
 pub(crate) mod locate;
 pub(crate) mod mesh;
+mod net_centers;
 #[cfg(test)]
 mod parallel_tests;
 pub(crate) mod parameters;

@@ -43,8 +43,9 @@ const EDGES: [[u32; 2]; 18] = [
 ];
 
 fn net<'n>(points: &'n [[f64; 2]], edges: &'n [[u32; 2]]) -> Net<'n> {
-    let (precision, types) = (Precision::Double, &[]);
-    Net { points, edges, is_old: false, units: ["m"; 2], types, precision, version: 1, first: 1 }
+    let (units, types, centers) = (["m"; 2], &[], &[]);
+    let precision = Precision::Double;
+    Net { points, edges, is_old: false, units, types, centers, precision, version: 1, first: 1 }
 }
 
 fn read(folder: &Folder, net: &Net<'_>) -> MeshFile {
@@ -123,6 +124,55 @@ fn middles_of_edges_follow_the_vertices() {
     file.write_with_fields(&folder.path("out.nc"), &to, &fields).unwrap();
     let expected = Net { points: &to, ..net(&POINTS, &EDGES) }.build().bytes;
     assert!(fs::read(folder.path("out.nc")).unwrap() == expected);
+}
+
+/// Returns the circumcenter of a triangle by its barycentric coordinates. A circumcenter outside of the triangle moves to
+/// the edge, on the line to the mean of the corners.
+fn inner_circumcenter(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    let square = |k: usize| {
+        let [a, b] = [corners[(k + 1) % 3], corners[(k + 2) % 3]];
+        (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)
+    };
+    let weight = |k: usize| square(k) * (square((k + 1) % 3) + square((k + 2) % 3) - square(k));
+    let sum: f64 = (0..3).map(weight).sum();
+    let shares = [0, 1, 2].map(|k| weight(k) / sum);
+    let least = shares.iter().copied().fold(f64::MAX, f64::min);
+    let way = if least < 0.0 { 1.0 / (1.0 - 3.0 * least) } else { 1.0 };
+    let at = |axis: usize| {
+        let share = |k: usize| 1.0 / 3.0 + way * (shares[k] - 1.0 / 3.0);
+        (0..3).map(|k| share(k) * corners[k][axis]).sum()
+    };
+    [at(0), at(1)]
+}
+
+/// The centers of the two squares are not those of any formula, and keep their values, as no vertex of a square moves.
+#[test]
+fn circumcenters_of_triangles_follow_the_vertices_beside_other_cells() {
+    let folder = Folder::new(&[]);
+    let triangles = read(&folder, &net(&POINTS, &EDGES)).triangles().to_vec();
+    let centers = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        let own = triangles.iter().map(|t| inner_circumcenter(t.map(|v| points[v as usize])));
+        own.chain([[-7.0, 0.5], [9.0, 0.25]]).collect()
+    };
+    let mut to = POINTS;
+    to[9] = [1.25, 0.75];
+    let [before, after] = [centers(&POINTS), centers(&to)];
+    let file = read(&folder, &Net { centers: &before, ..net(&POINTS, &EDGES) });
+    let (fields, others) = file.centers(&to).unwrap();
+    let axes = [0, 1].map(|axis| {
+        let name = ["face_x", "face_y"][axis];
+        (axis, fields.iter().find(|field| field.name() == name).unwrap())
+    });
+    assert!(others.is_empty(), "{others:?}");
+    for (axis, field) in axes {
+        for (value, expected) in field.values().iter().zip(&after) {
+            assert!((value - expected[axis]).abs() < 1e-12, "{value} {expected:?}");
+        }
+    }
+    let mut moved = POINTS;
+    moved[4] = [2.1, 2.1];
+    let names = file.centers(&moved).unwrap().1;
+    assert_eq!(names, ["face_x", "face_y"], "a square has moved");
 }
 
 #[test]

@@ -41,6 +41,8 @@ pub(crate) struct Net<'n> {
     pub(crate) units: [&'static str; 2],
     /// The type of each link in an older net.
     pub(crate) types: &'n [i32],
+    /// The centers of cells, unless the net is old.
+    pub(crate) centers: &'n [[f64; 2]],
     pub(crate) precision: Precision,
     /// The form of netCDF: 1, 2 or 5.
     pub(crate) version: u8,
@@ -59,7 +61,7 @@ impl Net<'_> {
 
     /// Makes the file, with a depth for each node and, unless the net is old, the middle of each edge.
     pub(crate) fn build(&self) -> Built {
-        let Net { points, edges, is_old, units, types, precision, version, first } = *self;
+        let Net { points, edges, is_old, units, types, centers, precision, version, first } = *self;
         let mut file = NetCdf::new(version);
         let [x, y, table] = self.names();
         if !is_old {
@@ -69,6 +71,9 @@ impl Net<'_> {
             file.attribute("node_coordinates", Attribute::Text("net_x net_y"));
             file.attribute("edge_node_connectivity", Attribute::Text("net_edges"));
             file.attribute("edge_coordinates", Attribute::Text("edge_x edge_y"));
+            if !centers.is_empty() {
+                file.attribute("face_coordinates", Attribute::Text("face_x face_y"));
+            }
             // The file lacks the variable that this attribute names, as files of Delft3D FM without faces do.
             file.attribute("face_node_connectivity", Attribute::Text("net_faces"));
         }
@@ -92,7 +97,17 @@ impl Net<'_> {
                 file.reals(name, Precision::Double, &["edge"], &middles);
             }
         }
-        file.build(&[("node", points.len()), ("edge", edges.len()), ("two", 2)], 0)
+        for (axis, name) in ["face_x", "face_y"].into_iter().enumerate() {
+            let numbers: Vec<f64> = centers.iter().map(|center| center[axis]).collect();
+            if !numbers.is_empty() {
+                file.reals(name, Precision::Double, &["face"], &numbers);
+            }
+        }
+        let mut lengths = vec![("node", points.len()), ("edge", edges.len()), ("two", 2)];
+        if !centers.is_empty() {
+            lengths.push(("face", centers.len()));
+        }
+        file.build(&lengths, 0)
     }
 }
 
@@ -100,9 +115,9 @@ fn net(mesh: &Mesh, version: u8, is_old: bool) -> Made {
     let edges = edges(mesh);
     let precision = if version == 5 { Precision::Single } else { Precision::Double };
     let first = if version == 5 { 0 } else { 1 };
-    let (units, types) = (["m"; 2], &vec![2; edges.len()][..]);
+    let (units, types, centers) = (["m"; 2], &vec![2; edges.len()][..], &[][..]);
     let (points, edges) = (&mesh.points[..], &edges[..]);
-    let net = Net { points, edges, is_old, units, types, precision, version, first };
+    let net = Net { points, edges, is_old, units, types, centers, precision, version, first };
     let built = net.build();
     let size = super::binary::size_of(precision);
     let [x, y, table] = net.names().map(|name| built.variable(name).unwrap());
