@@ -7,10 +7,9 @@
 
 #![allow(clippy::print_stdout)]
 
-use std::ops::ControlFlow;
 use std::time::Instant;
 
-use gpu_smooth::{Mesh, precision::Precision, untangle};
+use gpu_smooth::{Mesh, Untangle};
 use support::{boundaries, tangle};
 
 const SEEDS: u64 = 10;
@@ -99,8 +98,7 @@ fn row(kind: &str, meshes: impl Iterator<Item = Mesh>) {
     for mesh in meshes {
         let before = processor_seconds();
         let start = Instant::now();
-        let result =
-            untangle(&mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap();
+        let result = Untangle::new(&mesh).run().unwrap();
         seconds.push(start.elapsed().as_secs_f64());
         let spent = processor_seconds().zip(before).map(|(now, before)| now - before);
         processor = processor.zip(spent).map(|(sum, spent)| sum + spent);

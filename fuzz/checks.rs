@@ -1,14 +1,12 @@
 //! Checks that must hold for any mesh, shared by the fuzzer's targets and `tests/fuzz.rs`. A violated check panics.
 
-use std::ops::ControlFlow;
-
 use gpu_smooth::{
     Backend, Guard, Mesh, MeshError, Method, Metric, Options, Quality, Scheme, Slide, SmoothError,
-    Smoother, Targets,
+    Smoother, Targets, Untangle,
     options::{Derivatives, PNormExponent, Paper, WorstBy},
     precision::{Precision, Rounding},
     targets::Surface,
-    topology, untangle,
+    topology,
 };
 
 /// A source of numbers from bytes. After the last byte, all numbers are 0.
@@ -229,8 +227,8 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
 /// Untangles a mesh with inverted triangles. The number of bad triangles must not increase, and a mesh reported as
 /// untangled must be valid.
 fn untangled(mesh: &Mesh, options: &Options) -> Became {
-    let mut go_on = |_: &gpu_smooth::untangle::Untangling| ControlFlow::Continue(());
-    let Ok(untangled) = untangle(mesh, options.stored, &mut go_on) else { return Became::Refused };
+    let untangled = Untangle::new(mesh).stored(options.stored).run();
+    let Ok(untangled) = untangled else { return Became::Refused };
     assert!(untangled.left.len() <= untangled.bad_before);
     let mended = Mesh { points: untangled.points, ..mesh.clone() };
     match Smoother::new(&mended) {

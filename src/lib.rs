@@ -103,6 +103,6 @@ pub use slide::Slide;
 pub use smoother::{Backend, Run, Smoother, smooth};
 pub use targets::{TargetField, Targets};
 pub use topology::Topology;
-pub use untangle::untangle;
+pub use untangle::Untangle;
 #[cfg(feature = "gpu")]
 pub use wgpu;

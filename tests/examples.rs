@@ -22,7 +22,8 @@ mod readme {
     use std::path::Path;
 
     use gpu_smooth::gpu::{DeviceMesh, Sweeps, VertexBuffer};
-    use gpu_smooth::{Backend, Gpu, Mesh, Options, Outcome, Smoother, wgpu};
+    use gpu_smooth::untangle::Untangled;
+    use gpu_smooth::{Backend, Gpu, Mesh, Options, Outcome, Smoother, Untangle, wgpu};
     use gpu_smooth_job::Job;
     use mesh_io::MeshFile;
 
@@ -42,6 +43,13 @@ mod readme {
         let points = gpu_smooth::smooth(&points, &triangles, &[], &options, &Backend::Cpu)?;
 
         Ok(points)
+    }
+
+    fn untangle(mesh: Mesh) -> Result<Untangled> {
+        // A tangled mesh is made feasible first.
+        let untangled = Untangle::new(&mesh).run()?;
+
+        Ok(untangled)
     }
 
     async fn await_a_run(

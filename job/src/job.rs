@@ -1,14 +1,13 @@
 //! A mesh file that is prepared for smoothing, and the smoothed mesh.
 
 use std::borrow::Cow;
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::targets::Surface;
-use gpu_smooth::untangle::{Untangled, Untangling};
+use gpu_smooth::untangle::{Untangle, Untangled};
 use gpu_smooth::{Backend, Mesh, MeshError, Options, Outcome, SmoothError, Smoother, Topology};
 use mesh_io::MeshFile;
 
@@ -103,7 +102,7 @@ impl<'f> Job<'f> {
         Ok(Self { slide, target, untangles: settings.untangles, ..self })
     }
 
-    /// Untangles the mesh before the run, if triangles are inverted or flat; see [`gpu_smooth::untangle()`].
+    /// Untangles the mesh before the run, if triangles are inverted or flat; see [`Untangle`].
     pub fn untangle(self) -> Self {
         Self { untangles: true, ..self }
     }
@@ -235,8 +234,7 @@ impl<'f> Job<'f> {
         if !is_tangled {
             return Ok(());
         }
-        let mut observe = |_: &Untangling| ControlFlow::Continue(());
-        let done = gpu_smooth::untangle(self.mesh(), self.stored(), &mut observe);
+        let done = Untangle::new(self.mesh()).stored(self.stored()).run();
         let Untangled { points, left, overlapping, .. } =
             done.map_err(|error| self.error(error))?;
         if !left.is_empty() || overlapping.is_some() {

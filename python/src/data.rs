@@ -3,7 +3,7 @@
 use gpu_smooth::interpolate::Interpolation;
 use gpu_smooth::measure::{Change, Distribution};
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Mesh, Quality as MeshQuality, Topology};
+use gpu_smooth::{Mesh, Quality as MeshQuality, Topology, Untangle};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -49,7 +49,8 @@ pub(crate) fn untangle<'py>(
     let stored = form.precision();
     let done = threads::watched(py, &observer, || {
         if keep_going {
-            let done = gpu_smooth::untangle(&mesh, stored, &mut input::observe(&observer))?;
+            let untangle = Untangle::new(&mesh).stored(stored);
+            let done = untangle.observe(input::observe(&observer)).run()?;
             return Ok(Some(done.points));
         }
         let mut done = input::untangled(&mesh, stored, &observer)?;

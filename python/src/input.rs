@@ -7,7 +7,7 @@ use gpu_smooth::layers::Layers;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::untangle::{Untangled, Untangling};
-use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, untangle};
+use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, Untangle};
 use gpu_smooth_job::{Domain, look_like_degrees};
 
 use pyo3::prelude::*;
@@ -210,7 +210,7 @@ fn untangle_mesh(
             ));
         }
     }
-    let done = untangle(mesh, stored, &mut observe(observer))?;
+    let done = Untangle::new(mesh).stored(stored).observe(observe(observer)).run()?;
     Ok(done)
 }
 

@@ -4,9 +4,8 @@ use std::ops::ControlFlow;
 
 use crate::layout::{Mercator, laid_out};
 use crate::mesh::Mesh;
-use crate::precision::Precision;
 use crate::topology::Topology;
-use crate::untangle::{Untangling, feasible_means, untangle};
+use crate::untangle::{Untangle, Untangling, feasible_means};
 
 /// Number of untangling sweeps after which moves near the slivers have failed. Sweeps that succeed are fewer than 30.
 const MOST_SWEEPS: u32 = 100;
@@ -18,7 +17,7 @@ const MOST_SWEEPS: u32 = 100;
 pub(super) fn opened(mesh: &Mesh, topology: &Topology<'_>) -> Option<Mesh> {
     let (_, projected) = Mercator::with_slivers(mesh, topology);
     let near_slivers = || {
-        let untangled = untangle(&projected, Precision::Double, &mut most_sweeps).ok()?;
+        let untangled = Untangle::new(&projected).observe(most_sweeps).run().ok()?;
         let is_feasible = untangled.left.is_empty() && untangled.overlapping.is_none();
         is_feasible.then_some(untangled.points)
     };

@@ -12,11 +12,10 @@
 
 use gpu_smooth::{
     Backend, Goal, Guard, Mesh, Method, Metric, Options, Slide, Smoother, Stopping, TargetField,
-    Targets, options::WorstBy, precision::Precision, targets::Surface, untangle,
+    Targets, Untangle, options::WorstBy, precision::Precision, targets::Surface,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use support::Outline;
 
@@ -250,7 +249,7 @@ fn untangled() -> String {
     ];
     let mut lines = String::new();
     for (name, mesh) in meshes {
-        let done = untangle(&mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap();
+        let done = Untangle::new(&mesh).run().unwrap();
         let hash = Hash::of_points(&done.points).0;
         let (left, sweeps) = (done.left.len(), done.sweeps);
         writeln!(lines, "{name} untangled points {hash:016x} left {left} sweeps {sweeps}").unwrap();

@@ -1,10 +1,7 @@
 //! Runs by EDGE in which a shape guard could prevent convergence far from the optimum.
 
 use crate::{backends, name, run, with_points};
-use gpu_smooth::{
-    Backend, Mesh, Metric, Options, Outcome, Smoother, Stop, precision::Precision, untangle,
-};
-use std::ops::ControlFlow;
+use gpu_smooth::{Backend, Mesh, Metric, Options, Outcome, Smoother, Stop, Untangle};
 use support::SplitMix64;
 
 /// Makes a square of 11 by 11 vertices. Each cell is halved along a diagonal, which rises if `is_rising` returns true.
@@ -32,7 +29,7 @@ fn untangled(mesh: &Mesh, share: f64, rng: &mut SplitMix64) -> Mesh {
         true => [0, 1].map(|_| rng.range(0.0, 10.0)),
         false => p,
     });
-    let result = untangle(&tangled, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap();
+    let result = Untangle::new(&tangled).run().unwrap();
     assert!(result.left.is_empty());
     with_points(mesh, &result.points)
 }

@@ -4,14 +4,13 @@ use crate::{plate, with_points};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Metric, Options, SmoothError, Smoother, Topology,
     precision::Precision,
-    untangle,
-    untangle::{Untangled, Untangling},
+    untangle::{Untangle, Untangled, Untangling},
 };
 use std::ops::ControlFlow;
 use support::{SplitMix64, boundaries, tangle};
 
 fn mend(mesh: &Mesh) -> Untangled {
-    untangle(mesh, Precision::Double, &mut |_| ControlFlow::Continue(())).unwrap()
+    Untangle::new(mesh).run().unwrap()
 }
 
 /// Checks that a mesh is untangled, and that only free vertices have moved.
@@ -301,7 +300,7 @@ fn the_values_as_stored_are_untangled() {
     let mut mesh = tangle::moved(&plate(300), |p| p.map(|x| x + rng.range(-0.2, 0.2)));
     let single = |x: f64| f64::from(x as f32);
     mesh.points.iter_mut().for_each(|p| *p = [0, 1].map(|i| single(1e3 * p[i] + far[i])));
-    let result = untangle(&mesh, Precision::Single, &mut |_| ControlFlow::Continue(())).unwrap();
+    let result = Untangle::new(&mesh).stored(Precision::Single).run().unwrap();
     assert!(result.left.is_empty());
     assert!(support::is_valid(&with_points(&mesh, &result.points)));
     assert!(result.points.as_flattened().iter().all(|&x| single(x) == x));
@@ -316,10 +315,11 @@ fn untangling_gives_the_same_bits_again_and_ends_when_the_observer_says_so() {
         assert!(one.points == two.points && one.sweeps == two.sweeps);
     }
     let mut seen = Vec::new();
-    let ended = untangle(&mesh, Precision::Double, &mut |progress: &Untangling| {
+    let ended = Untangle::new(&mesh).observe(|progress: &Untangling| {
         seen.push(progress.sweep);
         if seen.len() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
+    let ended = ended.run();
     assert_eq!(seen, [1, 2, 3]);
     let ended = ended.unwrap();
     assert!(ended.sweeps == 3 && !ended.left.is_empty() && ended.left.len() <= ended.bad_before);
@@ -331,7 +331,7 @@ fn a_sound_mesh_is_left_alone_and_a_broken_one_refused() {
     let result = mend(&mesh);
     assert!(result.points == mesh.points && result.sweeps == 0 && result.bad_before == 0);
     let broken = Mesh { triangles: vec![[0, 1, 1]], ..mesh };
-    let error = untangle(&broken, Precision::Double, &mut |_| ControlFlow::Continue(())).err();
+    let error = Untangle::new(&broken).run().err();
     assert_eq!(error, Some(MeshError::RepeatedVertex { triangle: 0, vertex: 1 }));
 }
 
@@ -376,7 +376,7 @@ fn a_surface_without_boundary_is_refused_at_once() {
     let points = vec![[0.0, 0.0], [3.0, 0.0], [0.0, 3.0], [1.0, 1.0]];
     let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]];
     let closed = Mesh { points, triangles, fixed: Vec::new() };
-    let error = untangle(&closed, Precision::Double, &mut |_| ControlFlow::Continue(()));
+    let error = Untangle::new(&closed).run();
     assert_eq!(error.err(), Some(MeshError::Closed { triangle: 0 }));
 }
 
@@ -388,7 +388,11 @@ fn a_valid_mesh_gets_no_inverted_triangle_by_untangling_that_is_ended() {
     for seed in [17, 31, 2, 3] {
         let mesh = with_vertices_on_edges(seed);
         assert!(support::is_ccw(&mesh), "{seed}");
-        let result = untangle(&mesh, Precision::Single, &mut |_| ControlFlow::Break(())).unwrap();
+        let result = Untangle::new(&mesh)
+            .stored(Precision::Single)
+            .observe(|_| ControlFlow::Break(()))
+            .run()
+            .unwrap();
         rest += usize::from(!result.left.is_empty());
         let after = Mesh { points: result.points, ..mesh };
         assert!(support::is_ccw(&after), "{seed}");

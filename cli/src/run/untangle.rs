@@ -8,7 +8,7 @@ use std::time::Instant;
 use gpu_smooth::{
     Mesh, MeshError, Smoother, Topology,
     topology::BadTriangle,
-    untangle::{Untangled, Untangling},
+    untangle::{Untangle, Untangled, Untangling},
 };
 
 use crate::load::explain;
@@ -69,8 +69,11 @@ pub(crate) fn untangle_input(
             None => ControlFlow::Continue(()),
         }
     };
-    let untangled =
-        gpu_smooth::untangle(mesh, file.precision(), &mut observe).map_err(explained)?;
+    let untangled = Untangle::new(mesh)
+        .stored(file.precision())
+        .observe(&mut observe)
+        .run()
+        .map_err(explained)?;
     let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved } = untangled;
     let mut error = match overlapping {
         None if left.is_empty() => {

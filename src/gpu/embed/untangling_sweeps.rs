@@ -40,7 +40,7 @@ const EACH: u32 = 8;
 /// # }
 /// ```
 ///
-/// A sweep moves vertices by Newton steps on the energy of [`untangle`](crate::untangle()): at first the vertices of
+/// A sweep moves vertices by Newton steps on the energy of [`Untangle`](crate::Untangle): at first the vertices of
 /// inverted triangles, and in each further sweep also the vertices one edge farther off. Held vertices stay in place. A
 /// triangle whose vertices are all held or on the boundary is skipped, as no sweep can repair it.
 ///
