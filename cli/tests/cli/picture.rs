@@ -248,6 +248,77 @@ fn a_part_of_the_mesh_is_drawn_larger_with_its_worst_triangles_inside() {
     assert!(folder.content() == before);
 }
 
+/// Texts of a run on a narrow picture, in both panels, with the longest numbers.
+#[test]
+fn headings_fit_narrow_panels() {
+    let folder = small();
+    for width in [400, 600] {
+        let line = format!(
+            "in out --engine cpu -q --force --picture-size {width} --picture-measure size-ratio --picture"
+        );
+        folder.line(&format!("{line} p.png")).clean();
+        let image = Image::read(&folder, "p.png");
+        // Two panels with margins of 11 pixels; the headings are above the meshes, and the legend is below.
+        let gap = [(width - 33) / 2 + 12, (width - 33) / 2 + 21];
+        let margin = [width - 10, width];
+        let ink = image.places(|pixel| pixel != [255; 4]);
+        let is_clipped = |place: &[usize; 2]| {
+            let top = place[1] < 40 && (gap[0]..gap[1]).contains(&place[0]);
+            top || (margin[0]..margin[1]).contains(&place[0])
+        };
+        assert!(!ink.iter().any(is_clipped), "{width}");
+        folder.line(&format!("{line} p.svg")).clean();
+        let svg = folder.text("p.svg");
+        assert_holds(
+            &svg,
+            &["160 triangles;", "mean 1", ">boundary</text>", ">worst triangles</text>"],
+        );
+        assert_eq!(svg.contains("160 triangles; size-ratio"), width == 600);
+    }
+}
+
+/// The numbers of rings at the sides of the drawn part are inside, and the heading has the values of the part.
+#[test]
+fn numbers_and_headings_are_of_the_drawn_part() {
+    let folder = small();
+    let told = folder.line("quality in --worst 1 --json").clean().out;
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let corners = told["worst"][0]["corners"].as_array().unwrap();
+    let [x, y] =
+        [0, 1].map(|axis| corners.iter().map(|p| p[axis].as_f64().unwrap() / 3.0).sum::<f64>());
+    let worst = told["worst"][0]["shape"].as_f64().unwrap();
+    // Draws a part, and returns the picture with the number of triangles in the heading and their least shape.
+    let drawn = |[x0, y0, x1, y1]: [f64; 4]| {
+        let part = format!("quality in --picture p.svg --picture-box={x0},{y0},{x1},{y1}");
+        folder.line(&part).clean();
+        let svg = folder.text("p.svg");
+        let (before, after) = svg.split_once(" of 160 triangles; shape ").unwrap();
+        let count: usize = before.rsplit('>').next().unwrap().parse().unwrap();
+        let least: f64 = after.split(' ').next().unwrap().parse().unwrap();
+        (svg.clone(), count, least)
+    };
+    let e = 1e-6;
+    // The middle of the worst triangle is at a corner of each part.
+    for part in [
+        [x - e, y - 2.0, x + 2.0, y + e],
+        [x - 2.0, y - 2.0, x + e, y + e],
+        [x - 2.0, y - e, x + e, y + 2.0],
+    ] {
+        let (svg, count, least) = drawn(part);
+        assert!((1..80).contains(&count) && (least / worst - 1.0).abs() < 1e-3, "{count}, {least}");
+        let frame = svg.split("<svg").nth(2).unwrap().split('>').next().unwrap();
+        let [left, top, width, height] =
+            ["x", "y", "width", "height"].map(|key| numbers(frame, key)[0]);
+        let number = svg.split("<text").find(|text| text.contains(">1</text>")).unwrap();
+        let [x, y, size] = ["x", "y", "font-size"].map(|key| numbers(number, key)[0]);
+        assert!(left < x && x + 0.6 * size < left + width, "{part:?}: {number}");
+        assert!(top < y - 0.7 * size && y < top + height, "{part:?}: {number}");
+    }
+    // A part without the worst triangle has another range.
+    let (_, _, least) = drawn([x + e, y + e, x + 3.0, y + 3.0]);
+    assert!(least > 1.1 * worst, "{least}");
+}
+
 #[test]
 fn enlarged_triangles_have_outlines_and_a_bar_for_the_scale() {
     let mesh = support::perturb_random(&support::lattice(60, 60), 0.2, 7);

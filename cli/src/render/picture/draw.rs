@@ -8,11 +8,13 @@ use crate::request::{PictureFormat, PictureRequest};
 
 use crate::render::picture::canvas::Canvas;
 use crate::render::picture::faces::FixedFaces;
+use crate::render::picture::font::Font;
 use crate::render::picture::layout::{Extent, Frame};
 use crate::render::picture::outlines::Outlines;
 use crate::render::picture::raster::Raster;
 use crate::render::picture::scene::{Panel, Scene};
-use gpu_smooth::{MeshError, Topology, measure::Measured, targets::Surface};
+use gpu_smooth::measure::{Measure, Measured};
+use gpu_smooth::{MeshError, Topology, targets::Surface};
 use mesh_io::atomic;
 
 use crate::terminal::numbers::fit8;
@@ -67,7 +69,8 @@ pub(crate) fn write(
         faces,
         panels,
     };
-    let layout = scene.layout(request.width);
+    let font = Font::new().map_err(failed)?;
+    let layout = scene.layout(request.width, &font);
     let [width, height] = layout.size;
     let canvas = match request.format {
         PictureFormat::Png => {
@@ -129,27 +132,42 @@ fn panel<'a>(
     let measured = Measured::on(mesh.surface, state.points, mesh.topology)?;
     let goodness = goodness_of(mesh.topology, &measured, colors)?;
     let measure = colors.measure();
-    let unit = measure.definition().unit;
-    let statistics = measured.statistics(&[measure]);
-    let numbers = statistics.first().map_or(String::new(), |s| {
-        let [min, mean, max] = [s.min, s.mean, s.max].map(fit8);
-        format!("{} triangles; {measure} {min}{unit} to {max}{unit}, mean {mean}{unit}", s.count)
-    });
+    // The triangles of the drawn part are those with their middle in it, as rings are at the middle.
+    let is_drawn = |t: usize| {
+        part.is_none_or(|part| {
+            let corners = mesh.topology.triangles()[t].map(|v| state.points[v as usize]);
+            part.has([0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum()))
+        })
+    };
+    let values = measured.values(measure).into_iter().enumerate();
+    let drawn: Vec<f64> = values.filter(|(t, _)| is_drawn(*t)).map(|(_, value)| value).collect();
     let worst = match part {
         None => measured.worst(measure, CANDIDATES),
-        Some(part) => {
-            let has_middle = |t: usize| {
-                let corners = mesh.topology.triangles()[t].map(|v| state.points[v as usize]);
-                part.has([0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum()))
-            };
+        Some(_) => {
             let all = measured.worst(measure, goodness.len()).into_iter();
-            all.filter(|(t, _)| has_middle(*t)).take(CANDIDATES).collect()
+            all.filter(|(t, _)| is_drawn(*t)).take(CANDIDATES).collect()
         }
     };
+    let numbers = numbers(measure, &drawn, goodness.len());
     let axes = mesh.file.plane().and_then(axes_legend);
     let title = match axes {
         Some(axes) => format!("{}; {axes}", state.title),
         None => state.title.clone(),
     };
     Ok(Panel { title: [title, numbers], points: state.points, goodness, worst })
+}
+
+/// Describes the values of a measure of the drawn triangles. `all` is the number of triangles of the mesh.
+fn numbers(measure: Measure, drawn: &[f64], all: usize) -> String {
+    let count = match drawn.len() {
+        0 => return "no triangle has its middle in this part".to_owned(),
+        n if n == all => format!("{n} triangles"),
+        n => format!("{n} of {all} triangles"),
+    };
+    let unit = measure.definition().unit;
+    let least = drawn.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = drawn.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
+    let [least, mean, most] = [least, mean, most].map(fit8);
+    format!("{count}; {measure} {least}{unit} to {most}{unit}, mean {mean}{unit}")
 }

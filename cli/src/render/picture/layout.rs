@@ -1,6 +1,7 @@
 //! Positions of the parts of a picture.
 
 use crate::render::picture::canvas::Point;
+use crate::render::picture::legend::Legend;
 
 /// Bounding box of a mesh in the plane.
 #[derive(Clone, Copy)]
@@ -100,9 +101,27 @@ pub(crate) struct Layout {
     /// Height of text in pixels.
     pub(crate) text: f32,
     pub(crate) panels: Vec<Place>,
-    /// Upper left corner and width of the legend.
-    pub(crate) legend: (Point, f32),
+    /// Upper left corner of the legend, and its parts.
+    pub(crate) legend: (Point, Legend),
 }
+
+/// The parts around the meshes of a picture.
+#[derive(Clone, Copy)]
+pub(crate) struct Room<'a> {
+    /// Most insets below each mesh. A narrow panel has fewer.
+    pub(crate) insets: usize,
+    /// Number of lines below the first line of each heading.
+    pub(crate) lines: usize,
+    /// Arranges the legend for a width and a height of text in pixels.
+    pub(crate) legend: &'a dyn Fn(f32, f32) -> Legend,
+}
+
+/// Height of the lines below the first line of a heading, relative to the height of text, and their distance.
+pub(crate) const SMALL: f32 = 0.85;
+pub(crate) const LINE: f32 = 1.1;
+
+/// Least width of an inset, relative to the height of text.
+const LEAST_INSET: f64 = 7.0;
 
 /// Largest height of a mesh in a panel, relative to the width of the picture.
 const HIGHEST: f64 = 1.2;
@@ -114,17 +133,21 @@ const WIDE: f64 = 0.4;
 const INSET: f64 = 0.65;
 
 impl Layout {
-    /// Lays out `count` panels with a common extent, each with a row of `insets` insets. `width` is the width of the
-    /// picture in pixels.
-    pub(crate) fn new(extent: Extent, count: usize, insets: usize, width: u32) -> Self {
+    /// Lays out `count` panels with a common extent, each with a row of insets. `width` is the width of the picture in
+    /// pixels.
+    pub(crate) fn new(extent: Extent, count: usize, room: Room<'_>, width: u32) -> Self {
         let full = f64::from(width);
         let text = (full / 62.0).max(11.0);
-        let (margin, title, legend) = (text, 3.4 * text, 5.2 * text);
+        let further = f64::from(LINE) * room.lines.saturating_sub(1) as f64;
+        let (margin, title) = (text, (3.4 + further) * text);
+        let legend = (room.legend)((full - 2.0 * margin) as f32, text as f32);
         let [mesh_width, mesh_height] = extent.size();
         let aspect = mesh_height / mesh_width;
         let columns = if aspect < WIDE { 1 } else { count.max(1) };
         let panel_width = (full - margin * (columns as f64 + 1.0)) / columns as f64;
         let mesh_height = (panel_width * aspect).clamp(4.0 * text, HIGHEST * full);
+        let most = ((panel_width + margin) / (LEAST_INSET * text + margin)) as usize;
+        let insets = room.insets.min(most.max(1));
         let inset_width =
             (panel_width - margin * (insets.max(1) as f64 - 1.0)) / insets.max(1) as f64;
         let inset_height = if insets > 0 { INSET * inset_width } else { 0.0 };
@@ -147,10 +170,10 @@ impl Layout {
         };
         let below = count.div_ceil(columns) as f64 * panel_height + 1.5 * margin;
         Self {
-            size: [width, (below + legend).ceil() as u32],
+            size: [width, (below + f64::from(legend.height)).ceil() as u32],
             text: text as f32,
             panels: (0..count).map(place).collect(),
-            legend: ([margin as f32, below as f32], (full - 2.0 * margin) as f32),
+            legend: ([margin as f32, below as f32], legend),
         }
     }
 }
@@ -159,13 +182,19 @@ impl Layout {
 mod tests {
     use super::*;
 
+    /// Lays out panels with up to `insets` insets and the simplest legend.
+    fn layout(extent: Extent, count: usize, insets: usize, width: u32) -> Layout {
+        let legend = |width, text| Legend::new(Vec::new(), width, text, &|_, _| 0.0);
+        Layout::new(extent, count, Room { insets, lines: 1, legend: &legend }, width)
+    }
+
     #[test]
     fn a_mesh_is_upright_with_equal_axes_and_fits() {
         for (width, height) in [(3.0, 1.0), (1.0, 4.0), (1e-9, 2e-9), (5e90, 0.0)] {
             for count in [1, 2] {
                 for size in [800, 4000] {
                     let extent = Extent { low: [7.0 * width, -height], high: [8.0 * width, 0.0] };
-                    let layout = Layout::new(extent, count, 3, size);
+                    let layout = layout(extent, count, 3, size);
                     assert_eq!(layout.panels.len(), count);
                     for panel in &layout.panels {
                         let frame = panel.frame;
@@ -191,7 +220,7 @@ mod tests {
     #[test]
     fn wide_panels_are_stacked() {
         let layout =
-            |height: f64| Layout::new(Extent { low: [0.0; 2], high: [1.0, height] }, 2, 0, 1000);
+            |height: f64| layout(Extent { low: [0.0; 2], high: [1.0, height] }, 2, 0, 1000);
         let titles = |height| layout(height).panels.iter().map(|p| p.title).collect::<Vec<_>>();
         let [first, second] = titles(0.2)[..] else { panic!() };
         assert!(first[0] == second[0] && first[1] < second[1]);

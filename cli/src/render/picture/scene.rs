@@ -1,19 +1,25 @@
-//! Drawing of meshes and their legend on a canvas.
+//! Drawing of meshes on a canvas, with headings and enlarged triangles.
 
 use std::collections::HashSet;
 
 use crate::color_scale::ColorScale;
 use crate::render::picture::arrows;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
-use crate::render::picture::color::{self, BAD, BLACK, NEUTRAL, UNJUDGED, WHITE};
+use crate::render::picture::color::{BLACK, UNJUDGED, WHITE};
 use crate::render::picture::faces::FixedFaces;
-use crate::render::picture::layout::{Extent, Frame, Layout, Place};
+use crate::render::picture::font::Font;
+use crate::render::picture::heading::{end_within, wrapped};
+use crate::render::picture::layout::{Extent, Frame, LINE, Layout, Place, Room, SMALL};
+use crate::render::picture::legend::{Legend, Symbol};
+use crate::render::picture::marks::{
+    around, between_regions, boundary_width, held, ring_number, scale_bar, slid, worst,
+};
 use crate::render::picture::outlines::{Outlines, inner_edges};
-use crate::terminal::numbers::{fit8, short};
+use crate::terminal::numbers::fit8;
 
 /// A mesh at one set of positions, with the goodness shown by colors.
 pub(crate) struct Panel<'a> {
-    /// Two lines of text above the mesh.
+    /// Two texts above the mesh. The second one is broken into lines if the panel is narrow.
     pub(crate) title: [String; 2],
     pub(crate) points: &'a [[f64; 2]],
     /// Goodness of each triangle from 0 to 1, negative if inverted or flat.
@@ -43,83 +49,113 @@ const LEAST_HEIGHT: f32 = 3.0;
 const MARKED: usize = 3;
 
 impl Scene<'_> {
-    /// Lays out the panels, with insets if a marked triangle is too small to be visible without.
-    pub(crate) fn layout(&self, width: u32) -> Layout {
+    /// Lays out the panels, with insets if a marked triangle is too small to be visible without. `font` measures texts.
+    pub(crate) fn layout(&self, width: u32, font: &Font) -> Layout {
         let all: Vec<&[[f64; 2]]> = self.panels.iter().map(|panel| panel.points).collect();
         let extent =
             self.part.unwrap_or_else(|| Extent::of([self.triangles, &self.faces.pieces], &all));
-        let plain = Layout::new(extent, self.panels.len(), 0, width);
-        let is_small = |(panel, place): (&Panel<'_>, &Place)| {
-            let spots = self.spots(panel, &place.frame, plain.text);
-            let length = |t: usize| self.longest_edge(panel, t) * place.frame.scale;
-            spots.iter().any(|&(t, _)| length(t) < 2.0 * f64::from(plain.text))
+        let symbols = self.symbols();
+        let new = |insets, lines| {
+            let legend = |width, text| {
+                Legend::new(symbols.clone(), width, text, &|size, name| font.width(size, name))
+            };
+            Layout::new(extent, self.panels.len(), Room { insets, lines, legend: &legend }, width)
         };
-        match self.panels.iter().zip(&plain.panels).any(is_small) {
-            true => Layout::new(extent, self.panels.len(), MARKED, width),
-            false => plain,
-        }
+        let plain = new(0, 1);
+        let (text, places) = (plain.text, &plain.panels);
+        let lines = |(panel, place): (&Panel<'_>, &Place)| {
+            let measure = |line: &str| font.width(SMALL * text, line);
+            wrapped(&panel.title[1], place.width, &measure).len()
+        };
+        let lines = self.panels.iter().zip(places).map(lines).max().unwrap_or(1);
+        let is_small = |(panel, place): (&Panel<'_>, &Place)| {
+            let spots = self.spots(panel, &place.frame, text);
+            let length = |t: usize| self.longest_edge(panel, t) * place.frame.scale;
+            spots.iter().any(|&(t, _)| length(t) < 2.0 * f64::from(text))
+        };
+        let insets = match self.panels.iter().zip(places).any(is_small) {
+            true => MARKED,
+            false => 0,
+        };
+        new(insets, lines)
     }
 
     pub(crate) fn draw(&self, layout: &Layout, canvas: &mut dyn Canvas) {
-        let text = layout.text;
         for (panel, place) in self.panels.iter().zip(&layout.panels) {
-            match self.part {
-                None => self.draw_mesh(panel, &place.frame, text, canvas),
-                Some(_) => {
-                    canvas.clip(Some(place.frame.corners));
-                    self.draw_mesh(panel, &place.frame, text, canvas);
-                    canvas.clip(None);
-                    around(place.frame.corners, text, canvas);
-                }
-            }
-            let spots = self.spots(panel, &place.frame, text);
-            let marks: Vec<Point> =
-                spots.iter().map(|&(t, _)| place.frame.place(self.middle(panel, t))).collect();
-            marks.iter().for_each(|&at| worst(at, text, canvas));
-            // Numbers are drawn after all rings, so that no ring hides a number.
-            for (number, at) in (1..).zip(marks) {
-                // Near the right end of the picture or of the drawn part, the number is placed left of the mark.
-                let end = match self.part {
-                    Some(_) => place.frame.corners[1][0],
-                    None => layout.size[0] as f32,
-                };
-                let is_last = at[0] + 2.0 * text > end;
-                let (aside, anchor) = match is_last {
-                    true => (-0.85 * text, Anchor::End),
-                    false => (0.85 * text, Anchor::Start),
-                };
-                let beside = [at[0] + aside, at[1] - 0.5 * text];
-                canvas.text(beside, 0.8 * text, anchor, &number.to_string());
-            }
-            for (i, (&corners, &(t, value))) in place.insets.iter().zip(&spots).enumerate() {
-                let [[left, top], [right, _]] = corners;
-                // An inset shows some seven triangles across, and is larger in scale than the whole mesh.
-                let scale = f64::from(right - left) / (7.0 * self.longest_edge(panel, t));
-                let scale = if scale.is_finite() { scale } else { place.frame.scale };
-                let scale = scale.max(2.5 * place.frame.scale);
-                let frame = Frame::around(self.middle(panel, t), scale, corners);
-                canvas.clip(Some(corners));
-                self.draw_mesh(panel, &frame, text, canvas);
-                self.outline(panel, t, &frame, text, canvas);
-                canvas.clip(None);
-                around(corners, text, canvas);
-                scale_bar(&frame, text, canvas);
-                let measure = self.colors.measure();
-                let unit = measure.definition().unit;
-                let name = format!("{}: {measure} {}{unit}", i + 1, fit8(value));
-                canvas.text(
-                    [left + 0.5 * text, top + 1.2 * text],
-                    0.8 * text,
-                    Anchor::Start,
-                    &name,
-                );
-            }
-            let [x, y] = place.title;
-            let name = end_within(&panel.title[0], place.width, text, canvas);
-            canvas.text([x, y], text, Anchor::Start, &name);
-            canvas.text([x, y + 1.25 * text], 0.85 * text, Anchor::Start, &panel.title[1]);
+            self.draw_panel(panel, place, layout, canvas);
         }
-        self.draw_legend(layout, canvas);
+        let (corner, legend) = &layout.legend;
+        legend.draw(self.colors, *corner, layout.text, canvas);
+    }
+
+    fn draw_panel(
+        &self,
+        panel: &Panel<'_>,
+        place: &Place,
+        layout: &Layout,
+        canvas: &mut dyn Canvas,
+    ) {
+        let (frame, text) = (&place.frame, layout.text);
+        let spots = self.spots(panel, frame, text);
+        let marks: Vec<Point> =
+            spots.iter().map(|&(t, _)| frame.place(self.middle(panel, t))).collect();
+        if self.part.is_some() {
+            canvas.clip(Some(frame.corners));
+        }
+        self.draw_mesh(panel, frame, text, canvas);
+        marks.iter().for_each(|&at| worst(at, text, canvas));
+        let mut bounds = [[0.0; 2], layout.size.map(|x| x as f32)];
+        if self.part.is_some() {
+            canvas.clip(None);
+            around(frame.corners, text, canvas);
+            bounds = frame.corners;
+        }
+        // Numbers are drawn after all rings, so that no ring hides a number.
+        for (number, at) in (1..).zip(marks) {
+            ring_number(number, at, bounds, text, canvas);
+        }
+        for (i, (&corners, &(t, value))) in place.insets.iter().zip(&spots).enumerate() {
+            let [[left, _], [right, _]] = corners;
+            // An inset shows some seven triangles across, and is larger in scale than the whole mesh.
+            let scale = f64::from(right - left) / (7.0 * self.longest_edge(panel, t));
+            let scale = if scale.is_finite() { scale } else { frame.scale };
+            let scale = scale.max(2.5 * frame.scale);
+            let frame = Frame::around(self.middle(panel, t), scale, corners);
+            canvas.clip(Some(corners));
+            self.draw_mesh(panel, &frame, text, canvas);
+            self.outline(panel, t, &frame, text, canvas);
+            canvas.clip(None);
+            around(corners, text, canvas);
+            scale_bar(&frame, text, canvas);
+            draw_name(&self.inset_name(i + 1, value), corners, text, canvas);
+        }
+        draw_heading(&panel.title, place, text, canvas);
+    }
+
+    /// Returns the lines and marks that occur, for the legend.
+    fn symbols(&self) -> Vec<Symbol> {
+        let Outlines { between_regions, held, slid, .. } = &self.outlines;
+        let is_bad = |panel: &Panel<'_>| panel.goodness.iter().any(|&goodness| goodness < 0.0);
+        let has_worst = self.panels.iter().any(|panel| !panel.worst.is_empty());
+        let occurs = |occurs: bool, symbol: Symbol| occurs.then_some(symbol);
+        let symbols = [
+            Some(Symbol::Boundary),
+            occurs(!between_regions.is_empty(), Symbol::BetweenRegions),
+            occurs(!held.is_empty(), Symbol::Held),
+            occurs(!slid.is_empty(), Symbol::Slid),
+            self.faces.name().map(Symbol::Face),
+            occurs(self.panels.iter().any(is_bad), Symbol::Bad),
+            occurs(has_worst, Symbol::Worst),
+            occurs(self.with_arrows, Symbol::Displacement),
+        ];
+        symbols.into_iter().flatten().collect()
+    }
+
+    /// Returns the forms of the name of an enlarged triangle, longest first.
+    fn inset_name(&self, number: usize, value: f64) -> [String; 2] {
+        let measure = self.colors.measure();
+        let value = format!("{}{}", fit8(value), measure.definition().unit);
+        [format!("{number}: {measure} {value}"), format!("{number}: {value}")]
     }
 
     /// Returns the worst triangles whose marks do not overlap.
@@ -207,145 +243,33 @@ impl Scene<'_> {
         let places = self.outlines.slid.iter().map(|&v| place(v)).filter(|at| shown(&[*at]));
         places.filter(|&at| taken.insert(square(at))).for_each(|at| slid(at, text, canvas));
     }
+}
 
-    fn draw_legend(&self, layout: &Layout, canvas: &mut dyn Canvas) {
-        let (([left, top], width), text) = (layout.legend, layout.text);
-        let definition = self.colors.measure().definition();
-        let bar = (0.45 * width).max(20.0 * text).min(width);
-        let (high, small) = (text, 0.8 * text);
-        let ideal = format!("{}{}", short(definition.ideal), definition.unit);
-        let name = format!("{}, {ideal} is best", definition.name);
-        canvas.text([left, top], small, Anchor::Start, &name);
-        let upper = top + 0.4 * text;
-        let steps = 128;
-        for step in 0..steps {
-            let [from, to] = [step, step + 1].map(|i| left + bar * i as f32 / steps as f32);
-            let color = color::of_goodness((step as f32 + 0.5) / steps as f32);
-            // Steps overlap by a pixel to leave no seams.
-            let to = if step + 1 < steps { to + 1.0 } else { to };
-            canvas.rectangle([[from, upper], [to, upper + high]], color);
-        }
-        for (value, name) in self.colors.ticks() {
-            let x = left + bar * self.colors.goodness(value);
-            let mark = [[x, upper + high], [x, upper + high + 0.25 * text]];
-            canvas.lines(&[mark], (text / 16.0).max(0.8), BLACK, 1.0);
-            let anchor = match x {
-                x if x <= left => Anchor::Start,
-                x if x >= left + bar => Anchor::End,
-                _ => Anchor::Middle,
-            };
-            canvas.text([x, upper + high + 1.15 * text], small, anchor, &name);
-        }
-        self.draw_signs(layout, [left + bar + 2.0 * text, upper], canvas);
-    }
-
-    /// Draws the legend of lines and marks that occur, in two columns beside the scale.
-    fn draw_signs(&self, layout: &Layout, [left, top]: Point, canvas: &mut dyn Canvas) {
-        let (text, small) = (layout.text, 0.8 * layout.text);
-        type Sign = fn(Point, f32, &mut dyn Canvas);
-        let boundary: Sign = |[x, y], text, canvas| {
-            let line = [[x - 0.7 * text, y], [x + 0.7 * text, y]];
-            canvas.lines(&[line], boundary_width(text), BLACK, 1.0);
-        };
-        let between: Sign = |[x, y], text, canvas| {
-            between_regions(&[[[x - 0.7 * text, y], [x + 0.7 * text, y]]], text, canvas);
-        };
-        let bad: Sign = |[x, y], text, canvas| {
-            let half = 0.4 * text;
-            canvas.rectangle([[x - half, y - half], [x + half, y + half]], BAD);
-        };
-        let face: Sign = |[x, y], text, canvas| {
-            let half = 0.4 * text;
-            canvas.rectangle([[x - half, y - half], [x + half, y + half]], NEUTRAL);
-        };
-        let is_bad = |panel: &Panel<'_>| panel.goodness.iter().any(|&goodness| goodness < 0.0);
-        let signs = [
-            (true, boundary, "boundary"),
-            (!self.outlines.between_regions.is_empty(), between, "between regions"),
-            (!self.outlines.held.is_empty(), held as Sign, "fixed vertex inside"),
-            (!self.outlines.slid.is_empty(), slid as Sign, "vertex that slid"),
-            (!self.faces.is_empty(), face, self.faces.name().unwrap_or_default()),
-            (self.panels.iter().any(is_bad), bad, "inverted or flat"),
-            (
-                self.panels.iter().any(|panel| !panel.worst.is_empty()),
-                worst as Sign,
-                "worst triangles",
-            ),
-            (self.with_arrows, moved as Sign, "displacement"),
-        ];
-        let signs: Vec<_> = signs.into_iter().filter(|sign| sign.0).collect();
-        let rows = signs.len().div_ceil(2).max(3);
-        let [mut x, mut y] = [left, top + 0.3 * text];
-        let mut widest: f32 = 0.0;
-        for (i, (_, sign, name)) in signs.into_iter().enumerate() {
-            if i == rows {
-                x += widest + 4.0 * text;
-                y = top + 0.3 * text;
-            }
-            sign([x, y], text, canvas);
-            canvas.text([x + 1.3 * text, y + 0.3 * text], small, Anchor::Start, name);
-            widest = widest.max(canvas.width(small, name));
-            y += 1.35 * text;
-        }
+/// Writes the heading of a mesh: a line that is shortened to the width of the panel, and lines that are broken.
+fn draw_heading(title: &[String; 2], place: &Place, text: f32, canvas: &mut dyn Canvas) {
+    let [x, y] = place.title;
+    let name = end_within(&title[0], place.width, &|name| canvas.width(text, name));
+    canvas.text([x, y], text, Anchor::Start, &name);
+    let small = SMALL * text;
+    let lines = wrapped(&title[1], place.width, &|line| canvas.width(small, line));
+    for (i, line) in (0u16..).zip(lines) {
+        let y = y + 1.25 * text + LINE * text * f32::from(i);
+        canvas.text([x, y], small, Anchor::Start, &line);
     }
 }
 
-fn boundary_width(text: f32) -> f32 {
-    (text / 14.0).max(1.0)
-}
-
-/// Draws edges between regions: a white line on a black one.
-fn between_regions(segments: &[[Point; 2]], text: f32, canvas: &mut dyn Canvas) {
-    canvas.lines(segments, (text / 5.0).max(3.5), BLACK, 1.0);
-    canvas.lines(segments, (text / 12.0).max(1.5), WHITE, 1.0);
-}
-
-/// Draws a frame around an inset, or around the drawn part of a mesh.
-fn around([[left, top], [right, bottom]]: [Point; 2], text: f32, canvas: &mut dyn Canvas) {
-    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    let sides = [0, 1, 2, 3].map(|i: usize| [corners[i], corners[(i + 1) % 4]]);
-    canvas.lines(&sides, text / 16.0, BLACK, 1.0);
-}
-
-/// Draws a bar of a round length, with the length in units of the mesh, at the lower left of an inset.
-fn scale_bar(frame: &Frame, text: f32, canvas: &mut dyn Canvas) {
-    let [[left, top], [right, bottom]] = frame.corners;
-    let Some(length) = round_length(f64::from(right - left) / (3.0 * frame.scale)) else { return };
-    let (width, y) = ((length * frame.scale) as f32, bottom - 0.6 * text);
-    if bottom - top < 4.0 * text {
-        return;
-    }
-    let from = left + 0.6 * text;
-    let bar = [[[from, y], [from + width, y]]];
-    canvas.lines(&bar, 0.35 * text, WHITE, 1.0);
-    canvas.lines(&bar, 0.15 * text, BLACK, 1.0);
-    canvas.text([from, y - 0.5 * text], 0.7 * text, Anchor::Start, &length_text(length));
-}
-
-/// Returns the largest of 1, 2 and 5 times a power of ten up to `most`; `None` if `most` is not a positive number.
-fn round_length(most: f64) -> Option<f64> {
-    if !(most > 0.0 && most.is_finite()) {
-        return None;
-    }
-    let power = 10_f64.powi(most.log10().floor() as i32);
-    [5.0, 2.0, 1.0].map(|factor| factor * power).into_iter().find(|&length| length <= most)
-}
-
-fn length_text(length: f64) -> String {
-    match (1e-3..1e5).contains(&length) {
-        true => short(length),
-        false => format!("{:e}", length as f32),
-    }
-}
-
-/// Returns the end of a text that is at most `width` pixels wide. Dots replace the beginning.
-fn end_within(name: &str, width: f32, size: f32, canvas: &dyn Canvas) -> String {
-    let mut shown = name.to_owned();
-    let mut rest = name.chars();
-    while canvas.width(size, &shown) > width && rest.next().is_some() {
-        shown = format!("...{}", rest.as_str());
-    }
-    shown
+/// Writes the first of some names that fits an inset, or the last one in smaller letters.
+fn draw_name(
+    names: &[String; 2],
+    [[left, top], [right, _]]: [Point; 2],
+    text: f32,
+    canvas: &mut dyn Canvas,
+) {
+    let (size, width) = (0.8 * text, right - left - text);
+    let [long, short] = names;
+    let name = if canvas.width(size, long) <= width { long } else { short };
+    let size = size * (width / canvas.width(size, name)).min(1.0);
+    canvas.text([left + 0.5 * text, top + 1.2 * text], size, Anchor::Start, name);
 }
 
 /// Returns whether points, or segments between them, may be visible in a rectangle, with a margin of `text` pixels.
@@ -355,29 +279,6 @@ fn is_shown(points: &[Point], corners: [Point; 2], text: f32) -> bool {
             || points.iter().all(|point| point[axis] > corners[1][axis] + text)
     };
     !beyond(0) && !beyond(1)
-}
-
-/// Draws an example of a displacement arrow for the legend.
-fn moved([x, y]: Point, text: f32, canvas: &mut dyn Canvas) {
-    arrows::draw(std::iter::once([[x - 0.7 * text, y], [x + 0.7 * text, y]]), text, canvas);
-}
-
-/// Draws a vertex that must not move.
-fn held(at: Point, text: f32, canvas: &mut dyn Canvas) {
-    canvas.disc(at, text / 6.5, BLACK);
-    canvas.disc(at, text / 12.0, WHITE);
-}
-
-/// Draws a vertex that slid along its line.
-fn slid(at: Point, text: f32, canvas: &mut dyn Canvas) {
-    canvas.disc(at, text / 6.5, WHITE);
-    canvas.disc(at, text / 9.0, BLACK);
-}
-
-/// Draws a mark around a bad triangle.
-fn worst(at: Point, text: f32, canvas: &mut dyn Canvas) {
-    canvas.ring(at, 0.6 * text, text / 4.0, WHITE);
-    canvas.ring(at, 0.6 * text, text / 10.0, BLACK);
 }
 
 /// Returns the smallest altitude of a triangle.
