@@ -38,18 +38,8 @@ impl Report {
             let _ = writeln!(text, "{name:<14}{before:>12}{after:>12}");
         }
         let _ = writeln!(text, "\n{}", self.ending());
-        let _ = writeln!(text, "{}", self.moves());
-        for spacing in spacing_sentences(&self.spacing) {
-            let _ = writeln!(text, "{spacing}");
-        }
-        if let Some(slides) = self.slides() {
-            let _ = writeln!(text, "{slides}");
-        }
-        if let Some(floored) = &self.floored {
-            let _ = writeln!(text, "{}", floored.sentence());
-        }
-        if let Some(improved) = &self.improved {
-            let _ = writeln!(text, "{}", improved.sentence());
+        for sentence in self.sentences() {
+            let _ = writeln!(text, "{sentence}");
         }
         if let Some(warning) = self.warning() {
             let _ = writeln!(text, "{warning}");
@@ -64,6 +54,17 @@ impl Report {
         }
         let _ = write!(text, "; total {total:.3} s");
         text
+    }
+
+    /// Returns the sentences of the summary after its ending: how vertices moved and slid, and how the worst triangles and the
+    /// distances from walls changed.
+    pub(crate) fn sentences(&self) -> Vec<String> {
+        let mut sentences = vec![self.moves()];
+        sentences.extend(spacing_sentences(&self.spacing));
+        sentences.extend(self.slides());
+        sentences.extend(self.floored.as_ref().map(|floored| floored.sentence()));
+        sentences.extend(self.improved.as_ref().map(|improved| improved.sentence()));
+        sentences
     }
 
     /// Describes the size of the mesh, the engine, the scheme and the untangling.

@@ -100,8 +100,8 @@ fn a_browser_draws_the_mesh_and_follows_links() {
     }
     assert_holds(&dom, &["linear-gradient(to right, rgb(68,1,84)"]);
 
-    // Yellow is the good end of the color scale.
-    let is_good = |[r, g, b]: [u8; 3]| r > 200 && g > 200 && b < 80;
+    // Yellow is the good end of the color scale, and yellowish green is near.
+    let is_good = |[r, g, b]: [u8; 3]| r > 150 && g > 200 && b < 80;
     for size in [[1200, 1100], [420, 1400]] {
         let whole = picture(&folder, "", LIGHT, size);
         assert_eq!(whole.width, size[0]);
@@ -132,11 +132,12 @@ fn a_browser_prints_the_values_and_the_place_of_the_triangle_under_the_pointer()
     let told: Value = serde_json::from_str(&told).unwrap();
     let worst = &told["worst"][1];
     // The link moves the middle of the view to the middle of the triangle.
-    let script = "const canvas = document.querySelector('canvas'), box = canvas.getBoundingClientRect();
-        canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2 }));
-        return document.getElementById('hovered').textContent;";
-    let text = result_of(&folder, script, "#spot-1");
-    let words: Vec<&str> = text.as_str().unwrap().split_whitespace().collect();
+    let script = format!("{POINT} point(0.5, 0.5); return [textOf('#tip'), ids[marked]];");
+    let result = result_of(&folder, &script, "#spot-1");
+    assert_eq!(result[1], worst["triangle"]);
+    let text = result[0].as_str().unwrap();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    assert_eq!(words[..2], ["triangle", &worst["triangle"].to_string()], "{text}");
     let after = |name: &str| {
         let word = words[1 + words.iter().position(|word| *word == name).unwrap()];
         word.trim_end_matches('°').parse::<f64>().unwrap()
@@ -148,9 +149,131 @@ fn a_browser_prints_the_values_and_the_place_of_the_triangle_under_the_pointer()
     for axis in 0..2 {
         let corners = worst["corners"].as_array().unwrap();
         let middle = corners.iter().map(|corner| number(&corner[axis]) / 3.0).sum::<f64>();
-        let shown: f64 = words[axis].parse().unwrap();
+        let shown: f64 = words[words.len() - 2 + axis].parse().unwrap();
         assert!((shown - middle).abs() < 1e-5, "{middle} in {text}");
     }
+}
+
+/// Functions of scripts: `point` moves the pointer to a place of the first view, as shares of its width and height, and
+/// `textOf` returns the text of an element, with a blank between its parts, or null if the element is hidden.
+const POINT: &str = "
+    const textOf = (selector) => {
+      const element = document.querySelector(selector);
+      if (!element || element.hidden) return null;
+      const texts = document.createTreeWalker(element, NodeFilter.SHOW_TEXT), words = [];
+      while (texts.nextNode()) words.push(texts.currentNode.data);
+      return words.join(' ');
+    };
+    const move = (element, type, x, y) => {
+      const { left, top, width, height } = element.getBoundingClientRect();
+      element.dispatchEvent(new PointerEvent(type, { bubbles: true, clientX: left + x * width, clientY: top + y * height }));
+    };
+    const point = (x, y) => move(document.querySelector('canvas'), 'pointermove', x, y);";
+
+#[test]
+#[ignore = "needs a browser: GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored"]
+fn the_values_are_those_of_the_pointer_or_of_the_chosen_triangle() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    folder.line(&format!("{plate} out --engine cpu --html page.html")).clean();
+    let script = format!(
+        "{POINT}
+        const results = [textOf('#tip')];
+        point(0.12, 0.15);
+        results.push(textOf('#tip'));
+        const link = document.querySelectorAll('a[href^=\"#spot-\"]')[9];
+        link.click();
+        link.click();
+        redrawNow();
+        results.push(link.textContent, textOf('#tip'), tip.parentElement.querySelector('canvas').ariaLabel);
+        point(0.8, 0.6);
+        results.push(textOf('#tip'));
+        move(document.querySelector('canvas'), 'pointerleave', 0, 0);
+        results.push(textOf('#tip'));
+        document.getElementById('all').click();
+        redrawNow();
+        return [...results, textOf('#tip')];"
+    );
+    let results = result_of(&folder, &script, "");
+    let text = |i: usize| results[i].as_str().unwrap_or_else(|| panic!("{results}"));
+    // Nothing is shown at first, nor of the whole mesh after the pointer has left.
+    assert!(results[0].is_null() && results[7].is_null(), "{results}");
+    let chosen = format!("triangle {} ", text(2));
+    assert!(text(3).starts_with(&chosen) && text(6) == text(3), "{results}");
+    assert_eq!(text(4), "the mesh after the run");
+    for other in [text(1), text(5)] {
+        assert!(other.starts_with("triangle ") && !other.starts_with(&chosen), "{results}");
+        assert_holds(other, &["before after shape ", " min-angle "]);
+    }
+}
+
+#[test]
+#[ignore = "needs a browser: GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored"]
+fn charts_show_their_values_at_the_pointer() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    folder.line(&format!("{plate} out --engine cpu --report r.json --html page.html")).clean();
+    let script = format!(
+        "{POINT}
+        const show = (figure, i) => {{
+          const hit = [...figure.querySelectorAll('.hit')].at(i);
+          move(hit, 'pointermove', 0.5, 0.5);
+          return [textOf('#tip'), hit.closest('figure').contains(tip)];
+        }};
+        const figures = [...document.querySelectorAll('.charts figure')];
+        return [show(figures[0], -1), show(figures[3], -1), document.querySelectorAll('svg title').length];"
+    );
+    let results = result_of(&folder, &script, "");
+    let history = &folder.json("r.json")["history"];
+    let last = history.as_array().unwrap().last().unwrap();
+    let bar = results[0][0].as_str().unwrap();
+    assert!(bar.starts_with("0.9 to 1\nbefore: ") && bar.contains(" %)\nafter: "), "{bar}");
+    let f = number(&last["f"]);
+    assert_eq!(results[1][0], format!("sweep {}: {f:.6}", last["sweep"]));
+    assert_eq!(
+        [&results[0][1], &results[1][1], &results[2]],
+        [&Value::from(true), &true.into(), &0.into()]
+    );
+}
+
+#[test]
+#[ignore = "needs a browser: GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored"]
+fn the_overview_of_several_meshes_sorts_by_each_column() {
+    let folder = Folder::new(&[]);
+    for (name, amount, side) in [("b2", 0.1, 6), ("b10", 0.9, 8), ("a", 0.5, 7)] {
+        let mesh = support::perturb_random(&support::lattice(side, side), amount, 3);
+        let [node, ele] = support::triangle_text(&mesh, "");
+        fs::write(folder.path(&format!("{name}.node")), node).unwrap();
+        fs::write(folder.path(&format!("{name}.ele")), ele).unwrap();
+    }
+    let line = "quality b2.node b10.node a.node -m min-angle,max-angle --html page.html";
+    folder.line(line).clean();
+    let script = "const names = () => [...document.querySelectorAll('.overview tbody tr')].map((row) => row.cells[0].textContent);
+        const buttons = [...document.querySelectorAll('.overview th button')];
+        const after = (name) => {
+          buttons.find((button) => button.textContent.startsWith(name)).click();
+          return names();
+        };
+        return [names(), after('mesh'), after('mesh'), after('triangles'), after('max-angle'), after('max-angle'),
+          document.querySelectorAll('[aria-sort]').length];";
+    let results = result_of(&folder, script, "");
+    let order = |names: [&str; 3]| serde_json::json!(names.map(|name| format!("{name}.node")));
+    let (worst, best) = (order(["b10", "a", "b2"]), order(["b2", "a", "b10"]));
+    for (i, expected) in [
+        // The page has the mesh with the least angle first.
+        &worst,
+        &order(["a", "b2", "b10"]),
+        &order(["b10", "b2", "a"]),
+        &worst,
+        &worst,
+        &best,
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        assert_eq!(results[i], *expected, "{i}: {results}");
+    }
+    assert_eq!(results[6], 1);
 }
 
 #[test]

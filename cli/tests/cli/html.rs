@@ -133,14 +133,9 @@ fn histograms_and_curves_are_of_the_run() {
     let folder = Folder::new(&[]);
     let plate = plate_path().to_str().unwrap();
     let (page, _) = page(&folder, &format!("{plate} out --report r.json --scheme edge+imr"));
-    // In both histograms, the bars before and after count all triangles.
-    let titles: Vec<&str> =
-        page.split("<title>").skip(1).map(|t| t.split('<').next().unwrap()).collect();
+    // In each of the three histograms, the bars before and after count all triangles.
     for state in ["before", "after"] {
-        let ending = format!(" triangles {state}");
-        let counts = titles.iter().filter_map(|title| title.strip_suffix(&ending));
-        let counts = counts.map(|text| text.rsplit(' ').next().unwrap().parse::<usize>().unwrap());
-        assert_eq!(counts.sum::<usize>(), 2 * 3735);
+        assert_eq!(counted(&page, &format!("\n{state}: ")), 3 * 3735);
     }
     let sweeps = folder.json("r.json")["history"].as_array().unwrap().len();
     let curve = page.split("aria-label=\"f against sweep\"").nth(1).unwrap();
@@ -150,6 +145,73 @@ fn histograms_and_curves_are_of_the_run() {
         points.split_whitespace().map(|p| p.split(',').nth(1).unwrap().parse().unwrap()).collect();
     // y grows downward in SVG: f falls from the top of the plot to its bottom.
     assert!(heights[0] < 30.0 && heights.iter().any(|y| *y > 210.0), "{heights:?}");
+    // The x axis is linear.
+    let places: Vec<f64> =
+        points.split_whitespace().map(|p| p.split(',').next().unwrap().parse().unwrap()).collect();
+    let step = (places[sweeps - 1] - places[0]) / (sweeps - 1) as f64;
+    assert!(places.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 0.11), "{places:?}");
+}
+
+/// Returns the sum of the numbers of triangles that follow a text in the titles of bars.
+fn counted(page: &str, before: &str) -> usize {
+    let titles = page.split("<title>").skip(2).map(|title| title.split('<').next().unwrap());
+    let counts = titles.filter_map(|title| title.split(before).nth(1)?.split(" triangles").next());
+    counts.map(|count| count.parse::<usize>().unwrap()).sum()
+}
+
+/// The page has each sentence and each value that the terminal has. A row of the worst imr of movable triangles belongs to
+/// the row above.
+#[test]
+fn a_page_has_the_summary_of_the_terminal() {
+    let folder = small();
+    let run = folder.line("in out --engine cpu --fix-box 0,0,4,4 --html page.html");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let page = folder.text("page.html");
+    assert_holds(&run.out, &["\n  of movable ", "\nvertices moved "]);
+    assert_holds(&page, &["<th class=\"under\">of movable</th>"]);
+    let times = |line: &&str| !line.starts_with("read ");
+    for line in run.out.lines().filter(times) {
+        // Columns are apart by several blanks, sentences have none.
+        for part in line.split("  ").filter(|part| !part.is_empty()) {
+            let part = part.trim().replace('"', "&quot;").replace('\'', "&#39;");
+            assert!(page.contains(&format!(">{part}<")), "{part} of {line}");
+        }
+    }
+}
+
+/// The legend of a page names what the mesh has.
+#[test]
+fn the_legend_has_no_symbol_that_the_mesh_lacks() {
+    let folder = small();
+    let [node, ele] = super::output::INVERTED;
+    fs::write(folder.path("bad.node"), node).unwrap();
+    fs::write(folder.path("bad.ele"), ele).unwrap();
+    let signs = |args: &str| {
+        let (page, _) = page_of(&folder, args);
+        let keys = page.split("<ul class=\"keys\">").nth(1).unwrap();
+        let keys = keys.split("</ul>").next().unwrap();
+        let names = keys.split("</span>").skip(1).map(|key| key.split('<').next().unwrap());
+        names.map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(signs("quality in.node --worst 0"), ["boundary"]);
+    assert_eq!(signs("quality in.node"), ["boundary", "among the worst"]);
+    assert_eq!(signs("quality bad.node --worst 0"), ["boundary", "inverted or flat"]);
+    assert_eq!(signs("in out --engine cpu"), ["boundary", "among the worst"]);
+    let fixed = signs("in out --engine cpu --force --fix-box 2,2,3,3");
+    assert_eq!(fixed, ["boundary", "fixed vertex inside", "among the worst"]);
+}
+
+/// The box at the pointer has the ids of the file.
+#[test]
+fn a_page_has_the_numbers_that_the_file_gives_to_triangles() {
+    let nodes = "1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0.6 0.5 0\n";
+    let triangles = "7 2 2 1 1 1 2 5\n8 2 2 1 1 2 3 5\n90 2 2 1 1 3 4 5\n12 2 2 1 1 4 1 5\n";
+    let mesh = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n{nodes}$EndNodes\n$Elements\n4\n{triangles}$EndElements\n"
+    );
+    let folder = Folder::new(&[("in.msh", &*mesh)]);
+    let (_, data) = page(&folder, "in.msh out.msh");
+    assert_eq!(data["ids"], serde_json::json!([[0, 7], [2, 90], [3, 12]]));
 }
 
 #[test]
@@ -195,31 +257,40 @@ fn a_page_without_a_run_shows_one_mesh() {
     }
     assert_eq!(list.matches("href=\"#spot-").count(), 7);
     assert_eq!(page.matches("<svg").count(), 2);
-    let bars = page.split("<title>").skip(2).filter_map(|title| title.split(" triangles<").next());
-    let bars = bars.filter_map(|title| title.rsplit(' ').next()?.parse::<usize>().ok());
-    assert_eq!(bars.sum::<usize>(), 2 * 160);
+    assert_eq!(counted(&page, "\n"), 2 * 160);
     let statistics = page.split("<h2>Statistics</h2>").nth(1).unwrap();
     assert_eq!(statistics.matches("<tr>").count(), 3, "a head and two measures");
 }
 
 #[test]
-fn a_page_of_several_meshes_has_a_picture_of_each_and_one_table() {
+fn a_page_of_several_meshes_has_an_overview_and_a_picture_of_each() {
     let folder = small();
     folder.line("in out --engine cpu").clean();
-    let run = folder.line("quality in.node out.node none.node --html page.html");
+    let run = folder.line("quality out.node in.node none.node --html page.html");
     assert_eq!(run.code, Some(3));
     assert_holds(&run.err, &["none.node: "]);
     let page = folder.text("page.html");
     assert_holds(&page, &["<h1>Quality of 2 meshes</h1>", "<h2>in.node</h2>", "<h2>out.node</h2>"]);
     assert_eq!(page.matches("<img src=\"data:image/png;base64,").count(), 2);
-    assert!(!page.contains("<script") && !page.contains("#spot-"), "there is no viewer");
-    let statistics = page.split("<h2>Statistics</h2>").nth(1).unwrap();
-    let statistics = statistics.split("</table>").next().unwrap();
-    for name in ["in.node", "out.node"] {
-        let rows = statistics.matches(&format!("<td class=\"state\">{name}</td>")).count();
-        let own = Measure::ALL.iter().filter(|measure| measure.equal_to().is_none());
-        assert_eq!(rows, own.count());
-    }
+    assert!(!page.contains("<canvas") && !page.contains("#spot-"), "there is no viewer");
+    // The overview is the first section, and has the worse mesh first, with links to the sections.
+    let overview = page.split("<section").nth(1).unwrap();
+    assert_holds(overview, &["<h2>Overview</h2>", "<td data-key=\"-160\">160</td>"]);
+    let [first, second] = ["<a href=\"#mesh-2\">in.node</a>", "<a href=\"#mesh-1\">out.node</a>"]
+        .map(|a| overview.find(a));
+    assert!(first.is_some() && first < second, "{overview}");
+    assert_holds(
+        &page,
+        &["<section id=\"mesh-1\"><h2>out.node", "<section id=\"mesh-2\"><h2>in.node"],
+    );
+    let own = Measure::ALL.iter().filter(|measure| measure.equal_to().is_none()).count();
+    assert_eq!(overview.matches("<th data-sort=\"number\"").count(), 2 + own);
+    let told: Value =
+        serde_json::from_str(&folder.line("quality in.node --json").clean().out).unwrap();
+    let worst = told["min_angle"].as_f64().unwrap_or_else(|| panic!("{told}"));
+    assert_holds(overview, &[&format!("<td data-key=\"{worst}\">")]);
+    // Each section has the statistics of its mesh.
+    assert_eq!(page.matches("aria-label=\"statistics\"").count(), 2);
 }
 
 #[test]

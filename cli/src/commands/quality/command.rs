@@ -75,7 +75,13 @@ fn entry(quality: &MeshQuality, is_alone: bool) -> Option<PageEntry<'_>> {
         true => path.file_name().unwrap_or_default().display().to_string(),
         false => path.display().to_string(),
     };
-    Some(PageEntry { name, part: quality.page.as_ref()?, statistics: &quality.statistics })
+    Some(PageEntry {
+        name,
+        triangles: quality.triangles,
+        bad: quality.report.inverted,
+        part: quality.page.as_ref()?,
+        statistics: &quality.statistics,
+    })
 }
 
 /// Returns a sentence for each threshold that triangles of a mesh violate.

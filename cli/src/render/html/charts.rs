@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::render::html::page::escape;
-use crate::terminal::numbers::fit8;
+use crate::terminal::numbers::{fit8, sig6};
 
 /// Width and height of a chart in pixels, before the page scales the chart to the window.
 const WIDTH: f64 = 420.0;
@@ -11,11 +11,44 @@ const HEIGHT: f64 = 250.0;
 /// Space around the plot for numbers and names: left, right, top, bottom.
 const MARGIN: [f64; 4] = [58.0, 14.0, 26.0, 36.0];
 
+/// Width of a letter of a label in pixels, estimated from above.
+const LETTER: f64 = 7.5;
+/// Least width of the part of a chart in which the pointer shows the values of one point, in pixels.
+const LEAST_HIT: f64 = 2.0;
+/// Largest number of points with dots.
+const MOST_DOTS: usize = 60;
+
+/// The quantity along the x axis of a chart of points.
+#[derive(Clone, Copy)]
+pub(crate) enum Unit {
+    /// A number of things, by the name of one.
+    Count(&'static str),
+    /// A quantity in a unit.
+    Measured(&'static str),
+}
+
+impl Unit {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Count(name) | Self::Measured(name) => name,
+        }
+    }
+
+    fn described(self, x: f64) -> String {
+        match self {
+            Self::Count(name) => format!("{name} {x}"),
+            Self::Measured(unit) => format!("{} {unit}", tick(x)),
+        }
+    }
+}
+
 /// A scale of one axis.
 struct Axis {
     low: f64,
     high: f64,
     log: bool,
+    /// Whether ticks are at integers only.
+    counts: bool,
     /// Pixel coordinates of `low` and `high`.
     from: f64,
     to: f64,
@@ -34,7 +67,7 @@ impl Axis {
             let half = if low == 0.0 { 1.0 } else { 0.05 * low.abs() };
             (low, high) = (low - half, high + half);
         }
-        Self { low, high, log, from, to }
+        Self { low, high, log, counts: false, from, to }
     }
 
     fn place(&self, x: f64) -> f64 {
@@ -60,8 +93,9 @@ impl Axis {
         }
         let rough = (self.high - self.low) / 4.0;
         let unit = 10f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 2.5, 5.0, 10.0].map(|n| n * unit).into_iter().find(|s| *s >= rough);
-        let step = step.unwrap_or(rough);
+        let is_usable = |step: &f64| *step >= rough && (!self.counts || step.fract() == 0.0);
+        let step = [1.0, 2.0, 2.5, 5.0, 10.0].map(|n| n * unit).into_iter().find(is_usable);
+        let step = step.unwrap_or(if self.counts { 1.0 } else { rough });
         let first = (self.low / step - 1e-9).ceil() as i64;
         let ticks = (first..).map(|i| i as f64 * step);
         ticks.take_while(|x| *x <= self.high + 1e-9 * step).take(12).collect()
@@ -80,12 +114,13 @@ fn x_axis(from: f64, to: f64) -> [f64; 2] {
     [from + MARGIN[0], to - MARGIN[1]]
 }
 
-/// Draws a tick with a label below the plot.
+/// Draws a tick with a label below the plot. The label of a tick near the end of the chart is moved inside.
 fn below(text: &mut String, x: f64, name: &str) {
     let bottom = HEIGHT - MARGIN[3];
+    let middle = x.min(WIDTH - 0.5 * LETTER * name.chars().count() as f64);
     let _ = write!(
         text,
-        "<line class=\"tick\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{bottom}\" y2=\"{:.1}\"/><text class=\"number\" text-anchor=\"middle\" x=\"{x:.1}\" y=\"{:.1}\">{}</text>",
+        "<line class=\"tick\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{bottom}\" y2=\"{:.1}\"/><text class=\"number\" text-anchor=\"middle\" x=\"{middle:.1}\" y=\"{:.1}\">{}</text>",
         bottom + 4.0,
         bottom + 16.0,
         escape(name)
@@ -116,21 +151,27 @@ fn tick(x: f64) -> String {
     }
 }
 
-/// Draws a polyline through points, with a mark at each point if there are at most 60. `log` selects a logarithmic x
-/// and y axis.
-///
-/// A logarithmic axis cannot show `x` = 0, so that point is drawn at half the smallest positive `x`.
-pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]) -> String {
-    let least =
-        points.iter().map(|point| point[0]).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
-    let zero = if log[0] { least / 2.0 } else { 0.0 };
-    let points: Vec<[f64; 2]> =
-        points.iter().map(|&[x, y]| [if x == 0.0 { zero } else { x }, y]).collect();
+/// Draws a part of a chart, over its whole height, in which the pointer shows a text.
+fn hit(text: &mut String, [from, to]: [f64; 2], about: &str) {
+    let _ = write!(
+        text,
+        "<rect class=\"hit\" x=\"{from:.1}\" y=\"{}\" width=\"{:.1}\" height=\"{}\"><title>{}</title></rect>",
+        MARGIN[2],
+        to - from,
+        HEIGHT - MARGIN[2] - MARGIN[3],
+        escape(about)
+    );
+}
+
+/// Draws a polyline through points in ascending order of x, with a logarithmic y axis, and a dot at each point if there are
+/// few. The pointer shows the values of the nearest point.
+pub(crate) fn lines(title: &str, unit: Unit, points: &[[f64; 2]]) -> String {
     let mut text = open(title);
     let [left, right] = x_axis(0.0, WIDTH);
     let (top, bottom) = (MARGIN[2], HEIGHT - MARGIN[3]);
-    let shown = || points.iter().filter(|[x, y]| x.is_finite() && y.is_finite());
-    if shown().count() < 2 {
+    let is_shown = |[x, y]: &[f64; 2]| x.is_finite() && y.is_finite() && *y > 0.0;
+    let points: Vec<[f64; 2]> = points.iter().copied().filter(is_shown).collect();
+    if points.len() < 2 {
         let _ = write!(
             text,
             "<text class=\"number\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">too few sweeps to draw</text></svg></figure>",
@@ -139,36 +180,33 @@ pub(crate) fn lines(title: &str, unit: &str, points: &[[f64; 2]], log: [bool; 2]
         );
         return text;
     }
-    let x = Axis::new(shown().map(|point| point[0]), log[0], left, right);
-    let y = Axis::new(shown().map(|point| point[1]), log[1], bottom, top);
+    let mut x = Axis::new(points.iter().map(|point| point[0]), false, left, right);
+    x.counts = matches!(unit, Unit::Count(_));
+    let y = Axis::new(points.iter().map(|point| point[1]), true, bottom, top);
     y.ticks().into_iter().for_each(|value| across(&mut text, y.place(value), &tick(value)));
-    // The state before the first sweep has `x` = 0.
-    let has_zero = log[0] && x.low == zero;
-    if has_zero {
-        below(&mut text, x.place(zero), "0");
-    }
-    let is_apart = |&value: &f64| !has_zero || value >= 0.9 * least;
-    let ticks = x.ticks().into_iter().filter(is_apart);
-    ticks.for_each(|value| below(&mut text, x.place(value), &tick(value)));
+    x.ticks().into_iter().for_each(|value| below(&mut text, x.place(value), &tick(value)));
     let _ = write!(
         text,
         "<line class=\"axis\" x1=\"{left}\" x2=\"{right}\" y1=\"{bottom}\" y2=\"{bottom}\"/><text class=\"number\" text-anchor=\"end\" x=\"{right}\" y=\"{:.1}\">{}</text><polyline class=\"line\" points=\"",
         HEIGHT - 4.0,
-        escape(unit)
+        escape(unit.name())
     );
-    for [a, b] in shown() {
-        let _ = write!(text, "{:.1},{:.1} ", x.place(*a), y.place(*b));
+    let places: Vec<[f64; 2]> = points.iter().map(|[a, b]| [x.place(*a), y.place(*b)]).collect();
+    for [a, b] in &places {
+        let _ = write!(text, "{a:.1},{b:.1} ");
     }
     text += "\"/>";
-    if points.len() <= 60 {
-        for [a, b] in shown() {
-            let _ = write!(
-                text,
-                "<circle class=\"dot\" cx=\"{:.1}\" cy=\"{:.1}\" r=\"3\"><title>{unit} {}: {b}</title></circle>",
-                x.place(*a),
-                y.place(*b),
-                tick(if *a == zero { 0.0 } else { *a })
-            );
+    if points.len() <= MOST_DOTS {
+        for [a, b] in &places {
+            let _ = write!(text, "<circle class=\"dot\" cx=\"{a:.1}\" cy=\"{b:.1}\" r=\"3\"/>");
+        }
+    }
+    let mut from = left;
+    for (i, [a, b]) in points.iter().enumerate() {
+        let to = places.get(i + 1).map_or(right, |next| (places[i][0] + next[0]) / 2.0);
+        if to - from >= LEAST_HIT {
+            hit(&mut text, [from, to], &format!("{}: {}", unit.described(*a), sig6(*b)));
+            from = to;
         }
     }
     text + "</svg></figure>"
@@ -202,22 +240,24 @@ pub(crate) fn bars(title: &str, edges: &[f64], series: &[Series<'_>]) -> String 
     // The bars of a bin fill 84 % of its width.
     let bar = 0.84 / series.len().max(1) as f64;
     for i in 0..bins {
+        let end = if edges[i + 1].is_finite() { tick(edges[i + 1]) } else { "any".into() };
+        let mut about = format!("{} to {end}", tick(edges[i]));
         for (place, Series { class, name, counts }) in series.iter().enumerate() {
             let count = counts.get(i).copied().unwrap_or(0);
             let top = y.place(percent(count));
             let start = left + (i as f64 + 0.08 + bar * place as f64) * width;
             // A nonempty bin is at least 1 pixel high, to remain visible.
             let height = (bottom - top).max(if count > 0 { 1.0 } else { 0.0 });
-            let name = name.map(|name| format!(" {name}")).unwrap_or_default();
             let _ = write!(
                 text,
-                "<rect class=\"{class}\" x=\"{start:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{height:.1}\"><title>{} to {}: {count} triangles{name}</title></rect>",
+                "<rect class=\"{class}\" x=\"{start:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{height:.1}\"/>",
                 bottom - height,
                 bar * width,
-                tick(edges[i]),
-                if edges[i + 1].is_finite() { tick(edges[i + 1]) } else { "any".into() }
             );
+            let name = name.map(|name| format!("{name}: ")).unwrap_or_default();
+            let _ = write!(about, "\n{name}{count} triangles ({:.1} %)", percent(count));
         }
+        hit(&mut text, [left + i as f64 * width, left + (i + 1) as f64 * width], &about);
     }
     let _ = write!(
         text,
@@ -274,6 +314,25 @@ mod tests {
 
     #[test]
     fn a_run_without_sweeps_has_a_chart() {
-        assert!(lines("f", "s", &[[0.0, 1.0]], [true; 2]).contains("too few sweeps"));
+        assert!(lines("f", Unit::Measured("s"), &[[0.0, 1.0]]).contains("too few sweeps"));
+    }
+
+    /// Sweeps are counted from 0, evenly, at integers.
+    #[test]
+    fn the_first_of_many_sweeps_is_as_wide_as_the_last() {
+        for last in [2.0, 3.0, 12.0, 35.0, 1000.0] {
+            let points: Vec<[f64; 2]> = (0..=last as u32).map(|i| [f64::from(i), 2.0]).collect();
+            let mut axis = Axis::new(points.iter().map(|p| p[0]), false, 0.0, last);
+            axis.counts = true;
+            let ticks = axis.ticks();
+            assert!(ticks.len() > 2 && ticks[0] == 0.0, "{ticks:?}");
+            assert!(ticks.iter().all(|tick| tick.fract() == 0.0), "{ticks:?}");
+            assert!((axis.place(1.0) - 1.0).abs() < 1e-9);
+            // The values of each of a few points, and of one point for each two pixels.
+            let chart = lines("f", Unit::Count("sweep"), &points);
+            let hits = chart.matches("class=\"hit\"").count();
+            assert!(hits == points.len() || (100..200).contains(&hits), "{hits} of {last}");
+            assert!(chart.contains("<title>sweep 0: 2.000000</title>"), "{last}");
+        }
     }
 }

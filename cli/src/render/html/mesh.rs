@@ -156,12 +156,41 @@ pub(crate) fn viewer_mesh(
         "face": faces.name(),
         "states": both,
         "spots": corners,
+        "ids": ids(file, &shown),
     });
     let mut caption = caption(topology.triangles().len(), &faces, is_whole);
     if let Some(axes) = file.plane().and_then(axes_legend) {
         caption += &format!(" Axes: {axes}.");
     }
-    Ok(ViewerMesh { caption, faces: faces.name(), data })
+    let is_tangled = (states.iter())
+        .map(|state| Ok(!topology.bad_triangles(state.points())?.is_empty()))
+        .collect::<Result<Vec<bool>, CliError>>()?;
+    let signs = [
+        (true, "boundary", "boundary"),
+        (!between.is_empty(), "between", "between regions"),
+        (!held.is_empty(), "held", "fixed vertex inside"),
+        (!slid.is_empty(), "slid", "vertex that slid"),
+        (!faces.is_empty(), "face", faces.name().unwrap_or_default()),
+        (is_tangled.contains(&true), "bad", "inverted or flat"),
+        (!spots.is_empty(), "spot", "among the worst"),
+    ];
+    let signs = signs.into_iter().filter(|sign| sign.0).map(|(_, sign, name)| (sign, name));
+    Ok(ViewerMesh { caption, signs: signs.collect(), data })
+}
+
+/// Returns the ids that the file gives to triangles, as runs of consecutive ids: for each run, the position in `shown` of
+/// its first triangle, and the id. `shown` is ascending.
+fn ids(file: &LoadedMesh, shown: &[usize]) -> Vec<[u64; 2]> {
+    let locations = file.source.triangle_locations(shown.iter().copied());
+    let mut runs = Vec::new();
+    let mut next = None;
+    for (at, id) in (0..).zip(shown.iter().map(|t| locations[t].id)) {
+        if next != Some(id) {
+            runs.push([at, id]);
+        }
+        next = id.checked_add(1);
+    }
+    runs
 }
 
 /// Encodes a sequence of little-endian numbers in Base64.

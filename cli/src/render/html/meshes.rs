@@ -1,4 +1,5 @@
-//! `quality --html`: measured meshes as one page in a single file. A single mesh has a viewer, several have a picture each.
+//! `quality --html`: measured meshes as one page in a single file. A single mesh has a viewer. Several meshes have an overview
+//! and a picture each.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,7 +14,7 @@ use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::render::html::page::{Page, View, ViewerMesh, escape};
 use crate::render::html::tables::measure_name;
-use crate::render::html::{charts, mesh, tables, worst};
+use crate::render::html::{charts, mesh, overview, tables, worst};
 use crate::render::picture::{Extent, FixedFaces, picture_of};
 use crate::report::{Histogram, histogram};
 
@@ -89,9 +90,12 @@ impl MeshPart {
     }
 }
 
-/// A mesh of a page: name, section, and statistics for the common table.
+/// A mesh of a page: name, section, and numbers for the overview.
 pub(crate) struct PageEntry<'a> {
     pub(crate) name: String,
+    /// Number of triangles, and of those that are inverted or flat.
+    pub(crate) triangles: usize,
+    pub(crate) bad: usize,
     pub(crate) part: &'a MeshPart,
     pub(crate) statistics: &'a [Statistics],
 }
@@ -103,13 +107,14 @@ pub(crate) fn write_meshes(path: &Path, meshes: &[PageEntry<'_>]) -> Result<(), 
 }
 
 fn page(meshes: &[PageEntry<'_>]) -> String {
-    let statistics: Vec<_> = meshes.iter().map(|entry| (&*entry.name, entry.statistics)).collect();
-    let statistics = tables::statistics_of_meshes(&statistics);
-    let [PageEntry { name, part, .. }] = meshes else {
+    let notes = tables::notes(&tables::measures(meshes.first().map_or(&[], |m| m.statistics)));
+    let statistics = |entry: &PageEntry<'_>| tables::statistics_table(&[("", entry.statistics)]);
+    let [entry @ PageEntry { name, part, .. }] = meshes else {
         let mut page = Page::new(&format!("Quality of {} meshes", meshes.len()));
-        page.section("Statistics", &statistics);
-        for PageEntry { name, part, .. } in meshes {
-            page.section(name, &section(name, part));
+        page.section("Overview", &(overview::table(meshes) + &notes));
+        for (i, entry) in meshes.iter().enumerate() {
+            let content = section(entry, &statistics(entry));
+            page.linked_section(&overview::anchor(i), &entry.name, &content);
         }
         return page.finish();
     };
@@ -118,14 +123,17 @@ fn page(meshes: &[PageEntry<'_>]) -> String {
     if let MeshView::Viewer(mesh) = &part.view {
         page.mesh(mesh, View::Mesh);
     }
-    page.section("Worst triangles", &part.worst);
     page.section("Distribution", &part.charts);
-    page.section("Statistics", &statistics);
+    page.columns(&[
+        &[("Worst triangles", part.worst.clone())],
+        &[("Statistics", statistics(entry) + &notes)],
+    ]);
     page.finish()
 }
 
-/// Writes the section of one of several meshes.
-fn section(name: &str, part: &MeshPart) -> String {
+/// Writes the section of one of several meshes. `statistics` is a table.
+fn section(entry: &PageEntry<'_>, statistics: &str) -> String {
+    let PageEntry { name, part, .. } = entry;
     let mut text = String::new();
     for sentence in &part.sentences {
         let _ = write!(text, "<p>{}</p>", escape(sentence));
@@ -137,5 +145,10 @@ fn section(name: &str, part: &MeshPart) -> String {
             "<figure class=\"picture\"><img src=\"{url}\" alt=\"{about}\"><figcaption>{legend}</figcaption></figure>"
         );
     }
-    format!("{text}{}{}", part.worst, part.charts)
+    format!(
+        "<div class=\"columns drawn\"><div>{text}</div><div>{statistics}{}</div></div>{}<p><a href=\"#{}\">Overview</a></p>",
+        part.worst,
+        part.charts,
+        overview::TOP
+    )
 }

@@ -3,6 +3,7 @@
 mod charts;
 mod mesh;
 mod meshes;
+mod overview;
 mod page;
 mod run;
 mod tables;

@@ -3,7 +3,10 @@
 use serde_json::Value;
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("viewer.js");
+/// The script of every page: hover texts of charts, and tables that sort.
+const SCRIPT: &str = include_str!("page.js");
+/// The scripts of pages with a mesh viewer: drawing, and what follows the pointer.
+const VIEWER_SCRIPTS: [&str; 2] = [include_str!("viewer.js"), include_str!("pointer.js")];
 const VIEWER: &str = include_str!("viewer.html");
 
 /// The hint that a view shows if the wheel turns over it.
@@ -37,21 +40,19 @@ impl View {
         }
     }
 
-    /// Fills the template of the viewer. `faces` is the name of the fixed faces of the mesh; `None` without any.
-    fn fill(self, caption: &str, faces: Option<&str>) -> String {
-        let (class, together, slid) = match self {
-            Self::Mesh => ("one", "", ""),
-            Self::Run => (
-                "two",
-                "; both views move together",
-                "<li><span class=\"sign slid\"></span>vertex that slid</li>",
-            ),
+    /// Fills the template of the viewer for a mesh.
+    fn fill(self, mesh: &ViewerMesh) -> String {
+        let (class, together) = match self {
+            Self::Mesh => ("one", ""),
+            Self::Run => ("two", "; both views move together"),
         };
+        let sign = |(sign, name): &(&str, &str)| {
+            format!("<li><span class=\"sign {sign}\"></span>{}</li>", escape(name))
+        };
+        let signs: String = mesh.signs.iter().map(sign).collect();
         let text = VIEWER.replace("{views}", &self.figures()).replace("{class}", class);
-        let text = text.replace("{together}", together).replace("{slid}", slid);
-        let sign = |name| format!("<li><span class=\"sign face\"></span>{}</li>", escape(name));
-        let text = text.replace("{faces}", &faces.map(sign).unwrap_or_default());
-        text.replace("{caption}", &escape(caption))
+        let text = text.replace("{together}", together).replace("{signs}", &signs);
+        text.replace("{caption}", &escape(&mesh.caption))
     }
 }
 
@@ -59,11 +60,14 @@ impl View {
 pub(crate) struct ViewerMesh {
     /// One or two sentences on the drawn part of the mesh.
     pub(crate) caption: String,
-    /// Name of the quadrilaterals and polygons; `None` if the mesh has triangles alone.
-    pub(crate) faces: Option<&'static str>,
+    /// Lines and marks that the mesh has: class in the style of the page, and name.
+    pub(crate) signs: Vec<(&'static str, &'static str)>,
     /// JSON that the script draws.
     pub(crate) data: Value,
 }
+
+/// A section: title and HTML.
+pub(crate) type Section<'a> = (&'a str, String);
 
 /// A page under construction.
 pub(crate) struct Page {
@@ -86,12 +90,29 @@ impl Page {
 
     /// Adds a section; `content` is HTML.
     pub(crate) fn section(&mut self, title: &str, content: &str) {
-        self.body += &format!("<section><h2>{}</h2>\n{content}\n</section>\n", escape(title));
+        self.body += &section(title, content);
+    }
+
+    /// Adds a section to which links lead by the name `id`.
+    pub(crate) fn linked_section(&mut self, id: &str, title: &str, content: &str) {
+        self.body +=
+            &section(title, content).replacen("<section", &format!("<section id=\"{id}\""), 1);
+    }
+
+    /// Adds columns of sections, side by side in a wide window, and in order in a narrow one.
+    pub(crate) fn columns(&mut self, columns: &[&[Section<'_>]]) {
+        self.body += "<div class=\"columns\">";
+        for sections in columns {
+            let sections: String =
+                sections.iter().map(|(title, content)| section(title, content)).collect();
+            self.body += &format!("<div>{sections}</div>");
+        }
+        self.body += "</div>\n";
     }
 
     /// Adds the section with the mesh viewer.
     pub(crate) fn mesh(&mut self, mesh: &ViewerMesh, view: View) {
-        let content = view.fill(&mesh.caption, mesh.faces);
+        let content = view.fill(mesh);
         self.body += &format!("<section id=\"mesh\"><h2>Mesh</h2>\n{content}</section>\n");
         // Without `<`, no text in the JSON can end the script element.
         self.data = mesh.data.to_string().replace('<', "\\u003c");
@@ -99,11 +120,11 @@ impl Page {
 
     pub(crate) fn finish(self) -> String {
         let Self { title, body, data } = self;
-        // The script draws the data of the viewer.
         let scripts = match data.is_empty() {
-            true => String::new(),
+            true => format!("<script>\n{SCRIPT}</script>\n"),
             false => format!(
-                "<script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n{SCRIPT}</script>\n"
+                "<script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n{SCRIPT}{}</script>\n",
+                VIEWER_SCRIPTS.concat()
             ),
         };
         format!(
@@ -113,6 +134,10 @@ impl Page {
              <title>{title} - gpu-smooth</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</main>\n{scripts}</body>\n</html>\n"
         )
     }
+}
+
+fn section(title: &str, content: &str) -> String {
+    format!("<section><h2>{}</h2>\n{content}\n</section>\n", escape(title))
 }
 
 /// Escapes a text for HTML, attributes included.

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use crate::error::CliError;
 use crate::render::html::page::escape;
 use crate::render::picture::slid;
-use crate::report::{Done, SmoothJob, spacing_sentences};
+use crate::report::{Done, SmoothJob};
 use crate::terminal::numbers::sig6;
 use crate::terminal::{process, shell_words};
 
@@ -37,15 +37,6 @@ pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliEr
     for choice in &done.report.choices {
         item("choice", choice);
     }
-    for spacing in spacing_sentences(&done.report.spacing) {
-        item("spacing", &spacing);
-    }
-    if let Some(floored) = &done.report.floored {
-        item("worst", &floored.sentence());
-    }
-    if let Some(improved) = &done.report.improved {
-        item("worst", &improved.sentence());
-    }
     text += "</dl>";
     text += &certificate(done)?;
     Ok(text)
@@ -63,15 +54,11 @@ fn certificate(done: &Done<'_>) -> Result<String, CliError> {
     let off = slid(topology, old, new).len();
     let held = if done.report.slid.is_some() { held - off } else { held };
     let kept = if done.report.slid.is_some() { held } else { held - off };
-    let slides = match done.report.slides() {
-        Some(text) => format!("<li>{}.</li>", escape(&text)),
-        None => String::new(),
-    };
     let distance = |&v: &usize| (new[v][0] - old[v][0]).hypot(new[v][1] - old[v][1]);
     let farthest = moved.iter().map(distance).fold(0.0, f64::max);
     Ok(format!(
         "<h3>Certificate</h3><ul><li>{bad} of {} triangles are inverted or flat, by exact predicates on the coordinates as \
-         they were written.</li><li>{kept} of {held} vertices that must stay have the same bits.</li>{slides}<li>{} of {} vertices \
+         they were written.</li><li>{kept} of {held} vertices that must stay have the same bits.</li><li>{} of {} vertices \
          have moved, the farthest by {}.</li><li>{} vertices were put back because rounding had inverted a triangle.</li></ul>\
          <p><code>gpu-smooth compare</code> of both files proves this again.</p>",
         topology.triangles().len(),

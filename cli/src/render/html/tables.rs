@@ -14,7 +14,7 @@ pub(crate) fn wide(name: &str) -> String {
     format!("<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{}\">", escape(name))
 }
 
-/// Writes the summary of the terminal as HTML: subject, and table of values before and after.
+/// Writes the summary of the terminal as HTML: subject, table of values before and after, and sentences.
 pub(crate) fn summary(report: &Report) -> String {
     let mut text = format!(
         "{}{}<table><thead><tr><th>quantity</th><th>before</th><th>after</th></tr></thead><tbody>",
@@ -22,27 +22,33 @@ pub(crate) fn summary(report: &Report) -> String {
         wide("summary")
     );
     for [name, before, after] in report.rows() {
+        // The terminal indents rows that belong to the row above.
+        let class = if name.starts_with(' ') { " class=\"under\"" } else { "" };
         let _ = write!(
             text,
-            "<tr><th>{}</th><td>{}</td><td>{}</td></tr>",
+            "<tr><th{class}>{}</th><td>{}</td><td>{}</td></tr>",
             escape(name.trim()),
             escape(&before),
             escape(&after)
         );
     }
-    text + "</tbody></table></div>"
+    text += "</tbody></table></div>";
+    for sentence in report.sentences() {
+        let _ = write!(text, "<p>{}</p>", escape(&sentence));
+    }
+    text
 }
 
-/// Writes a table with the statistics of all measures, in pairs of rows before and after a run.
+/// Writes a table with the statistics of all measures, in pairs of rows before and after a run, and the notes on it.
 pub(crate) fn statistics(states: [&Measured<'_>; 2]) -> String {
     let [before, after] = states.map(|state| state.statistics(Measure::ALL));
-    statistics_of_meshes(&[("before", &before), ("after", &after)])
+    statistics_table(&[("before", &before), ("after", &after)]) + &notes(Measure::ALL)
 }
 
-/// Writes a table of statistics. Each mesh has a name and statistics by the same measures, and a row for each measure. A
-/// single mesh has no column of names.
-pub(crate) fn statistics_of_meshes(meshes: &[(&str, &[Statistics])]) -> String {
-    let is_alone = meshes.len() == 1;
+/// Writes a table of statistics. Each state has a name and statistics by the same measures, and a row for each measure. A
+/// single state has no column of names.
+pub(crate) fn statistics_table(states: &[(&str, &[Statistics])]) -> String {
+    let is_alone = states.len() == 1;
     let class = if is_alone { "one" } else { "pairs" };
     let mut text =
         format!("{}<table class=\"{class}\"><thead><tr><th>measure</th>", wide("statistics"));
@@ -51,15 +57,14 @@ pub(crate) fn statistics_of_meshes(meshes: &[(&str, &[Statistics])]) -> String {
         let _ = write!(text, "<th>{column}</th>");
     }
     text += "</tr></thead><tbody>";
-    let first = meshes.first().map_or(&[][..], |(_, statistics)| statistics);
-    let measures: Vec<Measure> = first.iter().map(|statistics| statistics.measure).collect();
-    let DistinctMeasures { shown, equal } = DistinctMeasures::of(&measures);
+    let measures = measures(states.first().map_or(&[][..], |(_, statistics)| statistics));
+    let shown = DistinctMeasures::of(&measures).shown;
     for (i, measure) in measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure)) {
         let (name, source) =
             (escape(&measure_name(*measure)), escape(measure.definition().formula));
-        let rows = meshes.len();
+        let rows = states.len();
         let _ = write!(text, "<tr><th rowspan=\"{rows}\" title=\"{source}\">{name}</th>");
-        for (number, (name, statistics)) in meshes.iter().enumerate() {
+        for (number, (name, statistics)) in states.iter().enumerate() {
             text += if number == 0 { "" } else { "<tr class=\"more\">" };
             if !is_alone {
                 let _ = write!(text, "<td class=\"state\">{}</td>", escape(name));
@@ -67,10 +72,19 @@ pub(crate) fn statistics_of_meshes(meshes: &[(&str, &[Statistics])]) -> String {
             statistics.get(i).inspect(|statistics| row(&mut text, statistics));
         }
     }
+    text + "</tbody></table></div>"
+}
+
+/// Returns the measures of statistics.
+pub(crate) fn measures(statistics: &[Statistics]) -> Vec<Measure> {
+    statistics.iter().map(|statistics| statistics.measure).collect()
+}
+
+/// Writes which of the measures are equal to others, and where measures are defined.
+pub(crate) fn notes(measures: &[Measure]) -> String {
+    let equal = DistinctMeasures::of(measures).equal;
     let equal = if equal.is_empty() { String::new() } else { format!("{}. ", equal.join(", ")) };
-    text + "</tbody></table></div><p>"
-        + &equal
-        + "docs/quality.md of the program defines each measure.</p>"
+    format!("<p>{equal}docs/quality.md of the program defines each measure.</p>")
 }
 
 /// Writes the numbers of a row of statistics, and ends the row.

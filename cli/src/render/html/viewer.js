@@ -1,4 +1,4 @@
-"use strict";
+
 // Draws the mesh before and after a run on two canvases that show the same region. Triangles are filled pixel by pixel:
 // that leaves no seams, and many small triangles take no longer than few large ones.
 
@@ -24,12 +24,24 @@ const states = data.states.map((state) => ({
   images: [],
   codes: [],
 }));
+// The file's ids of the triangles, from runs of consecutive ids: index of the first triangle, and its id.
+const ids = new Float64Array(triangles.length / 3);
+data.ids.forEach(([start, id], i) => {
+  const end = data.ids[i + 1]?.[0] ?? ids.length;
+  for (let t = start; t < end; t++) ids[t] = id + t - start;
+});
 const canvases = [...document.querySelectorAll("#views canvas")];
+// What was drawn last on each canvas below the marks.
+const layers = canvases.map(() => document.createElement("canvas"));
 const [low, high] = data.extent;
 
 // The middle of the view in units of the mesh, and CSS pixels per unit. `spot` is the triangle that a link asked for.
 const view = { x: 0, y: 0, scale: 1, isWhole: true, spot: null };
 let measure = 0;
+// The triangle whose values are shown, -1 without any.
+let marked = -1;
+// Whether colors are those of paper, whatever the theme of the window is.
+let isPrinting = false;
 // The timer of each canvas that ends its hint.
 const hints = new Map();
 
@@ -117,12 +129,13 @@ function edges(context, list, at) {
   context.stroke();
 }
 
-function draw(canvas, state) {
+/** Draws a mesh without its marks on a layer that has the size of the canvas. */
+function draw(canvas, layer, state) {
   const ratio = window.devicePixelRatio || 1;
-  const { width, height } = canvas, context = canvas.getContext("2d");
+  const { width, height } = canvas, context = layer.getContext("2d");
+  [layer.width, layer.height] = [width, height];
   const style = getComputedStyle(document.documentElement);
-  const [ink, paper] = ["--ink", "--paper"].map((name) => style.getPropertyValue(name));
-  context.clearRect(0, 0, width, height);
+  const [ink, paper] = isPrinting ? ["#000", "#fff"] : ["--ink", "--paper"].map((name) => style.getPropertyValue(name));
   const at = placed(state.points, canvas, ratio), codes = codesOf(state), image = imageOf(state);
   if (image) {
     const scale = view.scale * ratio;
@@ -158,9 +171,9 @@ function draw(canvas, state) {
   for (let i = 0; i < faceEdges.length; i += 3) if (isHigh[faceEdges[i]]) inner.push(faceEdges[i + 1], faceEdges[i + 2]);
   const pixels = new ImageData(width, height), words = new Uint32Array(pixels.data.buffer);
   for (let i = 0; i < words.length; i++) if (best[i] !== NOTHING) words[i] = palette[best[i]];
-  const layer = new OffscreenCanvas(width, height);
-  layer.getContext("2d").putImageData(pixels, 0, 0);
-  context.drawImage(layer, 0, 0);
+  const faces = new OffscreenCanvas(width, height);
+  faces.getContext("2d").putImageData(pixels, 0, 0);
+  context.drawImage(faces, 0, 0);
 
   context.lineCap = "round";
   if (inner.length < 200000) {
@@ -179,7 +192,6 @@ function draw(canvas, state) {
   edges(context, boundary, at);
   for (const v of held) dot(context, at[2 * v], at[2 * v + 1], ratio, ["#fff", "#000"]);
   for (const v of slid) dot(context, at[2 * v], at[2 * v + 1], ratio, ["#000", "#fff"]);
-  marks(context, state, at, ratio);
 }
 
 /** A vertex inside the mesh that must not move, or one that slid along its line, by the colors of its inside and its rim. */
@@ -194,31 +206,60 @@ function dot(context, x, y, ratio, [inside, rim]) {
   context.stroke();
 }
 
-/** Rings around the worst triangles, and the outline of the one that was asked for. */
-function marks(context, state, at, ratio) {
-  const width = canvasWidth(context.canvas);
-  data.spots.forEach((spot, i) => {
-    if (states[spot.state] !== state && i !== view.spot) return;
-    const corners = [0, 1, 2].map((k) => 2 * triangles[3 * spot.triangle + k]);
-    const x = corners.reduce((sum, c) => sum + at[c], 0) / 3, y = corners.reduce((sum, c) => sum + at[c + 1], 0) / 3;
+/** Draws rings around the worst triangles, and the outline of the triangle whose values are shown. */
+function marks(canvas, state) {
+  const ratio = window.devicePixelRatio || 1, context = canvas.getContext("2d"), scale = view.scale * ratio;
+  const place = (v) => [canvas.width / 2 + (state.points[2 * v] - view.x) * scale, canvas.height / 2 - (state.points[2 * v + 1] - view.y) * scale];
+  const cornersOf = (t) => [0, 1, 2].map((k) => place(triangles[3 * t + k]));
+  const ring = (corners, radius) => {
+    const [x, y] = [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / 3);
     context.beginPath();
-    if (spot.size * view.scale > width / 12) {
-      if (i !== view.spot) return;
-      corners.forEach((c, k) => (k ? context.lineTo(at[c], at[c + 1]) : context.moveTo(at[c], at[c + 1])));
-      context.closePath();
-    } else {
-      context.arc(x, y, (i === view.spot ? 11 : 8) * ratio, 0, 7);
-    }
-    for (const [color, line] of [["#fff", 3.4], ["#000", i === view.spot ? 1.8 : 1.2]]) {
+    context.arc(x, y, radius * ratio, 0, 7);
+  };
+  const stroke = (lines) => {
+    for (const [color, line] of lines) {
       context.strokeStyle = color;
       context.lineWidth = line * ratio;
       context.stroke();
     }
-  });
+  };
+  for (const spot of data.spots) {
+    if (states[spot.state] !== state || spot.triangle === marked || spot.size * view.scale > canvasWidth(canvas) / 12) continue;
+    ring(cornersOf(spot.triangle), 8);
+    stroke([["#fff", 3.4], ["#000", 1.2]]);
+  }
+  if (marked < 0) return;
+  const corners = cornersOf(marked), size = Math.max(...[0, 1].map((axis) => {
+    const places = corners.map((corner) => corner[axis]);
+    return Math.max(...places) - Math.min(...places);
+  }));
+  if (size < 10 * ratio) ring(corners, 11);
+  else {
+    context.beginPath();
+    corners.forEach((corner, k) => (k ? context.lineTo(...corner) : context.moveTo(...corner)));
+    context.closePath();
+  }
+  context.lineJoin = "round";
+  stroke([["#fff", 5], ["#000", 2.4]]);
 }
 
 function canvasWidth(canvas) {
   return canvas.getBoundingClientRect().width;
+}
+
+function redrawNow() {
+  canvases.forEach((canvas, i) => draw(canvas, layers[i], states[i]));
+  inspect();
+}
+
+/** Copies the layers to the canvases, with marks. */
+function remark() {
+  canvases.forEach((canvas, i) => {
+    const context = canvas.getContext("2d");
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(layers[i], 0, 0);
+    marks(canvas, states[i]);
+  });
 }
 
 let isDue = false;
@@ -227,7 +268,7 @@ function redraw() {
   isDue = true;
   requestAnimationFrame(() => {
     isDue = false;
-    canvases.forEach((canvas, i) => draw(canvas, states[i]));
+    redrawNow();
   });
 }
 
@@ -239,7 +280,7 @@ function resize() {
   document.getElementById("views").classList.toggle("stacked", isStacked);
   const ratio = window.devicePixelRatio || 1;
   for (const canvas of canvases) {
-    const width = canvas.clientWidth, height = Math.min(aspect * width, (isNarrow ? 0.36 : 0.75) * window.innerHeight, 800);
+    const width = canvas.clientWidth, height = Math.min(aspect * width, (isNarrow ? 0.36 : 0.75) * window.innerHeight);
     canvas.style.height = `${Math.round(height)}px`;
     canvas.width = Math.max(1, Math.round(width * ratio));
     canvas.height = Math.max(1, Math.round(height * ratio));
@@ -285,47 +326,10 @@ function show(i) {
   view.scale = Math.min(canvas.clientWidth, canvas.clientHeight) / (6 * spot.size);
   view.isWhole = false;
   view.spot = i;
+  // The values of the triangle take the place of those at the last position of the pointer.
+  pointer = null;
   redraw();
   document.getElementById("views").scrollIntoView({ block: "center" });
-}
-
-function fromMiddle(canvas, event) {
-  const box = canvas.getBoundingClientRect();
-  return [event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2];
-}
-
-/** Tells what is under the pointer. */
-function tell(canvas, event) {
-  const [dx, dy] = fromMiddle(canvas, event), { points, values, pictures } = states[canvases.indexOf(canvas)];
-  const x = view.x + dx / view.scale, y = view.y - dy / view.scale;
-  const side = (a, b) => (points[2 * b] - points[2 * a]) * (y - points[2 * a + 1]) - (points[2 * b + 1] - points[2 * a + 1]) * (x - points[2 * a]);
-  /** The index of the first triangle of a list that has the place, -1 without any. */
-  const found = (list) => {
-    for (let i = 0; i < list.length; i += 3) {
-      const [a, b, c] = [list[i], list[i + 1], list[i + 2]];
-      const sides = [side(a, b), side(b, c), side(c, a)];
-      if (sides.every((s) => s >= 0) || sides.every((s) => s <= 0)) return i / 3;
-    }
-    return -1;
-  };
-  const t = found(triangles);
-  const parts = [[x, y].map(coordinate).join("  ")];
-  if (t >= 0) data.measures.forEach((measure, k) => parts.push(`${measure.name} ${value(measure, values[k][t])}`));
-  else if (found(pieces) >= 0) parts.push(data.face);
-  else if (pictures.length) parts.push("values are known around the worst triangles");
-  document.getElementById("hovered").textContent = parts.join("   ");
-}
-
-/** A coordinate with digits down to a tenth of a pixel, at least seven and at most the 17 of double precision. */
-function coordinate(x) {
-  const digits = Math.ceil(Math.log10(Math.abs(x) * view.scale)) + 1;
-  return x.toPrecision(Math.min(17, Math.max(7, Number.isFinite(digits) ? digits : 7)));
-}
-
-/** The value of a measure with six of the seven digits of single precision. */
-function value({ unit }, x) {
-  if (Number.isNaN(x)) return "inverted or flat";
-  return Number.isFinite(x) ? `${x.toPrecision(6)}${unit}` : "infinite";
 }
 
 function legend() {
@@ -344,69 +348,3 @@ select.onchange = () => {
 document.getElementById("in").onclick = () => zoom(2);
 document.getElementById("out").onclick = () => zoom(0.5);
 document.getElementById("all").onclick = whole;
-
-for (const canvas of canvases) {
-  canvas.addEventListener("wheel", (event) => {
-    // The wheel scrolls the page unless the reader asks for the view. A trackpad reports pinching as Ctrl.
-    if (!event.ctrlKey && !event.metaKey && document.activeElement !== canvas) {
-      hint(canvas);
-      return;
-    }
-    event.preventDefault();
-    zoom(Math.exp(-event.deltaY * (event.deltaMode ? 0.05 : 0.0015)), ...fromMiddle(canvas, event));
-  }, { passive: false });
-  canvas.addEventListener("pointerdown", (event) => event.pointerType !== "touch" && canvas.setPointerCapture(event.pointerId));
-  canvas.addEventListener("pointermove", (event) => {
-    if (event.pointerType !== "touch" && event.buttons) pan(event.movementX, event.movementY);
-    else tell(canvas, event);
-  });
-  canvas.addEventListener("click", (event) => tell(canvas, event));
-  canvas.addEventListener("dblclick", (event) => zoom(2, ...fromMiddle(canvas, event)));
-  canvas.addEventListener("keydown", (event) => {
-    const step = 60, moves = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
-    if (moves[event.key]) pan(...moves[event.key]);
-    else if (event.key === "+") zoom(2);
-    else if (event.key === "-") zoom(0.5);
-    else if (event.key === "Escape") canvas.blur();
-    else return;
-    event.preventDefault();
-  });
-  // One finger scrolls the page, two move the mesh.
-  let last = null;
-  const two = ([p, q]) => ({ clientX: (p.clientX + q.clientX) / 2, clientY: (p.clientY + q.clientY) / 2, apart: Math.hypot(p.clientX - q.clientX, p.clientY - q.clientY) });
-  canvas.addEventListener("touchmove", (event) => {
-    if (event.touches.length !== 2) return;
-    event.preventDefault();
-    const now = two(event.touches);
-    if (last) {
-      pan(now.clientX - last.clientX, now.clientY - last.clientY);
-      zoom(now.apart / last.apart, ...fromMiddle(canvas, now));
-    }
-    last = now;
-  }, { passive: false });
-  canvas.addEventListener("touchend", () => (last = null));
-}
-
-/** Shows for a moment how the wheel enlarges. */
-function hint(canvas) {
-  const { classList } = canvas.parentElement.querySelector(".hint");
-  classList.add("shown");
-  clearTimeout(hints.get(canvas));
-  hints.set(canvas, setTimeout(() => classList.remove("shown"), 1500));
-}
-
-function follow() {
-  const found = /^#spot-(\d+)$/.exec(location.hash);
-  if (found) show(Number(found[1]));
-}
-document.addEventListener("click", (event) => {
-  // A click on the same link shows the triangle again, which `hashchange` would not tell.
-  const link = event.target.closest('a[href^="#spot-"]');
-  if (link && link.hash === location.hash) follow();
-});
-window.addEventListener("hashchange", follow);
-window.addEventListener("resize", resize);
-window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-resize();
-legend();
-follow();

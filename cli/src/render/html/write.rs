@@ -14,7 +14,7 @@ use crate::report::{Done, SmoothJob};
 use crate::report::{Histogram, histogram};
 
 /// The measures with a histogram.
-const HISTOGRAMS: [Measure; 2] = [Measure::Shape, Measure::MinAngle];
+const HISTOGRAMS: [Measure; 3] = [Measure::Shape, Measure::MinAngle, Measure::MaxAngle];
 
 /// Writes the page of a run to `path`; does nothing if `path` is `None`. `began` is the time at which the drawing of the
 /// run's picture and page began.
@@ -43,15 +43,19 @@ fn page(task: &SmoothJob<'_>, done: &Done<'_>, began: Instant) -> Result<String,
     if let Some(warning) = done.report.warning() {
         page.lead(&warning);
     }
-    page.section("Summary", &tables::summary(&done.report));
     page.mesh(&mesh::viewer_mesh(done.file, &states, &spots, colors, &mesh::BOUNDS)?, View::Run);
-    page.section("Worst triangles", &worst::lists(&spots, done.file.axes()));
+    page.columns(&[
+        &[("Summary", tables::summary(&done.report))],
+        &[("Worst triangles", worst::lists(&spots, done.file.axes()))],
+    ]);
     page.section("Distribution", &histograms(states));
     page.section("Convergence", &convergence(done));
-    page.section("Statistics", &tables::statistics(states));
+    let statistics = tables::statistics(states);
     let seconds = done.report.seconds.with_pictures(began.elapsed());
-    page.section("Where time went", &tables::time(&seconds));
-    page.section("The run", &run::run(task, done)?);
+    page.columns(&[
+        &[("Statistics", statistics)],
+        &[("Where time went", tables::time(&seconds)), ("The run", run::run(task, done)?)],
+    ]);
     Ok(page.finish())
 }
 
@@ -80,9 +84,9 @@ fn convergence(done: &Done<'_>) -> String {
     let base = escape(done.report.base());
     format!(
         "<div class=\"charts\">{}{}{}</div><p>f is the mean of q² by {base} over all triangles. Times are known after \
-         batches of sweeps; the left end of a logarithmic axis stands for 0.</p>",
-        charts::lines("f against sweep", "sweep", &by_sweep, [true, true]),
-        charts::lines("f against time", "s", &by_time, [true, true]),
-        charts::lines("f above its least value", "sweep", &excess, [false, true]),
+         batches of sweeps.</p>",
+        charts::lines("f against sweep", charts::Unit::Count("sweep"), &by_sweep),
+        charts::lines("f against time", charts::Unit::Measured("s"), &by_time),
+        charts::lines("f above its least value", charts::Unit::Count("sweep"), &excess),
     )
 }

@@ -1,0 +1,99 @@
+//! The first table of a page of several meshes: a row for each mesh, which the script of the page sorts.
+
+use std::cmp::Ordering;
+use std::fmt::Write;
+
+use gpu_smooth::measure::{Better, Statistics};
+
+use crate::render::html::meshes::PageEntry;
+use crate::render::html::page::escape;
+use crate::render::html::tables::{measure_name, measures, wide};
+use crate::report::DistinctMeasures;
+use crate::terminal::numbers::fit8;
+
+/// Name of the table, to which links lead.
+pub(crate) const TOP: &str = "overview";
+
+/// Returns the name of the section of a mesh, to which the link of its row leads.
+pub(crate) fn anchor(index: usize) -> String {
+    format!("mesh-{}", index + 1)
+}
+
+/// Writes the table: the numbers of triangles and of bad triangles, and the worst value of each measure. Rows are sorted by
+/// the worst value of the first measure, worst first.
+pub(crate) fn table(meshes: &[PageEntry<'_>]) -> String {
+    let first = meshes.first().map_or(&[][..], |entry| entry.statistics);
+    let all = measures(first);
+    let shown = DistinctMeasures::of(&all).shown;
+    let columns: Vec<usize> = (0..all.len()).filter(|&i| shown.contains(&all[i])).collect();
+    let mut text = format!(
+        "<p>The worst value of each measure. A click on a heading sorts the table, worst first; a second click reverses the \
+         order.</p>{}<table class=\"overview\" id=\"{TOP}\"><thead><tr>",
+        wide("overview")
+    );
+    let mut header = |kind: &str, name: &str, about: &str, is_sorted: bool| {
+        let sorted = if is_sorted { " aria-sort=\"ascending\"" } else { "" };
+        let (name, about) = (escape(name), escape(about));
+        let _ = write!(
+            text,
+            "<th data-sort=\"{kind}\" title=\"{about}\"{sorted}><button>{name}</button></th>"
+        );
+    };
+    header("text", "mesh", "the file", columns.is_empty());
+    header("number", "triangles", "the number of triangles", false);
+    header("number", "inverted or flat", "the number of inverted or flat triangles", false);
+    for (place, &i) in columns.iter().enumerate() {
+        header("number", &measure_name(all[i]), all[i].definition().formula, place == 0);
+    }
+    text += "</tr></thead><tbody>";
+    for (index, entry) in sorted(meshes, columns.first().copied()) {
+        let PageEntry { name, triangles, bad, statistics, .. } = entry;
+        let _ = write!(
+            text,
+            "<tr><td><a href=\"#{}\">{}</a></td><td data-key=\"-{triangles}\">{triangles}</td><td data-key=\"-{bad}\">{bad}</td>",
+            anchor(index),
+            escape(name)
+        );
+        for statistics in columns.iter().filter_map(|&i| statistics.get(i)) {
+            let (value, key) = (worst(statistics), script_number(rank(statistics)));
+            let _ = write!(text, "<td data-key=\"{key}\">{}</td>", escape(&fit8(value)));
+        }
+        text += "</tr>";
+    }
+    text + "</tbody></table></div>"
+}
+
+/// Returns the meshes with their indices, worst first by the statistics at `column`.
+fn sorted<'a, 'b>(
+    meshes: &'a [PageEntry<'b>],
+    column: Option<usize>,
+) -> Vec<(usize, &'a PageEntry<'b>)> {
+    let mut rows: Vec<_> = meshes.iter().enumerate().collect();
+    let rank = |entry: &PageEntry<'_>| Some(rank(entry.statistics.get(column?)?));
+    rows.sort_by(|(_, a), (_, b)| rank(a).partial_cmp(&rank(b)).unwrap_or(Ordering::Equal));
+    rows
+}
+
+fn worst(statistics: &Statistics) -> f64 {
+    match statistics.measure.definition().better {
+        Better::Higher => statistics.min,
+        Better::Lower => statistics.max,
+    }
+}
+
+/// Returns the key by which meshes are sorted, which is smaller for a worse mesh.
+fn rank(statistics: &Statistics) -> f64 {
+    match statistics.measure.definition().better {
+        Better::Higher => statistics.min,
+        Better::Lower => -statistics.max,
+    }
+}
+
+/// Formats a number as scripts read it.
+fn script_number(x: f64) -> String {
+    match x {
+        x if x == f64::INFINITY => "Infinity".to_owned(),
+        x if x == f64::NEG_INFINITY => "-Infinity".to_owned(),
+        x => x.to_string(),
+    }
+}
