@@ -50,3 +50,25 @@ fn a_file_without_groups_says_so() {
     assert_eq!(told, "in.off: OFF\nthe file names no groups\n");
     folder.line("groups none.node").refused(&["none.node", "Check the name"]);
 }
+
+/// The dialect of WAVEWATCH III has the number of the triangle in the place of gmsh's entity.
+#[test]
+fn numbers_of_triangles_are_no_groups_and_fix_no_vertex() {
+    let mesh = super::disturbed();
+    let mut text = format!("$MeshFormat\n2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", mesh.points.len());
+    for (node, [x, y]) in (1..).zip(&mesh.points) {
+        text += &format!("{node} {x} {y} 0\n");
+    }
+    text += &format!("$EndNodes\n$Elements\n{}\n", mesh.triangles.len());
+    for (t, triangle) in (1..).zip(&mesh.triangles) {
+        let [a, b, c] = triangle.map(|v| v + 1);
+        text += &format!("{t} 2 3 0 {t} 0 {a} {b} {c}\n");
+    }
+    let folder = Folder::new(&[("in.msh", &(text + "$EndElements\n"))]);
+    let told = folder.line("groups in.msh").out;
+    assert!(told.ends_with("the file names no groups\n"), "{told}");
+    let run = folder.line("in.msh out.msh --engine cpu");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert!(run.err.contains("count triangles, and are no regions"), "{}", run.err);
+    assert!(folder.text("in.msh") != folder.text("out.msh"));
+}

@@ -25,6 +25,7 @@ mod layers;
 mod long;
 mod many;
 mod moving;
+mod nets;
 mod options;
 mod output;
 mod outside;

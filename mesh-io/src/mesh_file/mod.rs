@@ -14,6 +14,7 @@ mod net_centers;
 mod parallel_tests;
 pub(crate) mod parameters;
 pub(crate) mod parametric;
+mod plane_centers;
 pub(crate) mod read;
 mod region_arrays;
 pub(crate) mod rewrite;

@@ -4,7 +4,7 @@
 //! differences are local lengths. The formulas are those of MeshKernel 8 (Deltares), `FaceAreaAndCenterOfMass` and
 //! `ComputeFaceCircumenter`.
 
-use crate::mesh_file::center_functions::{circumcenter, mean};
+use crate::mesh_file::plane_centers::{circumcenter, mean};
 
 /// Returns the circumcenter of a triangle. Instead of a circumcenter outside of the triangle, returns the point at which
 /// the line from the mean of the corners to the circumcenter leaves the triangle.

@@ -1,8 +1,9 @@
 //! Centers and corner coordinates of faces and edges in a UGRID file, which depend on the node coordinates.
 
 use super::faces::Faces;
+use super::kind::TableKind;
 use super::mesh::{Mesh, axis_of};
-use super::table::{Table, TableKind};
+use super::table::Table;
 use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};
 use crate::visit::items::Centers;

@@ -1,8 +1,9 @@
 //! Node and face data of a UGRID file.
 
 use super::centers::Tables;
+use super::kind::TableKind;
 use super::mesh::Mesh;
-use super::table::{Table, TableKind};
+use super::table::Table;
 use crate::content::remark::Remark;
 use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};

@@ -1,8 +1,9 @@
 //! The faces of a UGRID mesh: those of a connectivity table, or cells that were found from edges.
 
 use super::cells::Cells;
+use super::kind::TableKind;
 use super::mesh::Mesh;
-use super::table::{Table, TableKind};
+use super::table::Table;
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::netcdf::NumberType;

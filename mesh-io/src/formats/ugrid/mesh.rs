@@ -1,6 +1,6 @@
 //! The mesh of a UGRID file: the variables of its coordinates and faces.
 
-use super::table::TableKind;
+use super::kind::TableKind;
 use crate::error::ReadError;
 use crate::formats::axes::{Axes, BinaryReals};
 use crate::formats::netcdf_axes::axes;
@@ -141,7 +141,7 @@ fn mesh_variable<'h>(header: &'h Header<'_>) -> Result<Option<&'h Variable>, Rea
         variable.whole("topology_dimension").is_none_or(|dimension| dimension == 2)
     };
     let all: Vec<_> = header.variables.iter().filter(|variable| is_mesh(variable)).collect();
-    if all.is_empty() {
+    if all.is_empty() && is_net(header) {
         return Ok(None);
     }
     let of_faces: Vec<_> = all.into_iter().filter(has_faces).collect();

@@ -9,6 +9,7 @@ mod cells;
 mod centers;
 mod data;
 mod faces;
+mod kind;
 mod mesh;
 mod planar;
 mod table;

@@ -1,5 +1,6 @@
 //! Connectivity tables: the nodes of faces or edges.
 
+use super::kind::TableKind;
 use super::mesh::Mesh;
 use crate::error::ReadError;
 use crate::netcdf::{Header, Items, NumberType, Variable};
@@ -22,24 +23,6 @@ pub(super) struct Table<'h, 'a> {
     missing: Option<f64>,
     /// Start index of the numbers of nodes, faces and edges in the file: 0 or 1.
     pub(super) first: u64,
-}
-
-/// Elements of a connectivity table.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum TableKind {
-    Faces,
-    Edges,
-}
-
-impl TableKind {
-    /// Returns singular and plural for messages, the attribute that names the element dimension, and the minimum of
-    /// nodes per element.
-    fn words(self) -> (&'static str, &'static str, &'static str, u64) {
-        match self {
-            TableKind::Faces => ("face", "faces", "face_dimension", 3),
-            TableKind::Edges => ("edge", "edges", "edge_dimension", 2),
-        }
-    }
 }
 
 /// An entry of a connectivity table.
