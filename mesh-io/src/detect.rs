@@ -172,6 +172,12 @@ impl Format {
         FormatEntry::of(self).name
     }
 
+    /// Returns whether `path` has an extension of the format, before the extension of a compression, in capital or small
+    /// letters.
+    pub fn has_extension(self, path: &Path) -> bool {
+        FormatEntry::of(self).matches_extension(path)
+    }
+
     /// Returns the name of the format with the extension of `path`, before the extension of a compression, in capital
     /// or small letters. Unsupported formats have names too. `None` if no format has the extension.
     pub fn name_of_extension(path: &Path) -> Option<&'static str> {

@@ -31,6 +31,21 @@ impl GroupKeys {
         self.names.insert((kind.to_owned(), dimension, tag), name);
     }
 
+    /// Returns whether a group has been numbered.
+    pub(crate) fn contains(&self, kind: &str, dimension: u8, label: &GroupLabel) -> bool {
+        self.numbers.contains_key(&(kind.to_owned(), dimension, label.clone()))
+    }
+
+    /// Lists kind, dimension, tag and name of each name for one dimension, in ascending order.
+    pub(crate) fn names_of_dimensions(&self) -> Vec<(&str, u8, i64, &str)> {
+        let of_one = self.names.iter().filter_map(|((kind, dimension, tag), name)| {
+            Some((kind.as_str(), (*dimension)?, *tag, name.as_str()))
+        });
+        let mut all: Vec<_> = of_one.collect();
+        all.sort_unstable();
+        all
+    }
+
     /// Returns the name that the file gives to the tag of a group; `None` for an unnamed tag, or a label that is a name
     /// itself. A name for the dimension takes precedence over a name for all dimensions.
     pub(crate) fn name_of(&self, kind: &str, dimension: u8, label: &GroupLabel) -> Option<String> {

@@ -7,13 +7,17 @@ use crate::detect;
 use crate::disk::atomic;
 use crate::disk::atomic::FileWrite;
 use crate::error::{ReadError, WriteError};
-use crate::export::content::Content;
+use crate::export::content::{Content, DataArray};
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::triangle::names::Names;
 use crate::formats::write_grids;
 use crate::mesh_file::mesh::MeshFile;
+use crate::precision::Precision;
 use crate::registry::FormatEntry;
+use crate::visit::field::PointField;
+use crate::visit::items::CellKind;
+use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -49,6 +53,7 @@ pub struct Conversion {
     target: &'static Target,
     losses: Vec<String>,
     renamings: Vec<String>,
+    omissions: Vec<String>,
     creator: String,
     encoding: Encoding,
 }
@@ -67,26 +72,64 @@ impl Conversion {
         TARGETS.iter().find(ends_so).map(|target| target.format)
     }
 
+    /// Returns the target that meshes of `format` are in, in any encoding. `None` if conversions do not write the format.
+    pub fn target_like(format: Format) -> Option<Format> {
+        let text = match format {
+            Format::Gmsh22Binary => Format::Gmsh22,
+            Format::Gmsh41Binary => Format::Gmsh41,
+            Format::VtkBinary => Format::Vtk,
+            Format::PlyBinary => Format::Ply,
+            format => format,
+        };
+        TARGETS.iter().any(|target| target.format == text).then_some(text)
+    }
+
     /// Prepares a mesh for writing in the format `to`. The bytes of the file are parsed again for elements of all
     /// kinds, groups and data. `None` if `to` is no target of conversions.
     ///
     /// # Errors
     /// [`ReadError`] if names of groups, or other content that [`MeshFile::read`] skips, are damaged.
     pub fn new(file: &MeshFile, to: Format) -> Result<Option<Conversion>, ReadError> {
+        Self::moved(file, to, file.points(), &[])
+    }
+
+    /// Prepares a mesh as [`new`](Self::new) does, with vertex `i` at `points[i]`, in the units of the file, and with the
+    /// values of `fields`, which must come from the file. Fields that conversions leave out, such as centers of faces, are
+    /// ignored.
+    ///
+    /// # Errors
+    /// [`ReadError`] for the reasons of [`new`](Self::new).
+    ///
+    /// # Panics
+    /// Panics if there is not one point per vertex.
+    pub fn moved(
+        file: &MeshFile,
+        to: Format,
+        points: &[[f64; 2]],
+        fields: &[PointField],
+    ) -> Result<Option<Conversion>, ReadError> {
+        assert_eq!(points.len(), file.points().len(), "there must be one point per vertex");
         let Some(target) = TARGETS.iter().find(|target| target.format == to) else {
             return Ok(None);
         };
-        let mut content = file.content()?;
+        // Regions of cell data stay data in a format without groups of surfaces.
+        let stores_regions = target.capabilities.stores_groups_of_surfaces();
+        let mut content = file.content_with(file.region_array().filter(|_| stores_regions))?;
+        content.points = points.to_vec();
+        set_fields(&mut content, fields);
         write_grids::match_depths(&mut content, file.format(), to);
         let lost = target.capabilities.losses(&content);
-        let renamed = names::fit(&target.capabilities, &mut content);
+        let omissions =
+            target.capabilities.lost_names_of_empty_groups(&content).into_iter().collect();
+        let mut renamed = names::fit(&target.capabilities, &mut content);
+        renamed.extend(target.capabilities.renumbered_zero(&content));
         let creator = "mesh-io".to_owned();
         let encoding = match target.write {
             WriteFunction::Binary(_) => Encoding::Binary,
             _ => Encoding::Text,
         };
         let (losses, renamings) = (lost, renamed);
-        Ok(Some(Conversion { content, target, losses, renamings, creator, encoding }))
+        Ok(Some(Conversion { content, target, losses, renamings, omissions, creator, encoding }))
     }
 
     /// Sets the program name in the titles of written files, `written by NAME`. The default name is `mesh-io`.
@@ -133,11 +176,24 @@ impl Conversion {
         &self.renamings
     }
 
+    /// Lists what the format does not store, although no vertex, element or data array depends on it, one line each: names of
+    /// groups without elements.
+    pub fn omissions(&self) -> &[String] {
+        &self.omissions
+    }
+
     /// Lists the files that [`write`](Self::write) to `path` may create. The `.poly` of a Triangle mesh is always
     /// listed, but written only for a mesh with lines.
     pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
-        match self.target.write {
-            WriteFunction::Several(_) => {
+        Self::destinations_in(self.target.format, path)
+    }
+
+    /// Lists the files that a conversion to the format `to` may create at `path`, as [`destinations`](Self::destinations)
+    /// does.
+    pub fn destinations_in(to: Format, path: &Path) -> Vec<PathBuf> {
+        let target = TARGETS.iter().find(|target| target.format == to);
+        match target.map(|target| &target.write) {
+            Some(WriteFunction::Several(_)) => {
                 let Names { node, ele, poly } = Names::of(path);
                 vec![node, ele, poly]
             }
@@ -145,16 +201,22 @@ impl Conversion {
         }
     }
 
-    /// Writes the mesh, compressed if `path` ends in `.gz` or `.zst`. Existing files are replaced after all new content
-    /// is on the disk.
+    /// Returns the precision with which the format stores coordinates.
+    pub fn precision(&self) -> Precision {
+        self.target.capabilities.precision
+    }
+
+    /// Returns the format to which the mesh is converted.
+    pub fn format(&self) -> Format {
+        self.target.format
+    }
+
+    /// Checks, without writing, whether [`write`](Self::write) to `path` can succeed.
     ///
     /// # Errors
-    /// [`WriteError`] for errors of the operating system, if `path` has the ending of another format, if a Triangle
-    /// mesh gets a compressed name, or if an existing `.poly` would be read with a new Triangle mesh without lines.
-    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+    /// [`WriteError`] for the reasons of [`write`](Self::write).
+    pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
         let destinations = self.destinations(path);
-        let contents = self.contents();
-        let packs = Compression::of(path);
         let refused = |problem: String, remedy: &str| {
             let (path, remedy) = (path.to_owned(), remedy.to_owned());
             Err(WriteError::Format { path, problem, remedy })
@@ -166,18 +228,34 @@ impl Conversion {
             let problem = format!("the ending belongs to {owner}, not to {}", self.target.format);
             return refused(problem, &format!("End the name in {}", family.extensions[0]));
         }
-        if packs.is_some() && destinations.len() > 1 {
+        if Compression::of(path).is_some() && destinations.len() > 1 {
             let problem = "a Triangle mesh is of several files, which are not written compressed";
             return refused(problem.into(), "End the name in .node");
         }
-        if let Some(left) = destinations.get(contents.len()).filter(|left| left.exists()) {
+        // A Triangle mesh without lines has no outline.
+        let has_all = !matches!(self.target.write, WriteFunction::Several(_))
+            || self.input().count(CellKind::Line) > 0;
+        let left = destinations.get(2).filter(|left| !has_all && left.exists());
+        if let Some(left) = left {
             let problem = format!(
                 "{} exists, belongs to another mesh, and would be read with the new files",
                 left.display()
             );
             return refused(problem, "Remove it, or take another name");
         }
-        destinations.iter().try_for_each(|path| atomic::ensure_writable(path))?;
+        destinations.iter().try_for_each(|path| atomic::ensure_writable(path))
+    }
+
+    /// Writes the mesh, compressed if `path` ends in `.gz` or `.zst`. Existing files are replaced after all new content
+    /// is on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError`] for errors of the operating system, if `path` has the ending of another format, if a Triangle
+    /// mesh gets a compressed name, or if an existing `.poly` would be read with a new Triangle mesh without lines.
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        self.check_destination(path)?;
+        let (destinations, contents) = (self.destinations(path), self.contents());
+        let packs = Compression::of(path);
         let mut writes: Vec<FileWrite<'_>> = Vec::new();
         for (path, content) in destinations.into_iter().zip(&contents) {
             writes.push((path, Box::new(move |out| put(content, packs, out))));
@@ -227,6 +305,29 @@ impl Conversion {
     fn input(&self) -> WriterInput<'_> {
         let input = WriterInput::new(&self.content, self.target.capabilities, &self.creator);
         if self.renumbers() { input.renumbered() } else { input }
+    }
+}
+
+/// Sets the values of fields of the file in its content. The time steps of a result are fields with equal names, and
+/// distinct arrays of the content.
+fn set_fields(content: &mut Content, fields: &[PointField]) {
+    let mut uses: HashMap<&str, usize> = HashMap::new();
+    for field in fields {
+        let step = uses.entry(field.name()).or_default();
+        *step += 1;
+        if field.name() == "z" && *step == 1 && !content.z_values.is_empty() {
+            content.z_values = field.values().to_vec();
+            continue;
+        }
+        let name = match *step {
+            1 => field.name().to_owned(),
+            step => format!("{} {step}", field.name()),
+        };
+        let is_own =
+            |data: &&mut DataArray| data.name == name && data.values.len() == field.values().len();
+        if let Some(data) = content.point_data.iter_mut().find(is_own) {
+            data.values = field.values().to_vec();
+        }
     }
 }
 

@@ -43,6 +43,7 @@ const GMSH: Capabilities = Capabilities {
     keeps_vertex_ids: true,
     periodic_curves: true,
     groups: GroupSupport::PhysicalAndEntity,
+    names_empty_groups: true,
     names: [true; 3],
     name_rules: NameRules::Quoted,
     allows_negative_numbers: false,

@@ -1,7 +1,8 @@
 //! Capabilities of formats, and the losses of a mesh in a format.
 
 use super::content::{Content, ContentGroup, DataArray};
-use super::group_numbers::{GroupNumbers, determines};
+use super::group_numbers::{GroupNumbers, determines, is_region_zero};
+use super::implied_cells::ImpliedCells;
 use super::name_rules::NameRules;
 use super::sides;
 use crate::content::group_label::GroupLabel;
@@ -24,6 +25,8 @@ pub(crate) struct Capabilities {
     pub(crate) keeps_vertex_ids: bool,
     /// Groups that the format can assign to an element.
     pub(crate) groups: GroupSupport,
+    /// Whether the format stores names of groups without elements.
+    pub(crate) names_empty_groups: bool,
     /// Whether groups have names, by dimension: points, lines and surfaces.
     pub(crate) names: [bool; 3],
     /// The rules for names of groups and data.
@@ -121,6 +124,7 @@ impl Capabilities {
         z: false,
         keeps_vertex_ids: false,
         groups: GroupSupport::None,
+        names_empty_groups: false,
         names: [false; 3],
         name_rules: NameRules::Any,
         builtin_group_kind: "",
@@ -202,6 +206,33 @@ impl Capabilities {
         lost
     }
 
+    /// Returns a line with the names of groups without elements, if the format does not store these names.
+    pub(crate) fn lost_names_of_empty_groups(&self, content: &Content) -> Option<String> {
+        let is_lost = !self.names_empty_groups && !content.empty_groups.is_empty();
+        is_lost.then(|| {
+            format!(
+                "names of groups without elements: {}",
+                group_names(content.empty_groups.iter())
+            )
+        })
+    }
+
+    /// Returns a line on regions with the tag 0, if the format cannot give this tag to a group.
+    pub(crate) fn renumbered_zero(&self, content: &Content) -> Option<String> {
+        let is_zero = |group: &ContentGroup| {
+            let stored = self.stored_kinds(content, group.dimension);
+            is_region_zero(content, group) && stored.contains(&group.kind.as_str())
+        };
+        let has_none = self.groups == GroupSupport::PhysicalAndEntity;
+        let is_told = has_none && content.groups.iter().any(is_zero);
+        is_told.then(|| "groups: the tag 0 of a region to an unused tag above 0".to_owned())
+    }
+
+    /// Returns whether the format can assign surfaces to groups.
+    pub(crate) fn stores_groups_of_surfaces(&self) -> bool {
+        !matches!(self.groups, GroupSupport::None | GroupSupport::OneOfLines)
+    }
+
     /// Returns whether the format can store a cell.
     pub(crate) fn supports_cell(
         &self,
@@ -225,6 +256,8 @@ impl Capabilities {
 
     fn element_losses(&self, content: &Content, lost: &mut Vec<String>) {
         let tags = GroupNumbers::new(content, self.allows_negative_numbers);
+        let implied = ImpliedCells::new(content);
+        let is_implied = |&cell: &usize| implied.has(content, cell);
         for (kind, what) in [
             (CellKind::Point, "point"),
             (CellKind::Line, "line"),
@@ -232,8 +265,12 @@ impl Capabilities {
             (CellKind::Polygon, "polygon of more than four corners"),
         ] {
             let dropped = |&cell: &usize| !self.supports_cell(content, &tags, cell);
-            let count = content.cells.all(kind).filter(dropped).count();
+            let lost_cells: Vec<usize> = content.cells.all(kind).filter(dropped).collect();
             let elements = if kind == CellKind::Point { self.points } else { self.lines };
+            if elements == ElementSupport::None && lost_cells.iter().all(is_implied) {
+                continue;
+            }
+            let count = lost_cells.len();
             let of_none = match kind {
                 CellKind::Point | CellKind::Line if elements == ElementSupport::OfGroups => {
                     " of no group"
@@ -281,7 +318,13 @@ impl Capabilities {
                 groups.filter(|group| group.dimension == dimension && group.kind == kind).count()
                     == 1
             };
-            for kind in kinds.iter().copied().filter(dropped) {
+            // Programs number the entities of a model, and no format but gmsh's has a use for their numbers.
+            let is_for_gmsh = |kind: &str| {
+                let mut groups = content.groups.iter();
+                kind == "entity" && groups.all(|group| group.kind != kind || group.name().is_none())
+            };
+            let lost_kinds = kinds.iter().copied().filter(dropped);
+            for kind in lost_kinds.filter(|kind| !is_for_gmsh(kind)) {
                 let groups =
                     || content.groups.iter().filter(|g| g.dimension == dimension && g.kind == kind);
                 // If there is one group without a name, only its number is lost.

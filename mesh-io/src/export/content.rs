@@ -31,6 +31,10 @@ pub struct Content {
     pub(crate) groups: Vec<ContentGroup>,
     /// Distinct sets of groups, as indices in `groups`. [`Cells::sets`] holds the index of each cell's set.
     pub(crate) sets: Vec<Vec<u32>>,
+    /// Kind of the groups that the cell data of the regions make; `None` if the regions are entries of the format.
+    pub(crate) region_kind: Option<String>,
+    /// Groups with a name in the file, but without cells and vertices.
+    pub(crate) empty_groups: Vec<ContentGroup>,
     /// Groups of vertices, each with its vertices.
     pub(crate) vertex_groups: Vec<(ContentGroup, Vec<u32>)>,
     pub(crate) point_data: Vec<DataArray>,
@@ -252,7 +256,13 @@ impl Content {
                 group_kinds.push(&group.kind);
             }
         }
-        group_kinds.sort_by_key(|kind| last(kind).map_or(0, |at| at + 1));
+        // A user has named the cell data of the regions, or the mesh has no other regions.
+        let is_of_regions = |kind: &str| self.region_kind.as_deref() == Some(kind);
+        group_kinds.sort_by_key(|kind| match last(kind) {
+            _ if is_of_regions(kind) => 0,
+            None => 1,
+            Some(at) => at + 2,
+        });
         group_kinds
     }
 }

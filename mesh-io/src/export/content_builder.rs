@@ -16,11 +16,16 @@ use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
-/// Reads a file again, and returns its format-independent content.
-pub(crate) fn content(reader: &ReaderFunctions, source: &Source) -> Result<Content, ReadError> {
+/// Reads a file again, and returns its format-independent content. `region_array` names the cell data that number the
+/// regions.
+pub(crate) fn content(
+    reader: &ReaderFunctions,
+    source: &Source,
+    region_array: Option<&str>,
+) -> Result<Content, ReadError> {
     let mut collector = ContentBuilder::default();
     (reader.visit)(source, &mut collector)?;
-    Ok(collector.finish())
+    Ok(collector.finish(region_array))
 }
 
 /// Visitor that builds a [`Content`].
@@ -59,7 +64,7 @@ struct PendingArray {
 }
 
 /// Returns the common word for kinds of groups that formats name differently.
-fn common_kind(kind: &str) -> String {
+pub(crate) fn common_kind(kind: &str) -> String {
     let small = kind.to_ascii_lowercase();
     let common = match small.as_str() {
         "gmsh:physical" => "physical",
@@ -73,8 +78,19 @@ fn common_kind(kind: &str) -> String {
 
 impl ContentBuilder {
     /// Completes the content after the last item of the file.
-    fn finish(self) -> Content {
-        let Self { mut content, keys, by_tag, .. } = self;
+    fn finish(mut self, region_array: Option<&str>) -> Content {
+        self.add_cell_data();
+        if let Some(array) = region_array {
+            self.add_regions(array);
+        }
+        let Self { mut content, keys, vertex_keys, .. } = self;
+        for (kind, dimension, tag, name) in keys.names_of_dimensions() {
+            let label = GroupLabel::Tag(tag);
+            if ![&keys, &vertex_keys].iter().any(|keys| keys.contains(kind, dimension, &label)) {
+                let (kind, name) = (kind.to_owned(), Some(name.to_owned()));
+                content.empty_groups.push(ContentGroup { kind, dimension, label, name });
+            }
+        }
         let of_vertices = content.vertex_groups.iter_mut().map(|(group, _)| group);
         for group in content.groups.iter_mut().chain(of_vertices) {
             group.name = keys.name_of(&group.kind, group.dimension, &group.label);
@@ -97,8 +113,19 @@ impl ContentBuilder {
             }
             fits
         });
+        // Data that define regions are stored as groups alone.
+        let groups = &content.groups;
+        let is_group =
+            |data: &DataArray| groups.iter().any(|group| group.kind == common_kind(&data.name));
+        content.cell_data.retain(|data| !is_group(data));
+        content
+    }
+
+    /// Adds the cell data that the reader has passed to the content.
+    fn add_cell_data(&mut self) {
+        let Self { content, by_tag, .. } = self;
         // An element may have become several cells, and data may be given for some cells only.
-        for (data, tags) in by_tag.into_iter().filter(|(data, _)| data.components > 0) {
+        for (data, tags) in by_tag.drain(..).filter(|(data, _)| data.components > 0) {
             let rows: HashMap<u64, usize> = match tags {
                 Some(tags) => tags.into_iter().zip(0..).collect(),
                 None => (0..).zip(0..data.values.len() / data.components.max(1)).collect(),
@@ -113,12 +140,24 @@ impl ContentBuilder {
             }
             content.cell_data.push(DataArray { values, ..data });
         }
-        // Data that define regions are stored as groups alone.
-        let groups = &content.groups;
-        let is_group =
-            |data: &DataArray| groups.iter().any(|group| group.kind == common_kind(&data.name));
-        content.cell_data.retain(|data| !is_group(data));
-        content
+    }
+
+    /// Adds a group for each number of the cell data `array`. Cells without a number join no group. Does nothing if the
+    /// file has no such data, as its regions are then groups already.
+    fn add_regions(&mut self, array: &str) {
+        self.content.region_kind = Some(common_kind(array));
+        let is_own = |data: &&DataArray| data.name == array && data.components == 1;
+        let Some(data) = self.content.cell_data.iter().find(is_own) else { return };
+        let numbers = data.values.clone();
+        for (cell, number) in numbers.into_iter().enumerate().filter(|(_, x)| !x.is_nan()) {
+            let dimension = self.content.cells.kinds[cell].dimension();
+            let group = self.group(array, dimension, GroupLabel::number(number));
+            let mut groups = self.content.sets[self.content.cells.sets[cell] as usize].clone();
+            if !groups.contains(&group) {
+                groups.push(group);
+            }
+            self.content.cells.sets[cell] = self.number_of(groups);
+        }
     }
 
     fn group(&mut self, kind: &str, dimension: u8, label: GroupLabel) -> u32 {

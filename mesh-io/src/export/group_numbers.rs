@@ -67,6 +67,15 @@ fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
     groups.iter().map(number).collect()
 }
 
+/// Returns whether a group is a region of surfaces with the tag 0 beside regions with other tags of the same kind. A tag of 0
+/// on all surfaces, or on lines and points, stands for no group.
+pub(crate) fn is_region_zero(content: &Content, group: &ContentGroup) -> bool {
+    let is_beside = |other: &ContentGroup| {
+        other.kind == group.kind && other.dimension == 2 && other.tag() != Some(0)
+    };
+    group.dimension == 2 && group.tag() == Some(0) && content.groups.iter().any(is_beside)
+}
+
 fn shared_kind<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
     groups.iter().find(|own| own.kind == group.kind).map_or("", |own| &own.kind)
 }

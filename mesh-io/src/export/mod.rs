@@ -13,6 +13,7 @@ pub(crate) mod content;
 pub(crate) mod content_builder;
 pub(crate) mod counters;
 pub(crate) mod group_numbers;
+mod implied_cells;
 pub(crate) mod name_rules;
 pub(crate) mod rows;
 pub(crate) mod sides;

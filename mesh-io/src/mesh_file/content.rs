@@ -11,7 +11,13 @@ impl MeshFile {
     /// # Errors
     /// [`ReadError`] if names of groups, or other content that [`read`](Self::read) skips, are damaged.
     pub fn content(&self) -> Result<Content, ReadError> {
-        let mut content = content_builder::content(self.reader(), self.source())?;
+        self.content_with(self.region_array())
+    }
+
+    /// Reads the content as [`content`](Self::content) does. The cell data `region_array` become groups; `None` leaves them
+    /// data.
+    pub(crate) fn content_with(&self, region_array: Option<&str>) -> Result<Content, ReadError> {
+        let mut content = content_builder::content(self.reader(), self.source(), region_array)?;
         // The points of the first reading are rounded to the precision of the file.
         content.points = self.points().to_vec();
         Ok(content)

@@ -32,6 +32,26 @@ impl MeshFile {
         self.difference_ignoring(other, [&[], &[]])
     }
 
+    /// Returns the first difference to a file of the mesh in another format, or in another encoding. `None` if both files
+    /// have equally many vertices and the same triangles. Coordinates and the order of triangles may differ.
+    pub fn difference_of_triangles(&self, other: &MeshFile) -> Option<Difference> {
+        let [mine, theirs] = [self, other].map(MeshFile::triangles);
+        let counts = [self, other].map(|file| file.points().len());
+        let description = if counts[0] != counts[1] {
+            format!("{} vertices and {}", counts[0], counts[1])
+        } else if mine == theirs || ascending(mine) == ascending(theirs) {
+            return None;
+        } else {
+            "the triangles are not the same".to_owned()
+        };
+        let [location, other_location] = [self, other].map(|file| SourceLocation {
+            path: file.path().to_owned(),
+            location: Location::Line(1),
+            id: 0,
+        });
+        Some(Difference { location, other_location, description })
+    }
+
     /// Returns the first difference as [`difference`](Self::difference) does, but also ignores the numbers of `fields`:
     /// fields of this file, and the corresponding fields of the other file.
     pub fn difference_ignoring(
@@ -237,6 +257,14 @@ fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<us
             |range: &Range<usize>| range.start.min(bytes.len())..range.end.min(bytes.len());
         joined.iter().map(inside).collect()
     })
+}
+
+/// Sorts triangles, each of which starts at its smallest vertex and keeps its winding.
+fn ascending(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
+    let mut all: Vec<[u32; 3]> = triangles.iter().filter_map(turned).collect();
+    all.sort_unstable();
+    all
 }
 
 /// Returns the line from `start` on, without its line break.

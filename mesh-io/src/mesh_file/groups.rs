@@ -6,9 +6,13 @@ use crate::content::group_ends::group_ends;
 use crate::content::id_index::IdIndex;
 use crate::disk::source::Source;
 use crate::error::ReadError;
+use crate::export::content::Content;
+use crate::export::content_builder::common_kind;
 use crate::mesh_file::mesh::MeshFile;
 use crate::text::cursor::Cursor;
+use crate::visit::group_table::GroupTable;
 use crate::visit::group_visitor;
+use crate::visit::items::CellKind;
 use std::path::Path;
 
 impl MeshFile {
@@ -28,6 +32,7 @@ impl MeshFile {
     /// | MED | `group` of elements and of nodes, by name; `family` of elements |
     /// | Triangle | `attribute` (`attribute1` and so on if there are several), `marker` of vertices and segments |
     /// | VTK, XDMF | values of the cell data that define [regions](Self#regions); the name of the array is the kind |
+    /// | all with cell data | also the values of the array that [`ReadOptions::regions`](crate::ReadOptions::regions) names, or that looks like regions |
     /// | STL | `solid` |
     /// | Abaqus | `elset`, `surface` and `nset`, by name |
     /// | Nastran | `property`, with the names that comments of preprocessors give |
@@ -44,7 +49,10 @@ impl MeshFile {
     /// [`ReadError`] if the description of groups is damaged, such as gmsh's `$Entities`, which [`read`](Self::read)
     /// skips.
     pub fn groups(&self) -> Result<Groups, ReadError> {
-        let table = group_visitor::groups(self.reader(), self.source())?;
+        let mut table = group_visitor::groups(self.reader(), self.source())?;
+        if let Some(array) = self.region_array() {
+            add_regions(&mut table, &self.content()?, array);
+        }
         Ok(table.finish(self.triangles(), self.points().len()))
     }
 
@@ -104,5 +112,24 @@ impl MeshFile {
     /// Returns the id of each vertex in the file.
     fn vertex_ids(&self) -> Result<Vec<u64>, ReadError> {
         group_visitor::vertex_ids(self.reader(), self.source())
+    }
+}
+
+/// Adds the groups of the cell data `array` that number the regions. Does nothing if the groups of the array are entries of
+/// the format, which the table has.
+fn add_regions(table: &mut GroupTable, content: &Content, array: &str) {
+    if table.has_kind(array) {
+        return;
+    }
+    let mut triangles = 0;
+    for cell in content.cells() {
+        for group in cell.groups().filter(|group| group.kind == common_kind(array)) {
+            let number = table.number(array, group.dimension, &group.label);
+            match cell.kind {
+                CellKind::Triangle => table.add_triangle(number, triangles),
+                kind => table.add(number, kind, cell.vertices),
+            }
+        }
+        triangles += u32::from(cell.kind == CellKind::Triangle);
     }
 }

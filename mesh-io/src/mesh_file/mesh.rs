@@ -55,7 +55,13 @@ impl MeshFile {
                 let remedy = "Check that the file is a mesh in the format that its ending names";
                 return Err(source.error("neither vertices nor triangles were found", remedy));
             }
-            let problem = format!("{} vertices, but no triangle", parsed.points.len());
+            let others: String = parsed
+                .remarks
+                .iter()
+                .filter(|remark| matches!(remark, Remark::OtherElements { .. }))
+                .map(|remark| format!(" and {remark}"))
+                .collect();
+            let problem = format!("{} vertices{others}, but no triangle", parsed.points.len());
             let remedy = "Meshes are read by their triangles: mesh the surface with triangles, and save all its elements";
             return Err(source.error(problem, remedy));
         }
@@ -110,6 +116,11 @@ impl MeshFile {
     /// numbered from 0 in the order of first occurrence. `None` if all triangles have equal regions.
     pub fn regions(&self) -> Option<&[u32]> {
         self.parsed.regions.as_deref()
+    }
+
+    /// Returns the name of the cell data that number the regions; `None` if the regions are entries of the format.
+    pub(crate) fn region_array(&self) -> Option<&str> {
+        self.parsed.region_array.as_deref()
     }
 
     /// Returns the vertices inside the mesh at which triangles of different [regions](Self#regions) meet, ascending.

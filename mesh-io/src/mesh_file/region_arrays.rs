@@ -37,6 +37,7 @@ pub(super) fn find(
             return Err(source.error(problem, known(parsed)));
         };
         parsed.regions = regions.iter().any(|&region| region != 0).then_some(regions);
+        parsed.region_array = Some(name.clone());
         return Ok(());
     }
     let is_whole = |name: &&String| !parsed.fractional.contains(*name);
@@ -58,6 +59,7 @@ pub(super) fn find(
     } else if let Some((array, regions)) = found.next() {
         let others = found.map(|(name, _)| name).collect();
         parsed.regions = Some(regions);
+        parsed.region_array = Some(array.clone());
         parsed.remarks.push(Remark::RegionArray { array, others });
     }
     Ok(())

@@ -83,6 +83,11 @@ impl GroupTable {
         self.groups[group].others.push(vertex);
     }
 
+    /// Returns whether the table has groups of a kind.
+    pub(crate) fn has_kind(&self, kind: &str) -> bool {
+        self.groups.iter().any(|members| members.group.kind == kind)
+    }
+
     /// Sets the name of the groups with a tag in one dimension; `None` sets the name in all dimensions. Groups may be
     /// added later. With a dimension, the named group exists even without elements.
     pub(crate) fn name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {

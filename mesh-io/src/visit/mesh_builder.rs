@@ -95,6 +95,7 @@ pub(crate) fn parse_by(
         other_faces,
         remarks,
         data,
+        region_array: None,
         cell_arrays,
         fractional,
         ghost_array,

@@ -26,6 +26,8 @@ pub(crate) struct ParsedMesh {
     pub(crate) encoded: Option<Box<dyn EncodedArrays>>,
     /// The region of each triangle; `None` if all triangles have equal regions.
     pub(crate) regions: Option<Vec<u32>>,
+    /// Name of the cell data that number the regions; `None` if the regions are entries of the format.
+    pub(crate) region_array: Option<String>,
     /// Lines, points and periodic pairs of the file.
     pub(crate) constraints: Constraints,
     /// The quadrilaterals and polygons of the file.

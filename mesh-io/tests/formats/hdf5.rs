@@ -304,8 +304,14 @@ fn solutions_of_cgns_in_cells_that_look_like_regions_are_regions() {
     assert!(!file.interface_vertices().is_empty());
     let by_name = mesh_io::ReadOptions::new().regions(Some("Part".into()));
     assert_eq!(by_name.read(&made("cells.cgns")).unwrap().regions(), Some(regions));
+    // The regions are groups, of which a conversion makes physical groups.
+    let groups = file.groups().unwrap();
+    let mut of_groups: Vec<_> =
+        ["Material:1", "Material:2"].map(|name| groups.find(name).unwrap().triangles()).concat();
+    of_groups.sort_unstable();
+    assert!(of_groups.into_iter().eq(0..file.triangles().len() as u32));
     let text = Conversion::new(&file, Format::Gmsh22).unwrap().unwrap().text().unwrap();
-    assert!(text.contains("\"Material\""), "{text}");
+    assert!(!text.contains("\"Material\"") && text.contains("\"Part\""), "{text}");
 }
 
 /// gmsh lists the pairs of a periodic boundary twice, once for each side.

@@ -3,6 +3,7 @@
 use super::periodic;
 use crate::binary::byte_order::ByteOrder;
 use crate::export::content::DataArray;
+use crate::export::group_numbers::is_region_zero;
 use crate::export::rows::Rows;
 use crate::export::writer_input::WriterInput;
 use crate::visit::items::{CellKind, PeriodicNodes};
@@ -176,12 +177,15 @@ impl Physicals {
             for kind in input.capabilities.stored_kinds(content, dimension) {
                 for (group, own) in content.groups.iter().enumerate() {
                     let number = input.group_numbers.number(group as u32);
-                    if own.dimension != dimension || own.kind != kind || number == 0 {
+                    if own.dimension != dimension || own.kind != kind {
                         continue;
                     }
-                    match taken.insert((dimension, number)) {
-                        true => tags[group] = number,
-                        false => others.push(group),
+                    match number {
+                        // Tag 0 stands for no physical group.
+                        0 if is_region_zero(input.content, own) => others.push(group),
+                        0 => {}
+                        _ if taken.insert((dimension, number)) => tags[group] = number,
+                        _ => others.push(group),
                     }
                 }
             }
@@ -199,12 +203,18 @@ impl Physicals {
         Physicals { sets: content.sets.iter().map(of_set).collect(), tags }
     }
 
+    /// Returns dimension and tag of each physical group.
+    fn taken(&self, input: &WriterInput<'_>) -> HashSet<(u8, i64)> {
+        let groups = input.content.groups.iter().zip(&self.tags);
+        groups.map(|(group, &tag)| (group.dimension, tag)).collect()
+    }
+
     /// Returns the tags of a cell's physical groups.
     fn of(&self, input: &WriterInput<'_>, cell: usize) -> &[i64] {
         &self.sets[input.content.cells.sets[cell] as usize]
     }
 
-    /// Writes the names of the groups of written cells.
+    /// Writes the names of the groups of written cells, and of the groups without cells.
     fn write_names(&self, input: &WriterInput<'_>, out: &mut Rows) {
         let used: HashSet<u32> = input.cells().map(|cell| input.content.cells.sets[cell]).collect();
         let used: HashSet<u32> =
@@ -214,6 +224,14 @@ impl Physicals {
             (tag != 0).then_some((own.dimension, tag, own.name()?))
         };
         let mut rows: Vec<(u8, i64, &str)> = used.into_iter().filter_map(row).collect();
+        let mut taken: HashSet<(u8, i64)> = self.taken(input);
+        for group in &input.content.empty_groups {
+            // A group of another kind may have the number.
+            let (dimension, wanted) = (group.dimension, group.tag().filter(|&tag| tag > 0));
+            let mut numbers = wanted.into_iter().chain(1..);
+            let number = numbers.find(|&number| taken.insert((dimension, number)));
+            rows.extend(number.zip(group.name()).map(|(number, name)| (dimension, number, name)));
+        }
         rows.sort_unstable();
         if !rows.is_empty() {
             out.text(&format!("$PhysicalNames\n{}\n", rows.len()));
