@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::similar;
 use gpu_smooth::{GpuError, MeshError, SmoothError};
 use mesh_io::{FieldError, GroupError, ReadError, WriteError};
 
@@ -147,6 +148,10 @@ impl From<ReadError> for CliError {
     fn from(error: ReadError) -> Self {
         match error {
             ReadError::Io { path, source, remedy } => {
+                let is_missing = source.kind() == std::io::ErrorKind::NotFound;
+                let meant = similar::nearest_file(&path).filter(|_| is_missing);
+                let remedy =
+                    meant.map_or(remedy, |meant| format!("Did you mean {}?", meant.display()));
                 Self::input(format!("{}: {source}", path.display())).with_remedy(remedy)
             }
             ReadError::Content { path, location, problem, remedy } => {

@@ -16,6 +16,7 @@ mod render;
 mod report;
 mod request;
 mod run;
+mod similar;
 mod terminal;
 
 use std::ffi::OsString;

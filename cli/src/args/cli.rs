@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use mesh_io::{Conversion, Encoding, Format};
 
@@ -21,7 +21,9 @@ use crate::args::{
     version,
     subcommand_negates_reqs = true,
     override_usage = "gpu-smooth [OPTIONS] <IN> <OUT>\n       gpu-smooth [OPTIONS] <MESH>... --out-dir <DIR>\n       gpu-smooth <COMMAND>",
-    after_help = after_help()
+    arg_required_else_help = true,
+    after_help = SHORT_HELP,
+    after_long_help = after_help()
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -30,6 +32,52 @@ pub(crate) struct Cli {
     pub(crate) smooth: SmoothArgs,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
+}
+
+/// Text below the options in the program's short help.
+const SHORT_HELP: &str = "Examples:
+  gpu-smooth coast.msh better.msh --picture better.png
+  gpu-smooth quality better.msh
+
+--help lists all options and the formats, and `gpu-smooth COMMAND -h` those of a command.";
+
+/// Options of a run that the short help lists. Other options are in the long help.
+const USUAL: [&str; 14] = [
+    "input",
+    "output",
+    "scheme",
+    "engine",
+    "target",
+    "slide",
+    "fix",
+    "only",
+    "untangle",
+    "interpolate",
+    "report",
+    "picture",
+    "html",
+    "out_dir",
+];
+
+/// Returns the definition of the command line with the short help of `-h`: usual options, each with its first sentence.
+pub(crate) fn command() -> clap::Command {
+    let first_sentence = |arg: clap::Arg| {
+        let Some(help) = arg.get_help().map(ToString::to_string) else { return arg };
+        let end = [". ", "; ", ": "].iter().filter_map(|end| help.find(end)).min();
+        let first = help[..end.unwrap_or(help.len())].to_owned();
+        arg.help(first).long_help(help)
+    };
+    let is_usual = |arg: &clap::Arg| USUAL.contains(&arg.get_id().as_str()) || arg.is_global_set();
+    let mut program = Cli::command().mut_args(|arg| {
+        let is_hidden = !is_usual(&arg);
+        first_sentence(arg).hide_short_help(is_hidden)
+    });
+    let names: Vec<String> =
+        program.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    for name in names {
+        program = program.mut_subcommand(name, |command| command.mut_args(first_sentence));
+    }
+    program
 }
 
 /// Returns the text below the options in the program's help.
@@ -46,7 +94,7 @@ fn after_help() -> String {
 const EXAMPLES: &str = "Examples:
   gpu-smooth coast.msh better.msh --picture better.png
   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json
-  gpu-smooth wing.su2 better.su2 --fix airfoil --only-bad 2
+  gpu-smooth wing.su2 better.su2 --slide --fix airfoil
   gpu-smooth *.msh --out-dir smoothed --resume
   gpu-smooth part.msh better.msh --html run.html
   gpu-smooth quality better.msh

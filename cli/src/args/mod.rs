@@ -18,7 +18,7 @@ mod trial;
 pub(crate) use bench::BenchArgs;
 pub(crate) use cli::{
     AdaptersArgs, Cli, Command, CompareArgs, CompletionsArgs, ConvertArgs, GroupsArgs, LogForm,
-    ManArgs, OutputArgs,
+    ManArgs, OutputArgs, command,
 };
 pub(crate) use fields::FieldArgs;
 pub(crate) use movable::MoveArgs;

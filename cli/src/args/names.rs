@@ -61,7 +61,7 @@ pub(crate) fn measure_help() -> String {
     let names: Vec<_> = own.map(|measure| measure.name()).collect();
     format!(
         "Measures with statistics and a histogram; the first also ranks the worst triangles: {}, or a metric [default: statistics of \
-         all measures, histograms of shape and min-angle]",
+         these measures, histograms of shape and min-angle]",
         names.join(", ")
     )
 }

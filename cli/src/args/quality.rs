@@ -36,9 +36,13 @@ pub(crate) struct QualityArgs {
     #[arg(long)]
     pub(crate) by_region: bool,
     /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. The exit code is 1 if a
-    /// triangle has such a value
+    /// triangle has such a value. Each threshold has a line that says whether it holds and where the worst triangle is; -q
+    /// prints the violated ones alone
     #[arg(long, value_name = "NAME<VALUE")]
     pub(crate) threshold: Vec<Threshold>,
+    /// Print one line for each mesh, or for each --threshold of each mesh, for logs
+    #[arg(long, conflicts_with_all = ["csv", "json"])]
+    pub(crate) summary: bool,
     /// Print JSON
     #[arg(long, conflicts_with = "csv")]
     pub(crate) json: bool,

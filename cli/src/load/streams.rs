@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use mesh_io::{MeshFile, PointField};
+use mesh_io::{MeshFile, PointField, WriteError};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -42,14 +42,18 @@ pub(crate) fn write(
     let written = match is_standard(out) {
         true => {
             let name = Path::new("standard output");
-            file.write_to_with(name, &mut std::io::stdout(), points, fields)
+            let written = file.write_to_with(name, &mut std::io::stdout(), points, fields);
+            if let Err(WriteError::Io { source, .. }) = &written {
+                tell::end_if_closed(source);
+            }
+            written
         }
         false => file.write_with(out, points, fields),
     };
     Ok(written?)
 }
 
-/// Returns the paths of the files to which a mesh is written; no path for standard output.
+/// Returns the paths of the files to which a mesh is rewritten; no path for standard output.
 ///
 /// # Errors
 /// Returns an error if the mesh cannot be written to `out`, or has several files and `out` is standard

@@ -6,7 +6,7 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
-use crate::args::{Cli, Command, OutputArgs};
+use crate::args::{self, Cli, Command, OutputArgs};
 use crate::request::conflicts::{self, OF_BENCH, OF_COMPARE, OF_CONVERT, OF_QUALITY, OF_RUN};
 use crate::request::mistyped;
 use crate::terminal::{Verbosity, process};
@@ -40,7 +40,7 @@ pub(crate) fn answered(error: &clap::Error) -> u8 {
 /// # Errors
 /// The error describes the invalid words, or contains the requested help or version.
 pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
-    let matches = Cli::command().try_get_matches_from(words)?;
+    let matches = args::command().try_get_matches_from(words)?;
     let refused = |kind, text: String| Err(Cli::command().error(kind, text));
     if let Some(text) = misplaced(&matches) {
         return refused(ErrorKind::ArgumentConflict, text);

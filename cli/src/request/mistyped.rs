@@ -7,11 +7,7 @@ use clap::CommandFactory;
 
 use crate::args::Cli;
 use crate::error::CliError;
-
-/// Largest number of inserted, deleted, replaced or swapped letters of a mistyped name.
-const MAX_EDITS: usize = 2;
-/// Length of the shortest word with `MAX_EDITS`. In shorter words, one letter may be wrong.
-const MIN_LENGTH: usize = 5;
+use crate::similar;
 
 /// Checks that the input is not the mistyped name of a command.
 ///
@@ -47,13 +43,10 @@ fn meant(input: &Path) -> Option<String> {
     // A Triangle mesh may be given without an extension.
     let is_mesh =
         input.exists() || ["node", "ele"].iter().any(|e| input.with_extension(e).exists());
-    let word = word.to_ascii_lowercase();
-    let most = if word.len() < MIN_LENGTH { 1 } else { MAX_EDITS };
+    if is_mesh {
+        return None;
+    }
     let program = Cli::command();
     let names = program.get_subcommands().map(|command| command.get_name()).chain(["help"]);
-    let edits = |name: &&str| strsim::osa_distance(&word, name);
-    let nearest = names
-        .min_by_key(edits)
-        .filter(|name| !is_mesh && *name != input.as_os_str() && edits(name) <= most);
-    nearest.map(str::to_owned)
+    similar::nearest(word, names.map(str::to_owned))
 }

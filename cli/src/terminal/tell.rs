@@ -11,10 +11,15 @@ use gpu_smooth::gpu::AdapterSummary;
 use serde_json::{Value, json};
 
 use crate::error::CliError;
+use crate::terminal::interrupt;
 
 /// Whether standard error receives JSON. `START` is the time from which events count seconds.
 static JSON: AtomicBool = AtomicBool::new(false);
 static START: OnceLock<Instant> = OnceLock::new();
+
+/// Exit code of a process whose standard output is closed before its end: that of the signal SIGPIPE, which ends usual
+/// programs.
+const CLOSED_PIPE: i32 = 128 + 13;
 
 /// Switches standard error to JSON, one object per line.
 pub(crate) fn log_json() {
@@ -45,21 +50,31 @@ pub(crate) fn say(text: &str) {
     say_data(&printable(text));
 }
 
-/// Prints a result for programs to standard output, without any change unless standard output is a terminal. Ignores a
-/// reader that has closed the pipe, as `head` does; other failures, such as a full disk, end the process.
+/// Prints a result for programs to standard output, without any change unless standard output is a terminal. If the reader has
+/// closed the pipe, as `head` does, the process ends without a message. Other failures, such as a full disk, end the process
+/// with an error.
 pub(crate) fn say_data(text: &str) {
     let mut out = std::io::stdout();
     let written = match out.is_terminal() {
         true => writeln!(out, "{}", printable(text)),
         false => writeln!(out, "{text}"),
     };
-    match written {
-        Err(problem) if problem.kind() != ErrorKind::BrokenPipe => {
-            let failed = CliError::output(format!("standard output: {problem}"));
-            error(&failed);
-            std::process::exit(failed.kind.exit_code().into());
-        }
-        _ => {}
+    if let Err(problem) = written {
+        end_if_closed(&problem);
+        let failed = CliError::output(format!("standard output: {problem}"));
+        error(&failed);
+        std::process::exit(failed.kind.exit_code().into());
+    }
+}
+
+/// Ends the process without a message if `problem` is that of a pipe whose reader has gone.
+pub(crate) fn end_if_closed(problem: &std::io::Error) {
+    if problem.kind() == ErrorKind::BrokenPipe {
+        // A signal has its own exit code, such as that of a closed terminal.
+        std::process::exit(match interrupt::exit_code() {
+            0 => CLOSED_PIPE,
+            code => code.into(),
+        });
     }
 }
 

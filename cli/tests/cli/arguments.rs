@@ -15,12 +15,24 @@ fn assert_usage(folder: &Folder, line: &str, parts: &[&str]) {
 #[test]
 fn missing_and_surplus_arguments_are_errors() {
     let folder = small();
-    assert_usage(&folder, "", &["<IN>", "<OUT>"]);
     assert_usage(&folder, "in", &["<OUT>"]);
     assert_usage(&folder, "in out extra", &["unexpected argument 'extra'", "one mesh per run"]);
     assert_usage(&folder, "quality", &["<MESH>"]);
     assert_usage(&folder, "metrics in", &["unexpected argument 'in'"]);
     assert_usage(&folder, "in out --nonsense", &["unexpected argument '--nonsense'"]);
+}
+
+#[test]
+fn the_short_help_lists_usual_options_and_is_printed_without_arguments() {
+    let folder = small();
+    let [short, long] = ["-h", "--help"].map(|option| folder.line(option).clean().out);
+    assert!(short.lines().count() < 80 && long.lines().count() > 150, "{short}");
+    assert_holds(&short, &["gpu-smooth [OPTIONS] <IN> <OUT>", "--slide", "--picture", "--help"]);
+    assert!(!short.contains("--levels") && !short.contains("Exit codes"), "{short}");
+    assert_holds(&long, &["--checkpoint <FILE>", "Exit codes:", "--slide --fix airfoil"]);
+    let none = folder.line("");
+    assert_eq!((none.code, none.out.as_str()), (Some(2), ""));
+    assert!(none.err.trim_end() == short.trim_end(), "{}", none.err);
 }
 
 /// A scheme of 61 metrics.

@@ -22,7 +22,11 @@ fn json(folder: &Folder, line: &str) -> Value {
 #[test]
 fn all_forms_tell_the_same_statistics() {
     let folder = small();
-    let text = folder.line("quality in").clean().out;
+    let unnamed = folder.line("quality in").clean().out;
+    let all: Vec<&str> = Measure::ALL.iter().map(|measure| measure.name()).collect();
+    let text = folder.line(&format!("quality in -m {}", all.join(","))).clean().out;
+    // The table of statistics is between the sizes of the mesh and the histograms.
+    let text = text.split("\n\n").nth(1).unwrap();
     let told = json(&folder, "quality in --json");
     let csv = folder.line("quality in --csv").clean().out;
     let mut rows = csv.lines();
@@ -53,11 +57,17 @@ fn all_forms_tell_the_same_statistics() {
             "{row}"
         );
 
+        if matches!(measure, Measure::Metric(_)) {
+            let told = "Not listed: the metrics of runs (-m edge,area,";
+            assert!(unnamed.contains(told), "{unnamed}");
+            let has_row = unnamed.contains(&format!("\n{measure}   "));
+            assert!(!has_row || measure.name() == "area", "{unnamed}");
+        }
         let row = text.lines().find(|row| row.split(' ').next() == Some(measure.name()));
         // A measure with the values of another has no row of its own in a table for people.
         let Some(row) = row else {
             let twin = measure.equal_to().unwrap();
-            assert_holds(&text, &[&format!("{measure} equals {twin}")]);
+            assert_holds(text, &[&format!("{measure} equals {twin}")]);
             continue;
         };
         assert_eq!(measure.equal_to(), None, "{row}");
@@ -156,8 +166,22 @@ fn a_threshold_fails_where_triangles_pass_it() {
     assert_holds(&last.err, &["in: 1 of 160 triangles have min-angle<="]);
     for passed in [format!("min-angle<{least}"), "max-angle>180".into(), "size_ratio>=1e300".into()]
     {
-        run(&passed).clean();
+        let told = run(&passed).clean().out;
+        let line = told.lines().last().unwrap();
+        assert!(line.starts_with("in: passed: none of 160 triangles has "), "{line}");
+        assert_holds(line, &["; the worst is triangle ", " (in.ele:"]);
     }
+    // A log of checks has a line for each threshold alone, or for violated thresholds alone.
+    let line =
+        format!("quality in --threshold min-angle<{least} --threshold max-angle>0 --summary");
+    let log = finish(folder.command().args(line.split(' ')));
+    assert_eq!((log.code, log.out.lines().count(), log.err.lines().count()), (Some(1), 2, 1));
+    assert_holds(&log.out, &["in: passed: none of ", "in: failed: 160 of 160 triangles have "]);
+    let quiet = finish(folder.command().args(line.replace("--summary", "-q").split(' ')));
+    assert_eq!((quiet.code, quiet.out.as_str(), quiet.err), (Some(1), "", log.err));
+    let short = folder.line("quality in --summary").clean().out;
+    assert!(short.starts_with("in: 160 triangles, min-angle "), "{short}");
+    assert!(short.lines().count() == 1 && short.contains("0 inverted or flat"), "{short}");
     // Standard error has a line for each mesh and each violated threshold, also with `--json`.
     let line = "quality in in.ele --json --threshold min-angle<60 --threshold condition>=1 --threshold shape<0";
     let run = folder.line(line);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
-use crate::commands::quality::mesh_quality::MeshQuality;
+use crate::commands::quality::mesh_quality::{MeshQuality, Violation};
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
 use crate::render::html::{self, PageEntry};
@@ -18,7 +18,8 @@ pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliErr
     let outputs = Outputs::of_drawings(&args.picture, args.html.as_ref())?;
     outputs.check(&args.meshes, &[])?;
     let is_drawn = outputs.picture.is_some() || outputs.page.is_some();
-    let verbosity = Verbosity { quiet: verbosity.quiet || !is_drawn, ..verbosity };
+    let quiet = verbosity.quiet;
+    let verbosity = Verbosity { quiet: quiet || !is_drawn, ..verbosity };
     if is_drawn {
         interrupt::watch(verbosity.quiet);
     }
@@ -34,7 +35,7 @@ pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliErr
     }
     display.clear();
     if !qualities.is_empty() {
-        print(&qualities, args, &style)?;
+        print(&qualities, args, quiet, &style)?;
         write_page(&qualities, outputs.page.as_deref())?;
     }
     let mut violations = qualities.iter().flat_map(|quality| violations(quality, &style));
@@ -47,14 +48,27 @@ pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliErr
     last.map_or(Ok(()), Err)
 }
 
-/// Prints the quality of at least one mesh.
-fn print(qualities: &[MeshQuality], args: &QualityArgs, style: &Style) -> Result<(), CliError> {
+/// Prints the quality of at least one mesh. Prints no text if `quiet` is true and thresholds are given, which the exit code
+/// answers.
+fn print(
+    qualities: &[MeshQuality],
+    args: &QualityArgs,
+    quiet: bool,
+    style: &Style,
+) -> Result<(), CliError> {
     if args.json {
         tell::say_data(&format!("{:#}", json::json(qualities)?));
     } else if args.csv {
         tell::say_data(&json::csv(qualities));
-    } else {
-        tell::say(&text::text(qualities, style));
+    } else if args.summary {
+        tell::say(&summary(qualities, style));
+    } else if !quiet || args.threshold.is_empty() {
+        let is_usual = args.measure.is_empty();
+        let mut text = text::text(qualities, is_usual, style);
+        if !args.threshold.is_empty() {
+            text += &format!("\n\n{}", summary(qualities, style));
+        }
+        tell::say(&text);
     }
     Ok(())
 }
@@ -84,15 +98,44 @@ fn entry(quality: &MeshQuality, is_alone: bool) -> Option<PageEntry<'_>> {
     })
 }
 
+/// Returns a line for each threshold of each mesh; without thresholds, a line for each mesh.
+fn summary(qualities: &[MeshQuality], style: &Style) -> String {
+    let of_mesh = |quality: &MeshQuality| -> Vec<String> {
+        let path = quality.path.display();
+        match &quality.violations[..] {
+            [] => vec![format!("{path}: {}", text::in_short(quality, style))],
+            all => all
+                .iter()
+                .map(|violation| {
+                    let result = if violation.count == 0 { "passed" } else { "failed" };
+                    format!("{path}: {result}: {}", finding(quality, violation, style))
+                })
+                .collect(),
+        }
+    };
+    qualities.iter().flat_map(of_mesh).collect::<Vec<_>>().join("\n")
+}
+
 /// Returns a sentence for each threshold that triangles of a mesh violate.
 fn violations(quality: &MeshQuality, style: &Style) -> impl Iterator<Item = String> {
-    quality.violations.iter().filter_map(move |violation| {
-        let (place, value) = violation.worst.as_ref()?;
-        let (path, threshold) = (quality.path.display(), &violation.threshold);
-        let worst = text::valued(threshold.measure, *value, style);
-        Some(format!(
-            "{path}: {} of {} triangles have {threshold}; the worst is triangle {} ({place}), {worst}",
-            violation.count, quality.triangles, place.id
-        ))
+    let violated = quality.violations.iter().filter(|violation| violation.count > 0);
+    violated.map(move |violation| {
+        format!("{}: {}", quality.path.display(), finding(quality, violation, style))
     })
+}
+
+/// Describes how many triangles violate a threshold, with the place of the worst triangle.
+fn finding(quality: &MeshQuality, violation: &Violation, style: &Style) -> String {
+    let Violation { threshold, count, worst } = violation;
+    let counted = match count {
+        0 => format!("none of {} triangles has {threshold}", quality.triangles),
+        count => format!("{count} of {} triangles have {threshold}", quality.triangles),
+    };
+    match worst {
+        None => counted,
+        Some((place, value)) => {
+            let worst = text::valued(threshold.measure, *value, style);
+            format!("{counted}; the worst is triangle {} ({place}), {worst}", place.id)
+        }
+    }
 }

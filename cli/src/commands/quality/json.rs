@@ -92,7 +92,8 @@ fn worst(worst: &Worst) -> Value {
 
 fn violation(violation: &Violation) -> Value {
     let Violation { threshold, count, worst } = violation;
-    let worst = worst.as_ref().map(|(place, value)| {
+    let violating = worst.as_ref().filter(|_| *count > 0);
+    let worst = violating.map(|(place, value)| {
         let mut object = placed("triangle", place);
         object.insert("value".into(), json!(value));
         object

@@ -94,8 +94,10 @@ pub(crate) struct Worst {
 /// The triangles that violate a threshold.
 pub(crate) struct Violation {
     pub(crate) threshold: Threshold,
+    /// Number of triangles that violate the threshold.
     pub(crate) count: usize,
-    /// Location and value of the worst violating triangle; `None` without violations.
+    /// Location and value of the worst triangle by the measure of the threshold, which may pass; `None` for a mesh without
+    /// triangles.
     pub(crate) worst: Option<(SourceLocation, f64)>,
 }
 
@@ -303,7 +305,7 @@ fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
 fn violation(file: &LoadedMesh, measured: &Measured<'_>, threshold: &Threshold) -> Violation {
     let measure = threshold.measure;
     let (count, _) = measured.count_where(measure, |value| threshold.is_met(value));
-    let worst = measured.worst(measure, usize::from(count > 0));
+    let worst = measured.worst(measure, 1);
     let worst = worst.first().map(|&(t, value)| (file.source.triangle_location(t), value));
     Violation { threshold: threshold.clone(), count, worst }
 }

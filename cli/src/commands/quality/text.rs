@@ -29,8 +29,9 @@ fn shown(style: &Style) -> [bool; COLUMNS.len()] {
     shown
 }
 
-/// Writes the measurements of one or more meshes.
-pub(crate) fn text(qualities: &[MeshQuality], style: &Style) -> String {
+/// Writes the measurements of one or more meshes. If `is_usual` is true, the metrics of runs are left out, except for f by
+/// imr.
+pub(crate) fn text(qualities: &[MeshQuality], is_usual: bool, style: &Style) -> String {
     let mut text = String::new();
     for quality in qualities {
         let MeshQuality { path, format, vertices, free, triangles, remarks, .. } = quality;
@@ -38,24 +39,35 @@ pub(crate) fn text(qualities: &[MeshQuality], style: &Style) -> String {
         remarks.iter().for_each(|remark| text.push_str(&format!("{remark}\n")));
         let _ = writeln!(text, "{vertices} vertices ({free} free), {triangles} triangles\n");
     }
-    text.push_str(&table(qualities, style));
+    text.push_str(&table(qualities, is_usual, style));
     for quality in qualities {
         text.push('\n');
         if qualities.len() > 1 {
             let _ = writeln!(text, "== {}", quality.path.display());
         }
-        text.push_str(&details(quality, style));
+        text.push_str(&details(quality, is_usual, style));
     }
     text.trim_end().to_owned()
 }
 
+/// Describes a mesh in one line, for logs.
+pub(crate) fn in_short(quality: &MeshQuality, style: &Style) -> String {
+    let (report, triangles) = (&quality.report, quality.triangles);
+    let angle = valued(Measure::MinAngle, report.min_angle, style);
+    let (worst, inverted) = (sig6(report.worst_imr), report.inverted);
+    format!("{triangles} triangles, {angle}, worst imr {worst}, {inverted} inverted or flat")
+}
+
 /// Writes a table of statistics: one row per measure, or one row per measure and file. Measures with equal values share
-/// a row, and a sentence below the table names them.
-fn table(qualities: &[MeshQuality], style: &Style) -> String {
+/// a row, and a sentence below the table names them. If `is_usual` is true, a sentence names the metrics of runs instead.
+fn table(qualities: &[MeshQuality], is_usual: bool, style: &Style) -> String {
     let mut text = head(style);
     let Some(first) = qualities.first() else { return text };
     let measures: Vec<Measure> = first.statistics.iter().map(|row| row.measure).collect();
-    let DistinctMeasures { shown, equal } = DistinctMeasures::of(&measures);
+    let DistinctMeasures { mut shown, equal } = DistinctMeasures::of(&measures);
+    if is_usual {
+        shown.retain(|measure| !matches!(measure, Measure::Metric(_)));
+    }
     let shown = measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure));
     for (i, measure) in shown {
         match qualities {
@@ -69,7 +81,10 @@ fn table(qualities: &[MeshQuality], style: &Style) -> String {
             }
         }
     }
-    if !equal.is_empty() {
+    if is_usual {
+        let metrics: Vec<&str> = Metric::ALL.iter().map(|metric| metric.name()).collect();
+        let _ = writeln!(text, "Not listed: the metrics of runs (-m {})", metrics.join(","));
+    } else if !equal.is_empty() {
         let _ = writeln!(text, "Not listed: {}", equal.join(", "));
     }
     text
@@ -104,7 +119,7 @@ fn named(measure: Measure, style: &Style) -> String {
 }
 
 /// Writes histograms, regions, worst triangles, objectives and counts of one mesh.
-fn details(quality: &MeshQuality, style: &Style) -> String {
+fn details(quality: &MeshQuality, is_usual: bool, style: &Style) -> String {
     let mut text = String::new();
     for histogram in &quality.histograms {
         text.push_str(&bars::text(histogram, &named(histogram.measure, style), style));
@@ -118,7 +133,11 @@ fn details(quality: &MeshQuality, style: &Style) -> String {
         text.push('\n');
     }
     let report = &quality.report;
-    for (name, metric) in objectives() {
+    let objectives = match is_usual {
+        true => vec![("f imr".to_owned(), Metric::Imr)],
+        false => objectives(),
+    };
+    for (name, metric) in objectives {
         let _ = writeln!(text, "{name:<22}{:>12}", sig6(report.f[metric.name()]));
     }
     let (worst, place) = (sig6(report.worst_imr), &quality.worst_place);
