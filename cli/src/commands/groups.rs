@@ -61,11 +61,19 @@ fn as_json(group: &Group, spelling: &str) -> serde_json::Value {
     })
 }
 
-/// Returns a table with a row for each group. Columns of zeros are omitted.
+/// Returns a table with a row for each group. Columns of zeros are omitted, as is the column of names unless several groups
+/// share a name, so that their tags stand for them.
 fn table(groups: &Groups) -> String {
+    let spellings = groups.unique_names();
+    let is_hidden = |(group, spelling): (&Group, &String)| {
+        group.name.as_ref().is_some_and(|name| !spelling.ends_with(name.as_str()))
+    };
+    let has_names = groups.iter().zip(&spellings).any(is_hidden);
     let texts = |group: &Group, spelling: &String| {
         let tag = group.tag.map_or_else(|| "-".to_owned(), |tag| tag.to_string());
-        [spelling.clone(), format!("{} {}", group.kind, group.dimension_name()), tag]
+        let name = has_names.then(|| group.name.as_deref().unwrap_or("-").to_owned());
+        let kind = format!("{} {}", group.kind, group.dimension_name());
+        [Some(spelling.clone()), name, Some(kind), Some(tag)].into_iter().flatten()
     };
     let counts = |group: &Group| {
         let (triangles, vertices) = (group.triangles().len(), group.vertices().len());
@@ -74,20 +82,22 @@ fn table(groups: &Groups) -> String {
     let is_used = |column: usize| groups.iter().any(|group| counts(group)[column] > 0);
     let names = ["points", "lines", "triangles", "quadrilaterals", "vertices"];
     let used: Vec<usize> = (0..names.len()).filter(|&column| is_used(column)).collect();
-    let head = ["group", "what", "tag"].map(str::to_owned).into_iter();
+    let head = [Some("group"), has_names.then_some("name"), Some("what"), Some("tag")];
+    let words = 2 + usize::from(has_names);
+    let head = head.into_iter().flatten().map(str::to_owned);
     let mut rows: Vec<Vec<String>> =
         vec![head.chain(used.iter().map(|&column| names[column].to_owned())).collect()];
-    for (group, spelling) in groups.iter().zip(groups.unique_names()) {
+    for (group, spelling) in groups.iter().zip(&spellings) {
         let counts = counts(group);
         let numbers = used.iter().map(|&column| counts[column].to_string());
-        rows.push(texts(group, &spelling).into_iter().chain(numbers).collect());
+        rows.push(texts(group, spelling).chain(numbers).collect());
     }
     let width = |column: usize| rows.iter().map(|row| row[column].width()).max();
     let widths: Vec<usize> = (0..rows[0].len()).filter_map(width).collect();
     let line = |row: &Vec<String>| {
         let cell = |(column, text): (usize, &String)| match column {
             // Words are aligned left, numbers right.
-            0 | 1 => left(text, widths[column]),
+            column if column < words => left(text, widths[column]),
             _ => right(text, widths[column]),
         };
         row.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")
