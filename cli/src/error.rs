@@ -83,6 +83,11 @@ impl CliError {
         Self::new(ErrorKind::Device, message)
     }
 
+    /// Replaces the kind, and with it the exit code.
+    pub(crate) fn of_kind(self, kind: ErrorKind) -> Self {
+        Self { kind, ..self }
+    }
+
     /// Adds advice to the user on how to proceed.
     pub(crate) fn with_remedy(self, remedy: impl Into<String>) -> Self {
         Self { remedy: Some(remedy.into()), ..self }

@@ -2,15 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use mesh_io::{Conversion, Encoding, Format};
 
 use crate::args::names;
 use crate::args::table::{OfComparison, TableArgs};
 use crate::args::{
-    BenchArgs, FieldArgs, MoveArgs, QualityArgs, ReadArgs, SideArgs, SmoothArgs, TryArgs,
+    BenchArgs, FieldArgs, FormArgs, MoveArgs, QualityArgs, ReadArgs, SideArgs, SmoothArgs, TryArgs,
 };
 
 /// Smooths a 2D triangle mesh: moves interior vertices until element quality is optimal, and never inverts a triangle.
@@ -95,6 +93,7 @@ const EXAMPLES: &str = "Examples:
   gpu-smooth coast.msh better.msh --picture better.png
   gpu-smooth part.1.node out.node --scheme edge+imr --report run.json
   gpu-smooth wing.su2 better.su2 --slide --fix airfoil
+  gpu-smooth part.msh better.vtu --encoding compressed
   gpu-smooth *.msh --out-dir smoothed --resume
   gpu-smooth part.msh better.msh --html run.html
   gpu-smooth quality better.msh
@@ -228,48 +227,13 @@ pub(crate) struct ConvertArgs {
     /// File to write; its extension determines the format. - writes to standard output, with --to
     #[arg(value_name = "OUT")]
     pub(crate) output: PathBuf,
-    /// Output format, if the extension of OUT does not determine the format; .msh without --to means gmsh 4.1
-    #[arg(long, value_name = "FORMAT", value_parser = targets())]
-    pub(crate) to: Option<Format>,
-    /// Encoding of OUT: gmsh, legacy VTK and PLY are written as text or in binary, VTK XML also compressed
-    #[arg(long, value_enum)]
-    pub(crate) encoding: Option<EncodingArg>,
-    /// Write the mesh even if the format does not hold all of it
-    #[arg(long)]
-    pub(crate) lossy: bool,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
     /// Replace OUT even if it holds another mesh than IN, or is no mesh
     #[arg(long)]
     pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) reading: ReadArgs,
-}
-
-/// Value of `--encoding`.
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum EncodingArg {
-    /// Text; VTK XML with its arrays in base64
-    Text,
-    /// Numbers in binary
-    Binary,
-    /// Numbers in binary, compressed by zlib
-    Compressed,
-}
-
-impl From<EncodingArg> for Encoding {
-    fn from(encoding: EncodingArg) -> Encoding {
-        match encoding {
-            EncodingArg::Text => Encoding::Text,
-            EncodingArg::Binary => Encoding::Binary,
-            EncodingArg::Compressed => Encoding::Compressed,
-        }
-    }
-}
-
-/// Parses a format that meshes are converted to, by its short name.
-fn targets() -> impl TypedValueParser<Value = Format> {
-    let format = |name: String| Conversion::targets().find(|(own, _)| *own == name);
-    PossibleValuesParser::new(Conversion::targets().map(|(name, _)| name))
-        .try_map(move |name| format(name).map(|(_, format)| format).ok_or("not a format"))
 }
 
 #[derive(Args)]

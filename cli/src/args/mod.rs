@@ -3,6 +3,7 @@
 mod bench;
 mod cli;
 mod fields;
+mod form;
 mod movable;
 pub(crate) mod names;
 pub(crate) mod parse;
@@ -21,6 +22,7 @@ pub(crate) use cli::{
     ManArgs, OutputArgs, command,
 };
 pub(crate) use fields::FieldArgs;
+pub(crate) use form::FormArgs;
 pub(crate) use movable::MoveArgs;
 pub(crate) use picture::PictureArgs;
 pub(crate) use quality::{QualityArgs, Threshold};

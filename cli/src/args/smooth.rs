@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 
 use crate::args::table::{OfRun, TableArgs};
-use crate::args::{FieldArgs, MoveArgs, PictureArgs, ReadArgs, SideArgs, TargetArgs};
+use crate::args::{FieldArgs, FormArgs, MoveArgs, PictureArgs, ReadArgs, SideArgs, TargetArgs};
 
 #[derive(Args)]
 #[command(group = ArgGroup::new("drawing").args(["picture", "html"]).multiple(true))]
@@ -17,8 +17,8 @@ pub(crate) struct SmoothArgs {
     /// input
     #[arg(required = true, value_name = "IN")]
     pub(crate) input: Option<PathBuf>,
-    /// File for the smoothed mesh, in the format of IN; may be IN itself. The file is compressed if its name ends in
-    /// .gz or .zst; - writes to standard output
+    /// File for the smoothed mesh, which may be IN itself. The format is that of IN, unless the name ends as those of another
+    /// format do. The file is compressed if its name ends in .gz or .zst; - writes to standard output
     #[arg(required_unless_present = "out_dir", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Further meshes, with --out-dir
@@ -86,7 +86,11 @@ pub(crate) struct SmoothArgs {
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
 
-    /// Smooth all given meshes, each into a file of the same name in the directory DIR, created if missing. Small
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
+
+    /// Smooth all given meshes, each into a file of the same name in the directory DIR, created if missing. With
+    /// --to, the names get the ending of the format. Small
     /// meshes are smoothed concurrently; a failed mesh does not stop the rest
     #[arg(long, value_name = "DIR", help_heading = "Many meshes", conflicts_with = "picture")]
     pub(crate) out_dir: Option<PathBuf>,

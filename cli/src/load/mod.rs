@@ -1,5 +1,7 @@
 //! Meshes of the command line: the content of a file, and the selection of movable vertices.
 
+pub(crate) mod conversion;
+pub(crate) mod destination;
 pub(crate) mod explain;
 mod fields;
 mod fixed;

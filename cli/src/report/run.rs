@@ -130,6 +130,9 @@ pub(crate) struct FaultReport {
 #[derive(Serialize)]
 pub(crate) struct MeshReport {
     pub(crate) format: String,
+    /// The format of OUT; `None` if OUT has the format of IN.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) output_format: Option<String>,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
     pub(crate) free: usize,

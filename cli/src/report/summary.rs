@@ -71,6 +71,9 @@ impl Report {
     pub(crate) fn subject(&self) -> String {
         let mut text = String::new();
         let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
+        if let Some(output_format) = &self.mesh.output_format {
+            let _ = writeln!(text, "{} to {output_format}", self.mesh.format);
+        }
         let s = if colors == 1 { "" } else { "s" };
         let _ = writeln!(
             text,

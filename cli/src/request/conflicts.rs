@@ -45,7 +45,7 @@ pub(super) const OF_RUN: &[Conflict<SmoothArgs>] = &[
 pub(super) const OF_COMPARE: &[Conflict<CompareArgs>] =
     &[row(REGIONS_OF_FREE, idle, |a| has_free_regions(&a.reading, &a.moving))];
 
-/// Regions have no other effect than to fix the vertices between them.
+/// Regions fix the vertices between them, and are groups that --fix and --only name.
 const REGIONS_OF_FREE: [&str; 2] = ["--free-interfaces", "--regions"];
 
 /// Conflicts between options of `quality`.
@@ -70,7 +70,7 @@ pub(super) const OF_BENCH: &[Conflict<BenchArgs>] = &[
 /// Conflicts between options of `convert`.
 pub(super) const OF_CONVERT: &[Conflict<ConvertArgs>] =
     &[row(["--to triangle", "-"], several_files, |a| {
-        a.to == Some(Format::Triangle) && a.output.as_os_str() == "-"
+        a.form.to == Some(Format::Triangle) && a.output.as_os_str() == "-"
     })];
 
 /// Returns the message for the first conflict in the table of options; `None` if the options of a run are valid.
@@ -109,7 +109,8 @@ fn several_files<A>(_: [&str; 2], _: &A) -> String {
 }
 
 fn has_free_regions(reading: &ReadArgs, moving: &MoveArgs) -> bool {
-    reading.regions.is_some() && moving.free_interfaces
+    let names_groups = !moving.fix.is_empty() || !moving.only.is_empty();
+    reading.regions.is_some() && moving.free_interfaces && !names_groups
 }
 
 #[cfg(test)]

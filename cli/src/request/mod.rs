@@ -4,6 +4,7 @@
 pub(crate) mod checks;
 mod command_line;
 mod conflicts;
+mod form;
 pub(crate) mod mistyped;
 mod movable;
 mod outputs;
@@ -16,6 +17,7 @@ mod tests;
 mod trial;
 
 pub(crate) use command_line::command_line;
+pub(crate) use form::FormRequest;
 pub(crate) use movable::{FieldsRequest, MovableRequest, NearBad, SlideRequest};
 pub(crate) use outputs::{MeshOutput, Outputs};
 pub(crate) use picture::{PictureFormat, PictureRequest};

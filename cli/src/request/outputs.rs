@@ -173,6 +173,17 @@ impl Outputs {
         written: &[PathBuf],
         kind: ErrorKind,
     ) -> Result<(), CliError> {
+        self.check_files_of(self.mesh, read, written, kind)
+    }
+
+    /// Checks files as [`check_files`](Self::check_files) does, for a mesh that is written as `mesh`.
+    pub(crate) fn check_files_of(
+        &self,
+        mesh: MeshOutput,
+        read: &[PathBuf],
+        written: &[PathBuf],
+        kind: ErrorKind,
+    ) -> Result<(), CliError> {
         let meshes: Vec<&Path> = read.iter().chain(written).map(PathBuf::as_path).collect();
         let mut taken: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         for (role, path) in self.beside_mesh() {
@@ -187,7 +198,7 @@ impl Outputs {
             taken.push(path);
         }
         let own = written.iter().find(|path| read.iter().any(|own| is_same(own, path)));
-        match own.and_then(|path| self.mesh_in_place(path, kind)) {
+        match own.and_then(|path| self.mesh_in_place(mesh, path, kind)) {
             Some(error) => Err(error),
             None => Ok(()),
         }
@@ -218,9 +229,9 @@ impl Outputs {
     }
 
     /// Returns the error if the mesh may not replace its own file `path`; `None` if replacing is allowed.
-    fn mesh_in_place(&self, path: &Path, kind: ErrorKind) -> Option<CliError> {
+    fn mesh_in_place(&self, mesh: MeshOutput, path: &Path, kind: ErrorKind) -> Option<CliError> {
         let path = path.display();
-        let (text, remedy) = match self.mesh {
+        let (text, remedy) = match mesh {
             MeshOutput::Smoothed if self.checkpoint.is_some() => (
                 format!("{path}: a checkpoint continues a run only while IN is unchanged"),
                 "A run with checkpoints needs an OUT that differs from IN",

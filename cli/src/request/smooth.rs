@@ -9,6 +9,7 @@ use gpu_smooth_job::options::GivenOptions;
 
 use crate::args::SmoothArgs;
 use crate::error::CliError;
+use crate::request::form::FormRequest;
 use crate::request::movable::{FieldsRequest, MovableRequest, SlideRequest};
 use crate::request::outputs::Outputs;
 use crate::request::read::ReadRequest;
@@ -41,6 +42,8 @@ pub(crate) struct SmoothRequest {
     /// Whether a run that neither converges nor reaches its goal is an error.
     pub(crate) is_strict: bool,
     pub(crate) extent: RunExtent,
+    /// The format of the written mesh.
+    pub(crate) form: FormRequest,
     pub(crate) outputs: Outputs,
 }
 
@@ -114,6 +117,7 @@ impl SmoothRequest {
         Ok(Self {
             meshes,
             reading: (&args.reading).into(),
+            form: (&args.form).into(),
             surface: settings.surface,
             z: ThirdCoordinate::of(settings, &args.fields.interpolate),
             target: TargetRequest::of(&args.target, settings),

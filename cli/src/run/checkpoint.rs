@@ -104,7 +104,11 @@ mod tests {
     impl PipelineObserver for Remarks {
         fn stage(&mut self, _: Stage) {}
 
-        fn has_read(&mut self, _: &LoadedMesh) -> Result<(), CliError> {
+        fn has_read(
+            &mut self,
+            _: &LoadedMesh,
+            _: Option<&mesh_io::Conversion>,
+        ) -> Result<(), CliError> {
             Ok(())
         }
 

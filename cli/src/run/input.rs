@@ -1,8 +1,10 @@
 //! Input shared by the stages of a run.
 
+use crate::load::conversion::NewForm;
 use crate::load::{LoadedMesh, MovableSelection};
 use crate::report::SmoothJob;
 use crate::request::SmoothRequest;
+use gpu_smooth::{plane::Plane, precision::Precision};
 use std::time::Instant;
 
 /// A mesh with its task and the selection of movable vertices.
@@ -11,6 +13,8 @@ pub(super) struct Input<'a> {
     pub(super) task: &'a SmoothJob<'a>,
     pub(super) file: &'a LoadedMesh,
     pub(super) choice: &'a MovableSelection,
+    /// The format to which the mesh is converted; `None` if its file is rewritten.
+    pub(super) form: Option<NewForm>,
     /// Size of the input file in bytes; 0 if the input is not a file.
     pub(super) bytes: u64,
     /// Start of the run, from which the time limit counts.
@@ -20,5 +24,14 @@ pub(super) struct Input<'a> {
 impl<'a> Input<'a> {
     pub(super) fn request(&self) -> &'a SmoothRequest {
         self.task.request
+    }
+
+    /// Returns the precision with which OUT stores the coordinates of the mesh. Coordinates in a tilted plane are not
+    /// stored.
+    pub(super) fn precision(&self) -> Precision {
+        match self.form {
+            Some(form) if !self.file.plane().is_some_and(Plane::is_tilted) => form.precision,
+            _ => self.file.precision(),
+        }
     }
 }

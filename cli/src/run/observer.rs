@@ -3,6 +3,7 @@
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use gpu_smooth::Progress;
+use mesh_io::Conversion;
 
 use crate::terminal::progress::Stage;
 
@@ -11,8 +12,13 @@ use crate::terminal::progress::Stage;
 pub(crate) trait PipelineObserver: Send {
     /// Called at the start of each stage.
     fn stage(&mut self, stage: Stage);
-    /// Called after the mesh has been read. An error stops the pipeline before any work.
-    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError>;
+    /// Called after the mesh has been read. `conversion` is the conversion by which the mesh will be written; `None` for a
+    /// rewrite of its file. An error stops the pipeline before any work.
+    fn has_read(
+        &mut self,
+        file: &LoadedMesh,
+        conversion: Option<&Conversion>,
+    ) -> Result<(), CliError>;
     /// Receives a remark on the mesh, to be shown to the user.
     fn remark(&mut self, text: &str);
     /// Receives the progress after each sweep or batch of sweeps.

@@ -6,6 +6,7 @@ use std::time::Instant;
 use gpu_smooth::{MeshSize, targets::Surface};
 
 use crate::error::CliError;
+use crate::load::conversion::{self, NewForm};
 use crate::load::remarks;
 use crate::load::streams;
 use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, lay_out};
@@ -25,6 +26,8 @@ pub(super) struct ReadMesh {
     pub(super) file: LoadedMesh,
     pub(super) choice: MovableSelection,
     pub(super) fields: InterpolatedFields,
+    /// The format to which the mesh is converted; `None` if its file is rewritten.
+    pub(super) form: Option<NewForm>,
     /// Size of the input file in bytes; 0 if the input is not a file.
     pub(super) bytes: u64,
     /// Time at the end of reading.
@@ -40,8 +43,8 @@ pub(crate) fn run_pipeline<T>(
     finish: impl FnOnce(Done<'_>) -> Result<T, CliError>,
 ) -> Result<T, Failure> {
     let began = Instant::now();
-    let ReadMesh { file, choice, mut fields, bytes, at } = read(task, follow)?;
-    let input = Input { task, file: &file, choice: &choice, bytes, began };
+    let ReadMesh { file, choice, mut fields, form, bytes, at } = read(task, follow)?;
+    let input = Input { task, file: &file, choice: &choice, form, bytes, began };
     let opened = open(&input, &fields, engine, follow);
     let mended;
     let subject = match opened.prepared? {
@@ -90,14 +93,18 @@ pub(super) fn read(
     let laid_out = lay_out(&mut file, request.surface, request.z)?;
     let choice = request.movable.apply(&mut file, request.slide.as_ref())?;
     let fields = request.fields.choose(&file)?;
+    let converted = request.form.of_run(&file, task.out)?;
     let at = Instant::now();
-    follow.has_read(&file)?;
+    follow.has_read(&file, converted.as_ref().map(|(_, conversion)| conversion))?;
     let degrees = (request.surface == Surface::Plane).then(|| remarks::degrees(&file)).flatten();
     let remarks = remarks::remarks(&file, request.slide.is_some());
-    for remark in remarks.iter().chain(&laid_out).chain(&choice.notes).chain(&degrees) {
+    let notes = converted.as_ref().map(|(_, conversion)| conversion::notes(conversion));
+    let remarks = remarks.iter().chain(&laid_out).chain(&choice.notes).chain(&degrees);
+    for remark in remarks.chain(notes.iter().flatten()) {
         follow.remark(remark);
     }
-    Ok(ReadMesh { file, choice, fields, bytes, at })
+    let form = converted.map(|(form, _)| form);
+    Ok(ReadMesh { file, choice, fields, form, bytes, at })
 }
 
 /// Returns the size of a file in bytes; 0 if the file does not exist.

@@ -44,12 +44,38 @@ impl Proof {
     ) -> Result<Self, MeshError> {
         let fields = [before.fields, after.fields].map(InterpolatedFields::fields);
         let (before, after) = (before.file, after.file);
+        let difference = before.source.difference_ignoring(&after.source, fields);
+        Self::of_points(before, after, &before.mesh().points, difference, slide)
+    }
+
+    /// Compares a mesh with a file in another format or encoding, to which the mesh was converted, by positions and
+    /// triangles. Vertices that have moved by no more than the rounding of the other format stay.
+    pub(crate) fn of_conversion(
+        before: &LoadedMesh,
+        after: &LoadedMesh,
+        slide: Option<&Slide>,
+    ) -> Result<Self, MeshError> {
+        let difference = before.source.difference_of_triangles(&after.source);
+        let precision = after.source.precision();
+        let rounded = |point: &[f64; 2]| point.map(|x| precision.rounded(x));
+        let old: Vec<[f64; 2]> = before.mesh().points.iter().map(rounded).collect();
+        Self::of_points(before, after, &old, difference, slide)
+    }
+
+    /// Compares the positions of two files of a mesh, unless they have a `difference`. `old` holds the points of `before`, as
+    /// the second file stores them.
+    fn of_points(
+        before: &LoadedMesh,
+        after: &LoadedMesh,
+        old: &[[f64; 2]],
+        difference: Option<Difference>,
+        slide: Option<&Slide>,
+    ) -> Result<Self, MeshError> {
         let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
         let (mut slid, mut pairs, mut coincident) = (0, 0, 0);
-        let difference = before.source.difference_ignoring(&after.source, fields);
         if difference.is_none() {
             let topology = Topology::new(before.mesh())?;
-            let (old, new) = (&before.mesh().points, &after.mesh().points);
+            let new = &after.mesh().points;
             let bits = |point: &[f64; 2]| point.map(f64::to_bits);
             let differ = |&(_, (old, new)): &(u32, (&[f64; 2], &[f64; 2]))| bits(old) != bits(new);
             moved = (0..).zip(old.iter().zip(new)).filter(differ).map(|(v, _)| v).collect();

@@ -13,11 +13,13 @@ use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
 use crate::run::pipeline::{self, ReadMesh};
 use crate::run::prepare::{self, Ready, Subject};
+use crate::run::run_report;
 use crate::run::untangle;
 use crate::terminal::progress::Stage;
 
 /// Numbers of free and fixed vertices, and the engine of a run.
 pub(crate) struct Rehearsal {
+    /// The format of IN, and that of OUT if it is another one.
     pub(crate) format: String,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
@@ -45,8 +47,8 @@ pub(crate) fn rehearse(
     follow: &mut dyn PipelineObserver,
 ) -> Result<Rehearsal, Failure> {
     let began = Instant::now();
-    let ReadMesh { file, choice, fields, bytes, .. } = pipeline::read(task, follow)?;
-    let input = Input { task, file: &file, choice: &choice, bytes, began };
+    let ReadMesh { file, choice, fields, form, bytes, .. } = pipeline::read(task, follow)?;
+    let input = Input { task, file: &file, choice: &choice, form, bytes, began };
     let (request, mesh) = (task.request, file.mesh());
     let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
     follow.stage(Stage::Preparing { vertices: size.vertices });
@@ -69,7 +71,7 @@ pub(crate) fn rehearse(
 fn of_topology(input: &Input<'_>, topology: &Topology<'_>, taken: &OpenEngine) -> Rehearsal {
     let file: &LoadedMesh = input.file;
     Rehearsal {
-        format: file.source.format().to_string(),
+        format: run_report::formats(input),
         vertices: file.source.points().len(),
         triangles: file.mesh().triangles.len(),
         free: topology.free_count(),

@@ -5,7 +5,7 @@ use std::time::Instant;
 use gpu_smooth::{Quality, measure::Change};
 
 use crate::error::CliError;
-use crate::load::{InterpolatedFields, streams};
+use crate::load::{InterpolatedFields, conversion, streams};
 use crate::report::{Certificate, FileHash, SpacingReport, TargetReport};
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
@@ -77,7 +77,14 @@ pub(super) fn write(
     follow.stage(Stage::Writing { bytes: input.bytes });
     // Hashing precedes writing, which may replace the input files.
     let hashes = if request.outputs.report.is_some() { proof::hashes(file) } else { Vec::new() };
-    streams::write(file, out, &ran.outcome.points, fields.fields())?;
+    match &input.form {
+        None => streams::write(file, out, &ran.outcome.points, fields.fields())?,
+        Some(form) => {
+            let points = file.domain.given(&ran.outcome.points);
+            let converted = form.conversion(file, &points, fields.fields(), out)?;
+            conversion::write(&converted, out)?;
+        }
+    }
     let certificate = match request.outputs.report.is_some() && !streams::is_standard(out) {
         true => Some(certificate(input, ready, fields, hashes)?),
         false => None,
@@ -96,17 +103,22 @@ fn certificate(
     hashes: Vec<FileHash>,
 ) -> Result<Certificate, CliError> {
     let (request, file, out) = (input.request(), input.file, input.task.out);
-    let mut after = streams::read(out, &request.reading)?;
+    // Cell data may have other names in another format.
+    let mut reading = request.reading.clone();
+    reading.regions = reading.regions.filter(|_| input.form.is_none());
+    let mut after = streams::read(out, &reading)?;
     file.lay_out_likewise(&mut after)?;
     let after = after;
-    let mut theirs = request.fields.choose(&after)?;
-    theirs.add_dependents(&after, &after.mesh().points)?;
     let slide = request.slide.as_ref().map(|slide| slide.slide(file)).transpose()?;
-    let proof = Proof::of(
-        MeshVersion { file, fields },
-        MeshVersion { file: &after, fields: &theirs },
-        slide.as_ref(),
-    )?;
+    let proof = match input.form {
+        Some(_) => Proof::of_conversion(file, &after, slide.as_ref())?,
+        None => {
+            let mut theirs = request.fields.choose(&after)?;
+            theirs.add_dependents(&after, &after.mesh().points)?;
+            let after = MeshVersion { file: &after, fields: &theirs };
+            Proof::of(MeshVersion { file, fields }, after, slide.as_ref())?
+        }
+    };
     if let Some(problem) = proof.problem() {
         return Err(CliError::run(format!(
             "{}: the written mesh was read again, and it is wrong: {problem}",

@@ -5,7 +5,6 @@ use std::time::Instant;
 use gpu_smooth::{Backend, Checkpoint, Metric, Outcome, Smoother, Stop};
 use gpu_smooth_job::options::{GivenOptions, Kind};
 
-use crate::load::LoadedMesh;
 use crate::report::{
     self, Certificate, EngineReport, FaultReport, GoalReport, MeshReport, Report, Seconds,
     SlideReport, UntangleReport,
@@ -53,7 +52,7 @@ pub(super) fn report(
     let (request, choice, outcome) = (input.request(), input.choice, &ran.outcome);
     Report {
         engine: engine_report(&ran.taken, outcome),
-        mesh: mesh_report(input.file, &ready.smoother),
+        mesh: mesh_report(input, &ready.smoother),
         target: measured.target,
         untangled: ready.mended.map(untangle_report),
         scheme: request.scheme().to_string(),
@@ -171,9 +170,20 @@ fn engine_report(taken: &OpenEngine, outcome: &Outcome) -> EngineReport {
     }
 }
 
-fn mesh_report(file: &LoadedMesh, smoother: &Smoother<'_>) -> MeshReport {
+/// Returns the format of IN, and that of OUT if OUT is another one.
+pub(super) fn formats(input: &Input<'_>) -> String {
+    let own = input.file.source.format();
+    match input.form {
+        None => own.to_string(),
+        Some(form) => format!("{own} to {}", form.format),
+    }
+}
+
+fn mesh_report(input: &Input<'_>, smoother: &Smoother<'_>) -> MeshReport {
+    let file = input.file;
     MeshReport {
         format: file.source.format().to_string(),
+        output_format: input.form.map(|form| form.format.to_string()),
         vertices: file.source.points().len(),
         triangles: file.mesh().triangles.len(),
         free: smoother.topology().free_count(),

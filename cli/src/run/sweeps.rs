@@ -77,7 +77,7 @@ pub(super) fn smooth(
     follow: &mut dyn PipelineObserver,
 ) -> Result<FinishedRun, CliError> {
     let request = input.request();
-    let options = options(request, input.choice, input.file.precision());
+    let options = options(request, input.choice, input.precision());
     follow.stage(Stage::Smoothing);
     let mut clock =
         SweepClock { input, start: Instant::now(), times: Vec::new(), out_of_time: false };

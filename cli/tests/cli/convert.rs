@@ -85,7 +85,8 @@ fn conversions_that_cannot_work_are_refused() {
         .refused(&["out.vtk: the ending belongs to legacy VTK, not to SU2", ".su2"]);
     assert!(!folder.path("out.vtk").exists());
     folder.line("convert in.2dm out.txt --to su2 --lossy -q").clean();
-    folder.line("convert in.2dm out.stl").misused(&["out.stl: its ending names no format"]);
+    folder.line("convert in.2dm out.stl").misused(&["out.stl: STL is read, but not written"]);
+    folder.line("convert in.2dm out.bdf").misused(&["out.bdf: Nastran is read, but not written"]);
     folder.line("convert none.2dm out.msh").refused(&["none.2dm"]);
     folder.line("convert word out.msh").refused(&["word"]);
     let run = folder.line("convert in.2dm - --to triangle --lossy --quiet");
@@ -97,10 +98,11 @@ fn conversions_that_cannot_work_are_refused() {
     fs::write(folder.path("out.poly"), "0").unwrap();
     let no_lines = SMS.replace("NS 1 2 -3 \"shore\"\n", "").replace("MAT 2 \"mud\"\n", "");
     fs::write(folder.path("plain.2dm"), no_lines).unwrap();
-    folder.line("convert plain.2dm out.node").refused(&["out.poly: exists, and cannot be read"]);
-    folder
-        .line("convert plain.2dm out.node --force")
-        .refused(&["out.poly exists, belongs to another mesh"]);
+    for force in ["", " --force"] {
+        folder
+            .line(&format!("convert plain.2dm out.node{force}"))
+            .refused(&["out.poly exists, belongs to another mesh"]);
+    }
     assert!(!folder.path("out.node").exists());
 }
 

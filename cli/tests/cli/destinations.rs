@@ -60,9 +60,9 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
     let before = folder.content();
     let cases: [(&str, &[&str]); 9] = [
         ("in.node none/out.node", &["none: no such directory", "Create the directory first"]),
-        ("in.node out.msh", &["out.msh: the ending belongs to gmsh", "end the name in .node"]),
-        ("in.msh out.node", &["out.node: the ending belongs to Triangle", "end the name in .msh"]),
-        ("in.msh out.vtk", &["out.vtk: the ending belongs to legacy VTK", "or convert the mesh"]),
+        ("in.node out.bdf", &["out.bdf: Nastran is read, but not written. --to takes one of "]),
+        ("in.node in.msh --to vtu", &["in.msh: the ending belongs to gmsh, not to VTK XML"]),
+        ("in.msh out.step", &["out.step: its ending names no format to convert to"]),
         ("in.node locked", &["locked.ele: the file is read-only", "Make the file writable"]),
         ("in.node dir", &["dir: not the name of a file. Add a name like out.node"]),
         ("in.node out --report none/r.json", &["the report", "none: no such directory", "Create"]),

@@ -72,3 +72,89 @@ fn numbers_of_triangles_are_no_groups_and_fix_no_vertex() {
     assert!(run.err.contains("count triangles, and are no regions"), "{}", run.err);
     assert!(folder.text("in.msh") != folder.text("out.msh"));
 }
+
+/// A square of four triangles, whose edges are two inlets and two outlets. The last name has no elements.
+const TWO_OF_A_NAME: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n1 1 \"out\"\n1 2 \"in\"\n1 3 \"in\"\n\
+    1 4 \"out\"\n2 9 \"void\"\n$EndPhysicalNames\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .3 .4 0\n$EndNodes\n\
+    $Elements\n8\n1 1 2 1 1 1 2\n2 1 2 2 2 2 3\n3 1 2 3 3 3 4\n4 1 2 4 4 4 1\n5 2 2 0 5 1 2 5\n6 2 2 0 5 2 3 5\n\
+    7 2 2 0 5 3 4 5\n8 2 2 0 5 4 1 5\n$EndElements\n";
+
+#[test]
+fn names_that_groups_share_are_listed_and_name_all_of_them() {
+    let folder = Folder::new(&[("in.msh", TWO_OF_A_NAME)]);
+    let told = folder.line("groups in.msh").clean().out;
+    let rows: Vec<Vec<&str>> = told.lines().map(|row| row.split_whitespace().collect()).collect();
+    assert_eq!(rows[1][..4], ["group", "name", "what", "tag"], "{told}");
+    assert_eq!(rows[3][..5], ["physical:2", "in", "physical", "line", "2"], "{told}");
+    assert_eq!(rows[4][..5], ["physical:3", "in", "physical", "line", "3"], "{told}");
+    let run = folder.line("in.msh out.msh --slide --fix in --dry-run");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_eq!(
+        run.err.matches("--fix in (physical line in): 2 vertices").count(),
+        2,
+        "{}",
+        run.err
+    );
+    folder
+        .line("in.msh out.msh --fix inn")
+        .refused(&["no group is called 'inn'", "Did you mean in?"]);
+}
+
+/// The cell data under a usual name and under a name that the command line gives are groups alike.
+#[test]
+fn regions_that_an_option_names_are_groups() {
+    let grid = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n\
+        0 0 0 1 0 0 2 0 0 0 1 0 1.3 .8 0 2 1 0 0 2 0 1 2 0 2 2 0\nCELLS 8 32\n3 0 1 4 3 0 4 3 3 1 2 5 3 1 5 4 3 3 4 7 3 3 7 6\n\
+        3 4 5 8 3 4 8 7\nCELL_TYPES 8\n5 5 5 5 5 5 5 5\nCELL_DATA 8\nSCALARS zones int 1\nLOOKUP_TABLE default\n0 0 0 0 2 2 2 2\n";
+    let folder = Folder::new(&[("in.vtk", grid)]);
+    let table = "in.vtk: legacy VTK ASCII\n\
+                 group  what           tag  triangles  vertices\n\
+                 0      zones surface    0          4         6\n\
+                 2      zones surface    2          4         6\n";
+    for options in ["", " --regions zones"] {
+        assert_eq!(folder.line(&format!("groups in.vtk{options}")).clean().out, table);
+        let line = format!("in.vtk out.vtk --free-interfaces --only 2{options}");
+        let run = folder.line(&line);
+        assert_eq!(run.code, Some(3));
+        assert!(
+            run.err.contains("--only 2 (zones surface 2): 0 of 1 free vertices"),
+            "{}",
+            run.err
+        );
+        // gmsh has no physical group 0.
+        let run = folder.line(&format!("convert in.vtk out.msh --force{options}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert!(run.err.contains("groups: the tag 0 of a region to an unused tag"), "{}", run.err);
+        let groups = folder.line("groups out.msh").clean().out;
+        for row in ["physical surface    1          4", "physical surface    2          4"] {
+            assert!(groups.contains(row), "{groups}");
+        }
+    }
+    folder.line("groups in.vtk --regions zone").refused(&["it has no cell data `zone`", "`zones`"]);
+}
+
+#[test]
+fn numbers_of_entities_and_corners_of_a_model_are_no_losses() {
+    // gmsh writes the corners of the model as points, and numbers its curves and surfaces.
+    let model = TWO_OF_A_NAME
+        .replace("$Elements\n8", "$Elements\n9\n9 15 2 0 1 1")
+        .replace("5\n1 1 \"out\"\n1 2 \"in\"\n1 3 \"in\"\n1 4 \"out\"\n", "1\n")
+        .replace(" 1 2 1 1 ", " 1 2 0 1 ")
+        .replace(" 1 2 2 2 ", " 1 2 0 2 ")
+        .replace(" 1 2 3 3 ", " 1 2 0 3 ")
+        .replace(" 1 2 4 4 ", " 1 2 0 4 ");
+    let folder = Folder::new(&[("in.msh", &model)]);
+    for ending in ["su2", "nc", "14"] {
+        let run = folder.line(&format!("convert in.msh out.{ending}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_eq!(run.err, "gpu-smooth: lost: names of groups without elements: void\n");
+    }
+    // A group of the user is a loss, and so is a point inside the mesh.
+    let folder = Folder::new(&[("in.msh", &model.replace("9 15 2 0 1 1", "9 15 2 7 1 5"))]);
+    let run = folder.line("convert in.msh out.nc");
+    assert_eq!(run.code, Some(3));
+    assert!(run.err.contains("\n  1 point\n"), "{}", run.err);
+    // gmsh's own formats keep a name without elements.
+    folder.line("convert in.msh out.msh").clean();
+    assert!(folder.text("out.msh").contains("2 9 \"void\""));
+}

@@ -6,6 +6,7 @@ mod bench;
 mod browser;
 mod compare;
 mod convert;
+mod converted;
 mod destinations;
 #[cfg(unix)]
 mod documented;

@@ -2,13 +2,12 @@
 
 use crate::commands::batch::{listing, table, workers};
 use crate::error::{CliError, ErrorKind};
-use crate::load::overwrite::{self, Likeness};
-use crate::load::{LoadedMesh, streams};
+use crate::load::{LoadedMesh, destination};
 use std::path::Path;
 use std::time::Instant;
 
 use gpu_smooth::Progress;
-use mesh_io::atomic;
+use mesh_io::{Conversion, atomic};
 
 use crate::commands::batch::entry::{BatchStatus, Entry};
 use crate::commands::batch::listing::BatchItem;
@@ -34,7 +33,7 @@ pub(crate) fn run(
     verbosity: Verbosity,
 ) -> Result<(), CliError> {
     let start = Instant::now();
-    let list = listing::list(batch.inputs.iter(), &batch.directory)?;
+    let list = listing::list(batch.inputs.iter(), &batch.directory, request.form.to)?;
     let outputs = &request.outputs;
     outputs.check_names()?;
     for mesh in &list {
@@ -144,24 +143,17 @@ struct Followed<'a> {
 }
 
 impl PipelineObserver for Followed<'_> {
-    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
+    fn has_read(
+        &mut self,
+        file: &LoadedMesh,
+        conversion: Option<&Conversion>,
+    ) -> Result<(), CliError> {
         if interrupt::is_requested() {
             return Err(CliError::run("interrupted"));
         }
         // A file may have two names, which the check of the list could not detect.
-        let written = streams::destinations(file, &self.mesh.out)?;
-        let SmoothRequest { outputs, reading, .. } = self.request;
-        outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
-        if outputs.replaces_any {
-            return Ok(());
-        }
-        overwrite::check(file, &written, reading.options_of_output(), Likeness::Mesh).map_err(
-            |error| {
-                error.with_remedy(
-                    "Give another directory to --out-dir, or replace the file by --force",
-                )
-            },
-        )
+        let remedy = "Give another directory to --out-dir, or replace the file by --force";
+        destination::check(self.request, file, &self.mesh.out, conversion, remedy)
     }
 
     fn remark(&mut self, text: &str) {

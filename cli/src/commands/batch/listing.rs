@@ -1,11 +1,12 @@
 //! The list of meshes in a batch, with the input and output files of each mesh.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use mesh_io::{Format, atomic};
+use mesh_io::{Conversion, Format, atomic};
 
 use crate::error::CliError;
 use crate::load::streams::is_standard;
@@ -22,14 +23,23 @@ pub(crate) struct BatchItem {
 }
 
 impl BatchItem {
-    fn new(input: &Path, directory: &Path) -> Result<Self, CliError> {
+    /// Lists the files of the mesh at `input`. `to` is the format to which the mesh is converted; `None` if the mesh keeps its
+    /// format and its name.
+    fn new(input: &Path, directory: &Path, to: Option<Format>) -> Result<Self, CliError> {
         let name = input.file_name().filter(|_| !is_standard(input) && !input.is_dir());
         let name = name.ok_or_else(|| {
             CliError::usage(format!("{}: not a file", input.display()))
                 .with_remedy("--out-dir takes meshes in files, and names each result as its mesh")
         })?;
-        let out = directory.join(name);
         let inputs = parts(input);
+        if let Some(to) = to {
+            let out = directory.join(converted_name(name, to));
+            let mut outputs = Conversion::destinations_in(to, &out);
+            // A Triangle mesh without lines has no outline.
+            outputs.truncate(2);
+            return Ok(Self { inputs, outputs, input: input.into(), out });
+        }
+        let out = directory.join(name);
         let outputs = match stem(input) {
             Some(_) => inputs.iter().filter_map(|part| Some(directory.join(part.file_name()?))),
             None => {
@@ -58,6 +68,22 @@ impl BatchItem {
             },
             _ => false,
         }
+    }
+}
+
+/// Returns the name of a file in the format `to` for a mesh whose file is called `name`.
+fn converted_name(name: &OsStr, to: Format) -> PathBuf {
+    let path = Path::new(name);
+    let is_packed = path
+        .extension()
+        .is_some_and(|ending| ["gz", "zst"].iter().any(|own| ending.eq_ignore_ascii_case(own)));
+    let path = if is_packed { Path::new(path.file_stem().unwrap_or(name)) } else { path };
+    let ending = to.extensions().iter().find_map(|ending| ending.strip_prefix('.'));
+    let is_mesh = Format::name_of_extension(path).is_some();
+    match ending {
+        Some(ending) if is_mesh => path.with_extension(ending),
+        Some(ending) => appended(path, &format!(".{ending}")),
+        None => path.to_owned(),
     }
 }
 
@@ -90,20 +116,22 @@ fn parts(path: &Path) -> Vec<PathBuf> {
     parts
 }
 
-/// Lists the meshes at `paths`, each mesh once, with the output files in `directory`.
+/// Lists the meshes at `paths`, each mesh once, with the output files in `directory`. `to` is the format to which meshes are
+/// converted; `None` if they keep their format and their names.
 ///
 /// Returns an error if two meshes would write the same file.
 pub(crate) fn list<'p>(
     paths: impl Iterator<Item = &'p PathBuf>,
     directory: &Path,
+    to: Option<Format>,
 ) -> Result<Vec<BatchItem>, CliError> {
     let mut listed: Vec<BatchItem> = Vec::new();
     let mut by_out: HashMap<PathBuf, usize> = HashMap::new();
     for path in paths {
         // A Triangle mesh may be given without an extension.
         let mesh = match is_stem(path) {
-            true => BatchItem::new(&appended(path, ".node"), directory)?,
-            false => BatchItem::new(path, directory)?,
+            true => BatchItem::new(&appended(path, ".node"), directory, to)?,
+            false => BatchItem::new(path, directory, to)?,
         };
         let key = key_of(&mesh.out);
         match by_out.get(&key).map(|&i| &mut listed[i]) {
@@ -172,7 +200,7 @@ mod tests {
 
     fn of(folder: &tempfile::TempDir, names: &[&str]) -> Result<Vec<BatchItem>, CliError> {
         let paths: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
-        list(paths.iter(), &folder.path().join("out"))
+        list(paths.iter(), &folder.path().join("out"), None)
     }
 
     #[test]

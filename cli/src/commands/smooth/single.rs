@@ -1,18 +1,18 @@
 //! The run on one mesh, with progress and results on the terminal.
 
-use crate::error::{CliError, ErrorKind};
+use crate::error::CliError;
 use crate::load::LoadedMesh;
 use std::path::{Path, PathBuf};
 use std::slice;
 use std::time::Instant;
 
 use gpu_smooth::{Outcome, Phase, Progress, Smoother};
-use mesh_io::atomic;
+use mesh_io::{Conversion, atomic};
 use serde::Serialize;
 use serde_json::json;
 
 use crate::commands::smooth::dry_run;
-use crate::load::overwrite::{self, Likeness};
+use crate::load::destination;
 use crate::load::streams;
 use crate::render::html;
 use crate::render::picture::{self, MeshState, PictureSubject};
@@ -85,25 +85,21 @@ impl PipelineObserver for Shown<'_> {
         self.display.stage(stage);
     }
 
-    fn has_read(&mut self, file: &LoadedMesh) -> Result<(), CliError> {
-        let written = streams::destinations(file, self.out)?;
-        let SmoothRequest { outputs, reading, .. } = self.request;
+    fn has_read(
+        &mut self,
+        file: &LoadedMesh,
+        conversion: Option<&Conversion>,
+    ) -> Result<(), CliError> {
+        let outputs = &self.request.outputs;
         Outputs::check_companion(self.input, self.out, &file.paths())?;
-        outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
         if let Some(picture) = &outputs.picture {
             picture.check_part(&file.mesh().points)?;
         }
         let bytes = file.source.contents().map(|(_, bytes)| bytes.len() as u64).sum();
         let drawing = drawing_stage(outputs, file.mesh().triangles.len());
         self.display.expect([Stage::Writing { bytes }].into_iter().chain(drawing).collect());
-        if outputs.replaces_any {
-            return Ok(());
-        }
-        overwrite::check(file, &written, reading.options_of_output(), Likeness::Mesh).map_err(|error| {
-            error.with_remedy(
-                "To smooth several meshes, name a directory by --out-dir; to replace the file all the same, add --force",
-            )
-        })
+        let remedy = "To smooth several meshes, name a directory by --out-dir; to replace the file all the same, add --force";
+        destination::check(self.request, file, self.out, conversion, remedy)
     }
 
     fn remark(&mut self, text: &str) {

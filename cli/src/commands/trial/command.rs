@@ -95,7 +95,11 @@ impl PipelineObserver for Shown {
         self.display.stage(stage);
     }
 
-    fn has_read(&mut self, _: &LoadedMesh) -> Result<(), CliError> {
+    fn has_read(
+        &mut self,
+        _: &LoadedMesh,
+        _: Option<&mesh_io::Conversion>,
+    ) -> Result<(), CliError> {
         Ok(())
     }
 
