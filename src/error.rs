@@ -105,7 +105,7 @@ pub enum MeshError {
         problem: &'static str,
     },
     /// A pole of the sphere is inside a triangle or on an edge, where longitude has no direction; see
-    /// [`Chart`](crate::interpolate::Chart).
+    /// [`Chart`](crate::front_ends::Chart).
     #[error("triangle {triangle} has a pole of the sphere inside of it or on an edge")]
     Pole {
         /// The first triangle that contains a pole.

@@ -29,9 +29,9 @@
 //! A `Gpu` is opened once and serves every mesh. A [`Smoother`] is one prepared mesh, and serves any number of runs
 //! while the triangles stay the same. A run is one call of [`Smoother::run`] with [`Options`], and returns an
 //! [`Outcome`]. An [`Interpolation`](interpolate::Interpolation) evaluates vertex data at the new positions. Vertices
-//! listed in [`Mesh::fixed`] do not move; [`select`] helps to list them. [`Measured`](measure::Measured) evaluates
-//! triangles by each [`Measure`](measure::Measure) of the field, and [`Quality`] compares a mesh before and after
-//! smoothing. The crate `mesh-io` reads and writes mesh files, and the crate `gpu-smooth-job` sets runs of such files up as the
+//! listed in [`Mesh::fixed`] do not move; [`select`](front_ends::select) helps to list them.
+//! [`Measured`](measure::Measured) evaluates triangles by each [`Measure`](measure::Measure) of the field, and
+//! [`Quality`] compares a mesh before and after smoothing. The crate `mesh-io` reads and writes mesh files, and the crate `gpu-smooth-job` sets runs of such files up as the
 //! command line does.
 //!
 //! The feature `gpu`, which is on by default, adds the GPU engine: `Gpu`, all else that computes on a device, and the
@@ -39,11 +39,26 @@
 //!
 #![cfg_attr(feature = "gpu", doc = include_str!("gpu/application.md"))]
 //!
+//! # Modules
+//!
+//! | module | contents |
+//! |---|---|
+//! | the root | meshes, runs, [`Options`] and its common types, errors, [`Untangle`] |
+//! | [`options`] | all types of [`Options`], also those of single methods ([`Relaxed`](options::Relaxed), [`Paper`](options::Paper), [`PNormExponent`](options::PNormExponent)), of the worst triangles ([`WorstBy`](options::WorstBy)) and of stored coordinates ([`Precision`](options::Precision)), and the ranges of numbers |
+//! | [`topology`] | exact signs of triangles without a run: [`infeasible`](topology::infeasible), [`certify`](topology::certify), boundary loops |
+//! | [`outcome`], [`measure`] | results: the parts of an [`Outcome`]; measures of the field, for [`Smoother::topology`] and any points |
+//! | [`targets`], [`slide`], [`layers`], [`untangle`], [`interpolate`] | types of single tasks |
+//! | `gpu` | devices, and meshes that stay on a device |
+//! | [`front_ends`] | for programs that offer runs to users: the choice of a backend, planes of space, selection of vertices |
+//!
+//! The type `Precision` of `mesh-io` describes the numbers of a file; `smoother_precision` of `gpu-smooth-job` converts it to
+//! that of [`options`].
+//!
 //! # Limits
 //!
 //! Triangles only; list vertices of other elements in [`Mesh::fixed`]. Vertices and triangle corners are
 //! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles. A mesh in another plane of space than
-//! that of x and y is smoothed in the coordinates of its [`Plane`](plane::Plane).
+//! that of x and y is smoothed in the coordinates of its [`Plane`](front_ends::Plane).
 //!
 //! On a GPU, buffers that exceed the largest binding of a device are bound part by part, which changes no bit of the
 //! result. But every kernel needs all positions, in two bindings at most: a device with a largest binding of 128 MiB
@@ -51,9 +66,9 @@
 
 mod adapter;
 mod chart;
-pub mod choice;
 mod cpu;
 mod error;
+pub mod front_ends;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod interpolate;
@@ -67,12 +82,10 @@ pub mod outcome;
 mod parallel;
 mod patch;
 mod periodic;
-pub mod plane;
 pub mod precision;
 mod quality;
 mod resume;
 mod run;
-pub mod select;
 pub mod slide;
 mod smoother;
 pub mod targets;
@@ -91,6 +104,7 @@ mod embedding {}
 pub mod internal;
 
 pub use error::{CheckpointError, GpuError, MeshError, ResumeError, SmoothError};
+pub use front_ends::BackendReason;
 #[cfg(feature = "gpu")]
 pub use gpu::Gpu;
 pub use mesh::{Mesh, MeshSize};

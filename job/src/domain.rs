@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use gpu_smooth::interpolate::Chart;
+use gpu_smooth::front_ends::Chart;
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth::layers::{Elements, KeepLayers, Layers};
-use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::slide::Periodic;
 use gpu_smooth::{Mesh, MeshError, Slide, Topology, select};

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth::layers::{KeepLayers, Layers};
-use gpu_smooth::plane::Plane;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::untangle::{Untangle, Untangled};

@@ -1,6 +1,6 @@
 //! The plane in which the vertices of a file lie.
 
-use gpu_smooth::plane::{NotPlanar, Plane};
+use gpu_smooth::front_ends::{NotPlanar, Plane};
 use mesh_io::{MeshFile, PointField, ReadError};
 
 use crate::error::PlaneError;

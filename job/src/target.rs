@@ -1,6 +1,6 @@
 //! The desired shape and size of elements, by the words of all front ends.
 
-use gpu_smooth::interpolate::Chart;
+use gpu_smooth::front_ends::Chart;
 use gpu_smooth::targets::{OutsideReport, Surface};
 use gpu_smooth::{Mesh, MeshError, Metric, Smoother, TargetField, Targets};
 

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use gpu_smooth::choice::BackendChooser;
+use gpu_smooth::front_ends::BackendChooser;
 use gpu_smooth::options::Options;
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize};
 use gpu_smooth_job::EngineRequest;

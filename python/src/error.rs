@@ -1,7 +1,7 @@
 //! Exceptions and warnings: the classes of `gpu_smooth/_errors.py`, raised with messages that name the argument, the index
 //! and a remedy.
 
-use gpu_smooth::plane::NotPlanar;
+use gpu_smooth::front_ends::NotPlanar;
 use gpu_smooth::{GpuError, MeshError, SmoothError};
 use gpu_smooth_job::options::{GivenOptions, Spelling};
 use mesh_io::{ReadError, WriteError};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gpu_smooth::plane::Plane;
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth::{Backend, Metric, Options, Outcome as RunOutcome, Quality as MeshQuality};
 use gpu_smooth_job::TargetKind;
 use numpy::PyArray1;

@@ -1,6 +1,6 @@
 //! Points with third coordinates: in the plane of space in which they lie, or with z as data.
 
-use gpu_smooth::plane::Plane;
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth::targets::Surface;
 use pyo3::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gpu_smooth::plane::Plane;
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::{Backend, Checkpoint, Mesh, MeshError, Options, Smoother as PreparedMesh};
 use gpu_smooth_job::{Adapted, CheckpointFile, EngineRequest};

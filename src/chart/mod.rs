@@ -20,7 +20,7 @@ use crate::precision::Precision;
 /// Triangles keep their indices.
 ///
 /// ```
-/// use gpu_smooth::{interpolate::Chart, Mesh, precision::Precision};
+/// use gpu_smooth::{Mesh, front_ends::Chart, options::Precision};
 ///
 /// // A square across the date line with a vertex in its middle.
 /// let points = vec![[179.0, 0.0], [-179.0, 0.0], [-179.0, 2.0], [179.0, 2.0], [-179.8, 1.1]];

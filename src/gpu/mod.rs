@@ -22,7 +22,9 @@ pub use embed::{
     ObjectiveValues, Readback, Sweeps, UntanglingSweeps, VertexBuffer,
 };
 pub use encode::{Encoder, Span, Spans, Timed, Timestamps};
-pub use kernels::{BindLayout, Kernel};
+#[doc(hidden)]
+pub use kernels::BindLayout;
+pub use kernels::Kernel;
 pub(crate) use run::GpuEngine;
 pub(crate) use wgpu::Adapter;
 

@@ -4,6 +4,5 @@ mod background;
 mod interpolation;
 mod locate;
 
-pub use crate::chart::Chart;
 pub(crate) use background::{Background, Spot};
 pub use interpolation::Interpolation;

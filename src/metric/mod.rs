@@ -26,6 +26,7 @@ pub use corner::{Corner, Ideal};
 #[doc(hidden)]
 pub use corner::{InvariantSlopes, Invariants, Slopes};
 pub(crate) use curvature::{Curvature, Curved, H, OfImr};
+#[doc(hidden)]
 pub use dual::{Dual, Real};
 #[cfg(test)]
 pub(crate) use edge_slopes::Given;

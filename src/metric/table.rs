@@ -392,24 +392,28 @@ impl Metric {
     }
 
     /// Returns q² - ideal². Sums of this difference keep their digits on good meshes.
+    #[doc(hidden)]
     pub fn excess<T: Real>(self, corner: &Corner<T>) -> T {
         self.formulas().excess(corner)
     }
 
     /// Returns the function that Newton's method minimizes: [`Self::excess`] for smooth metrics. For EDGE, which is not
     /// smooth, the function is a p-norm with exponent k = 2^`sharpness`, minus 1.
+    #[doc(hidden)]
     pub fn model<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> T {
         self.formulas().model(corner, Smoothing::of(sharpness))
     }
 
     /// Returns value, gradient and Hessian of [`Self::model`] with respect to the vertex from which the edges of
     /// `corner` start, by the hand-written derivatives of the CPU engine.
+    #[doc(hidden)]
     pub fn expansion<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
         self.formulas().expansion(corner, Own, Smoothing::of(sharpness))
     }
 
     /// Returns value, gradient and Hessian of [`Self::model`] with respect to the vertex from which the edges of
     /// `corner` start, by dual numbers. Tests compare the hand-written derivatives with this function.
+    #[doc(hidden)]
     pub fn derivatives<T: Real>(self, corner: &Corner<T>, sharpness: u32) -> Dual<T> {
         // If the vertex moves by d, both edges change by -d.
         let ([ax, ay], [bx, by]) = (corner.a, corner.b);

@@ -31,7 +31,7 @@ pub enum Feature {
     Targets,
     /// Targets of places; see [`Smoother::set_target_field`](crate::Smoother::set_target_field).
     TargetField,
-    /// [`untangle`](fn@crate::untangle) before the run.
+    /// [`Untangle`](crate::Untangle) before the run.
     Untangle,
     /// Sweeps that an application encodes, in place of a run.
     Encoded,

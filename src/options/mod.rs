@@ -21,3 +21,5 @@ pub use ranges::OptionRange;
 pub use run_options::Options;
 pub use stopping::{Goal, Stopping};
 pub use worst_by::WorstBy;
+
+pub use crate::precision::{Precision, Rounding};

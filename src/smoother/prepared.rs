@@ -349,7 +349,7 @@ impl<'a> Smoother<'a> {
     /// Returns the triangles that are neither inverted nor flat, but whose inverse mean ratio overflows in double
     /// precision, computed from any of the three corners. Such triangles are too flat, or too small beside other
     /// triangles. A mesh with such triangles may be refused by runs by EDGE or by metrics with a barrier
-    /// ([`MeshError::BeyondPrecision`]); [`untangle`](fn@crate::untangle) opens those that have a free vertex.
+    /// ([`MeshError::BeyondPrecision`]); [`Untangle`](crate::Untangle) opens those that have a free vertex.
     pub fn beyond_precision(&self) -> Vec<usize> {
         let beyond = now(self.problem.beyond_precision(self.problem.positions()));
         self.problem.in_mesh(&beyond, self.topology.triangles())

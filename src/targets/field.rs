@@ -62,7 +62,7 @@ impl TargetField {
     /// Converts the field to coordinates on a surface: lengths on the surface become lengths in its coordinates at each
     /// point. Longitudes that differ by whole turns denote equal points. A mesh and the background of its targets may
     /// therefore use different ranges of longitudes, and may be continued across the line where longitudes jump, as by
-    /// a [`Chart`](crate::interpolate::Chart). Do not convert targets already given in coordinates, by
+    /// a [`Chart`](crate::front_ends::Chart). Do not convert targets already given in coordinates, by
     /// [`Targets::seen_on`] or otherwise.
     pub fn seen_on(self, surface: Surface) -> Self {
         Self { surface, ..self }

@@ -3,7 +3,9 @@
 use crate::error::CliError;
 use crate::load::plane::{likewise, of_file, remark};
 use gpu_smooth::{
-    Mesh, MeshError, Topology, interpolate::Chart, plane::Plane, precision::Precision,
+    Mesh, MeshError, Topology,
+    front_ends::{Chart, Plane},
+    precision::Precision,
 };
 use gpu_smooth_job::{Domain, smoother_precision};
 use mesh_io::{MeshFile, PointField, SourceLocation, WriteError};

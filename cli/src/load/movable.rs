@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{MeshError, Topology, select};
+use gpu_smooth::{MeshError, Topology, front_ends::select};
 use mesh_io::Groups;
 
 use crate::load::explain;

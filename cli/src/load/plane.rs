@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::terminal::numbers::sig6;
-use gpu_smooth::plane::Plane;
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth_job::{PlaneError, plane_of_file, points_in_space};
 use mesh_io::{MeshFile, PointField};
 

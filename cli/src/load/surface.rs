@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{interpolate::Chart, targets::Surface};
+use gpu_smooth::{front_ends::Chart, targets::Surface};
 
 use crate::load::explain;
 use crate::request::ThirdCoordinate;

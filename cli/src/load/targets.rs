@@ -6,7 +6,7 @@ use std::path::Path;
 
 use gpu_smooth::{
     Mesh, MeshError, Metric, Smoother, TargetField,
-    interpolate::Chart,
+    front_ends::Chart,
     precision::Precision,
     targets::{OutsideReport, Surface},
 };

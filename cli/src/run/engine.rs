@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use gpu_smooth::choice::{BackendChooser, Reason};
+use gpu_smooth::BackendReason;
+use gpu_smooth::front_ends::BackendChooser;
 use gpu_smooth::precision::Precision;
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, SmoothError};
 use gpu_smooth_job::EngineRequest;
@@ -66,10 +67,10 @@ pub(crate) fn of_checkpoint(checkpoint: &Checkpoint) -> OpenEngine {
 }
 
 /// Describes the reason of a choice, with the option that overrides the choice.
-fn describe(reason: &Reason) -> String {
+fn describe(reason: &BackendReason) -> String {
     match reason {
-        Reason::GpuFails(_) | Reason::NoSweeps => reason.to_string(),
-        Reason::GpuIsFaster { .. } => format!("{reason}; --engine cpu to use the CPU"),
+        BackendReason::GpuFails(_) | BackendReason::NoSweeps => reason.to_string(),
+        BackendReason::GpuIsFaster { .. } => format!("{reason}; --engine cpu to use the CPU"),
         _ => format!("{reason}; --engine gpu to force"),
     }
 }

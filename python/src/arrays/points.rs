@@ -1,6 +1,6 @@
 //! Points of a mesh, and results in the form of the points.
 
-use gpu_smooth::plane::Plane;
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth::precision::Precision;
 use numpy::{Element, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;

@@ -40,27 +40,32 @@ const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference
 
 impl Kernel {
     /// Returns the complete WGSL module.
+    #[doc(hidden)]
     pub fn wgsl(&self) -> String {
         self.composed(Positions::Whole.into())
     }
 
     /// Returns the complete WGSL module for a mesh with too many positions for one binding, in two bindings of high and
     /// low parts.
+    #[doc(hidden)]
     pub fn wgsl_for_large_meshes(&self) -> String {
         self.composed(Positions::InTwo.into())
     }
 
     /// Returns the complete WGSL module for a mesh with targets.
+    #[doc(hidden)]
     pub fn wgsl_for_targets(&self) -> String {
         self.composed(MeshForm { maps: MapKind::Targets, ..Positions::Whole.into() })
     }
 
     /// Returns the complete WGSL module for a strongly stretched mesh.
+    #[doc(hidden)]
     pub fn wgsl_for_stretched_meshes(&self) -> String {
         self.composed(MeshForm { maps: MapKind::Local, ..Positions::Whole.into() })
     }
 
     /// Returns the complete WGSL module for a mesh whose free vertices are bounded.
+    #[doc(hidden)]
     pub fn wgsl_for_bounded_meshes(&self) -> String {
         self.composed(MeshForm { is_bounded: true, ..Positions::Whole.into() })
     }

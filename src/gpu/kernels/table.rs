@@ -820,6 +820,7 @@ impl Kernel {
     /// Returns all kernels. A kernel of one metric is listed for each metric; the sweep kernel with analytic
     /// derivatives and with differences. A kernel that sums objectives is listed for each metric alone and for all
     /// metrics together.
+    #[doc(hidden)]
     pub fn all() -> Vec<Kernel> {
         Self::list(None)
     }
@@ -840,16 +841,19 @@ impl Kernel {
     }
 
     /// Returns the name of the entry point.
+    #[doc(hidden)]
     pub fn entry_point(&self) -> &'static str {
         self.row().entry_point
     }
 
     /// Returns the bindings of the kernel.
+    #[doc(hidden)]
     pub fn layout(&self) -> BindLayout {
         self.row().layout
     }
 
     /// Returns the size of a workgroup, in invocations.
+    #[doc(hidden)]
     pub fn workgroup_size(&self) -> u32 {
         self.row().width
     }

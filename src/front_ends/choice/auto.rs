@@ -1,9 +1,9 @@
 //! The choice of a backend.
 
-#[cfg(feature = "gpu")]
-use crate::choice::kept::Kept;
-use crate::choice::reason::Reason;
 use crate::error::GpuError;
+#[cfg(feature = "gpu")]
+use crate::front_ends::choice::kept::Kept;
+use crate::front_ends::choice::reason::BackendReason;
 use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::smoother::Backend;
@@ -15,7 +15,7 @@ impl Backend {
     /// Meshes that are too small for any GPU to be faster start no driver. A software adapter is never chosen;
     /// `Gpu::open` opens one. The estimate assumes slow GPUs, as no graphics card has been measured yet:
     /// `gpu-smooth bench` measures which backend is fastest. Without the feature `gpu`, the CPU is chosen.
-    pub fn auto(size: MeshSize, options: &Options) -> (Self, Reason) {
+    pub fn auto(size: MeshSize, options: &Options) -> (Self, BackendReason) {
         Self::auto_tried(size, options, || Ok(()))
     }
 
@@ -28,7 +28,7 @@ impl Backend {
         size: MeshSize,
         options: &Options,
         try_drivers: impl FnOnce() -> Result<(), GpuError>,
-    ) -> (Self, Reason) {
+    ) -> (Self, BackendReason) {
         BackendChooser::new().choose(size, options, try_drivers)
     }
 }
@@ -64,8 +64,8 @@ impl BackendChooser {
         size: MeshSize,
         options: &Options,
         try_drivers: impl FnOnce() -> Result<(), GpuError>,
-    ) -> (Backend, Reason) {
-        crate::choice::estimate::choose(&self.kept, size, options, try_drivers)
+    ) -> (Backend, BackendReason) {
+        crate::front_ends::choice::estimate::choose(&self.kept, size, options, try_drivers)
     }
 
     /// Returns the CPU, the only engine of a build without the feature `gpu`.
@@ -75,8 +75,8 @@ impl BackendChooser {
         _: MeshSize,
         _: &Options,
         _: impl FnOnce() -> Result<(), GpuError>,
-    ) -> (Backend, Reason) {
-        (Backend::Cpu, Reason::OnlyCpu)
+    ) -> (Backend, BackendReason) {
+        (Backend::Cpu, BackendReason::OnlyCpu)
     }
 }
 
@@ -89,6 +89,6 @@ mod tests {
         let size = MeshSize { vertices: 100_000_000, triangles: 200_000_000 };
         let tried = || panic!("there is no driver to try");
         let (backend, reason) = Backend::auto_tried(size, &Options::default(), tried);
-        assert!(matches!((backend, &reason), (Backend::Cpu, Reason::OnlyCpu)), "{reason}");
+        assert!(matches!((backend, &reason), (Backend::Cpu, BackendReason::OnlyCpu)), "{reason}");
     }
 }

@@ -8,4 +8,4 @@ mod kept;
 mod reason;
 
 pub use auto::BackendChooser;
-pub use reason::Reason;
+pub use reason::BackendReason;

@@ -1,7 +1,7 @@
 //! Selection of vertices and triangles by position and quality, to choose which vertices move or are held.
 //!
 //! ```
-//! use gpu_smooth::{Mesh, Topology, select};
+//! use gpu_smooth::{Mesh, Topology, front_ends::select};
 //!
 //! let mesh = Mesh {
 //!     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.9, 0.5]],

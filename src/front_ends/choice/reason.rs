@@ -8,7 +8,7 @@ use crate::error::GpuError;
 /// The reason for which [`Backend::auto`](crate::Backend::auto) chose a backend. Displays as an English phrase.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub enum Reason {
+pub enum BackendReason {
     /// The library was built without its GPU engine, the feature `gpu`.
     OnlyCpu,
     /// The options allow no sweep, so no engine would be faster than another.
@@ -31,7 +31,7 @@ pub enum Reason {
     },
 }
 
-impl fmt::Display for Reason {
+impl fmt::Display for BackendReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OnlyCpu => write!(f, "built without the GPU engine"),

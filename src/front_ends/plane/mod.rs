@@ -6,7 +6,7 @@ mod frame;
 use std::fmt;
 
 use crate::error::MeshError;
-use crate::plane::frame::{Farthest, Frame, Point};
+use crate::front_ends::plane::frame::{Farthest, Frame, Point};
 use crate::precision::Precision;
 use crate::topology::{Topology, certify};
 
@@ -16,7 +16,7 @@ use crate::topology::{Topology, certify};
 /// lengths u and v from the mean of all vertices.
 ///
 /// ```
-/// use gpu_smooth::{plane::Plane, precision::Precision};
+/// use gpu_smooth::{front_ends::Plane, options::Precision};
 ///
 /// // A square in the plane of x and z.
 /// let space = vec![[0.0, 7.0, 0.0], [2.0, 7.0, 0.0], [2.0, 7.0, 2.0], [0.0, 7.0, 2.0], [1.5, 7.0, 1.25]];
@@ -26,7 +26,7 @@ use crate::topology::{Topology, certify};
 /// assert_eq!(points[4], [1.5, 1.25]);
 /// points[4] = [1.0, 1.0];
 /// assert_eq!(plane.in_space(&points)[4], [1.0, 7.0, 1.0]);
-/// # Ok::<(), gpu_smooth::plane::NotPlanar>(())
+/// # Ok::<(), gpu_smooth::front_ends::NotPlanar>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plane {

@@ -1,8 +1,8 @@
 //! Estimates the duration of a run on the CPU and on a GPU, and chooses the faster backend.
 
-use crate::choice::kept::Kept;
-use crate::choice::reason::Reason;
 use crate::error::GpuError;
+use crate::front_ends::choice::kept::Kept;
+use crate::front_ends::choice::reason::BackendReason;
 use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::smoother::Backend;
@@ -30,31 +30,33 @@ pub(super) fn choose(
     size: MeshSize,
     options: &Options,
     try_drivers: impl FnOnce() -> Result<(), GpuError>,
-) -> (Backend, Reason) {
+) -> (Backend, BackendReason) {
     if options.max_sweeps == 0 {
-        return (Backend::Cpu, Reason::NoSweeps);
+        return (Backend::Cpu, BackendReason::NoSweeps);
     }
     let (cores, sweeps) = (rayon::current_num_threads(), expected_sweeps(options));
     let best = pays_from(FASTEST, cores, sweeps);
     if best.is_none_or(|least| size.vertices < least) {
-        return (Backend::Cpu, Reason::CpuIsFaster { adapter: None, pays_from: best });
+        return (Backend::Cpu, BackendReason::CpuIsFaster { adapter: None, pays_from: best });
     }
     let chosen = kept.best(try_drivers, |adapter| {
         let summary = adapter.summary();
         if summary.is_software() {
-            return (Backend::Cpu, Reason::OnlySoftware(summary));
+            return (Backend::Cpu, BackendReason::OnlySoftware(summary));
         }
         match pays_from(summary.kind, cores, sweeps) {
             Some(pays_from) if size.vertices >= pays_from => {
                 match adapter.gpu().and_then(|gpu| gpu.check_size(size).map(|()| gpu)) {
-                    Ok(gpu) => (Backend::Gpu(gpu), Reason::GpuIsFaster { pays_from }),
-                    Err(error) => (Backend::Cpu, Reason::GpuFails(error)),
+                    Ok(gpu) => (Backend::Gpu(gpu), BackendReason::GpuIsFaster { pays_from }),
+                    Err(error) => (Backend::Cpu, BackendReason::GpuFails(error)),
                 }
             }
-            pays_from => (Backend::Cpu, Reason::CpuIsFaster { adapter: Some(summary), pays_from }),
+            pays_from => {
+                (Backend::Cpu, BackendReason::CpuIsFaster { adapter: Some(summary), pays_from })
+            }
         }
     });
-    chosen.unwrap_or_else(|error| (Backend::Cpu, Reason::GpuFails(error)))
+    chosen.unwrap_or_else(|error| (Backend::Cpu, BackendReason::GpuFails(error)))
 }
 
 /// The adapter kind with the highest assumed speed. Meshes too small for this kind start no driver.
@@ -140,7 +142,7 @@ mod tests {
         let options = Options { max_sweeps: 0, ..Options::default() };
         let (backend, reason) =
             choose(&Kept::new(), size, &options, || panic!("no driver is needed"));
-        assert!(matches!((backend, &reason), (Backend::Cpu, Reason::NoSweeps)), "{reason}");
+        assert!(matches!((backend, &reason), (Backend::Cpu, BackendReason::NoSweeps)), "{reason}");
     }
 
     #[test]
@@ -148,7 +150,9 @@ mod tests {
         let size = MeshSize { vertices: 2001, triangles: 3735 };
         let (backend, reason) = Backend::auto(size, &Options::default());
         assert!(matches!(backend, Backend::Cpu));
-        let Reason::CpuIsFaster { adapter: None, pays_from } = &reason else { panic!("{reason}") };
+        let BackendReason::CpuIsFaster { adapter: None, pays_from } = &reason else {
+            panic!("{reason}")
+        };
         if let Some(least) = pays_from {
             let told = reason.to_string().replace(',', "");
             assert_eq!(told, format!("fewer than {least} vertices"));
