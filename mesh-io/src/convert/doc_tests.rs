@@ -201,7 +201,7 @@ const ROWS: &[Row] = &[
     ),
     row(
         &[Format::Selafin],
-        "either byte order, single and double precision; time steps are kept",
+        "either byte order; single or double precision, by the length of the records and whatever the title; time steps are kept",
         ["–", "–", "nothing", "triangles in one plane"],
     ),
     row(

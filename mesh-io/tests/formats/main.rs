@@ -8,6 +8,7 @@ mod content;
 mod convert;
 mod damage;
 mod data;
+mod dialects;
 mod ends;
 mod errors;
 mod exodus;

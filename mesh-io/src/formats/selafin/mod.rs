@@ -2,7 +2,8 @@
 //!
 //! The format: TELEMAC-MASCARET's user manual, appendix on SERAFIN. A file is a sequence of Fortran records, each
 //! between two copies of its length. The x of all points precede the y of all points. The time steps that follow are
-//! kept.
+//! kept. Titles of double precision end in `SERAFIND` by the manual, but other programs write such files with any title.
+//! So the length of the record of x decides the precision, as in `parserSELAFIN.py` of TELEMAC.
 
 pub(crate) mod write;
 
@@ -36,9 +37,7 @@ impl FormatReader for Selafin {
             true => ByteOrder::Big,
             false => ByteOrder::Little,
         };
-        let title = record(cursor, order, "the title", Some(80))?;
-        let doubles = title.ends_with(b"SERAFIND");
-        let precision = if doubles { Precision::Double } else { Precision::Single };
+        record(cursor, order, "the title", Some(80))?;
         let counts = integers(record(cursor, order, "the numbers of variables", Some(8))?, order);
         let variables = u64::from(counts[0].unsigned_abs()) + u64::from(counts[1].unsigned_abs());
         let mut names = Vec::new();
@@ -67,14 +66,20 @@ impl FormatReader for Selafin {
         let sized = |count: i32, each: usize| {
             usize::try_from(count).ok().and_then(|count| count.checked_mul(each))
         };
-        let (Some(listed), Some(numbers)) =
-            (sized(triangles, 4 * kind.nodes()), sized(points, precision.bytes()))
+        let (Some(listed), Some(numbered), Some(doubles)) =
+            (sized(triangles, 4 * kind.nodes()), sized(points, 4), sized(points, 8))
         else {
             return Err(cursor.error("a size is negative", "Write the mesh again"));
         };
         let connectivity = record(cursor, order, "the elements", Some(listed))?;
         let listed_at = cursor.last_taken();
-        record(cursor, order, "the boundary numbers", Some(numbers / precision.bytes() * 4))?;
+        record(cursor, order, "the boundary numbers", Some(numbered))?;
+        let length = cursor.clone().take(4).map(|bytes| record_length(bytes, order));
+        let has_doubles = points > 0 && length.is_some_and(|n| usize::try_from(n) == Ok(doubles));
+        let (precision, numbers) = match has_doubles {
+            true => (Precision::Double, doubles),
+            false => (Precision::Single, numbered),
+        };
         let xs = record(cursor, order, "the x of all points", Some(numbers))?;
         let x_at = cursor.last_taken();
         let ys = record(cursor, order, "the y of all points", Some(numbers))?;
@@ -162,8 +167,7 @@ fn record<'a>(
 ) -> Result<&'a [u8], ReadError> {
     let start = cursor.clone();
     let cut_off = || start.error(format!("the file ends before {what}"), CUT_OFF);
-    let length = |bytes: &[u8]| order.i32(bytes.try_into().expect("4 bytes"));
-    let size = length(cursor.take(4).ok_or_else(cut_off)?);
+    let size = record_length(cursor.take(4).ok_or_else(cut_off)?, order);
     let bytes = usize::try_from(size).unwrap_or(usize::MAX);
     if expected.is_some_and(|expected| bytes != expected) {
         let problem = format!("the record of {what} has {size} bytes");
@@ -171,12 +175,17 @@ fn record<'a>(
     }
     let taken = cursor.take(bytes).ok_or_else(cut_off)?;
     let mut after = cursor.clone();
-    if length(after.take(4).ok_or_else(cut_off)?) != size {
+    if record_length(after.take(4).ok_or_else(cut_off)?, order) != size {
         let problem = format!("the record of {what} ends with another length than it begins with");
         return Err(start.error(problem, "Write the mesh again"));
     }
     cursor.skip_bytes(4);
     Ok(taken)
+}
+
+/// Returns the number of bytes of a record by the first or last four bytes of the record.
+fn record_length(bytes: &[u8], order: ByteOrder) -> i32 {
+    order.i32(bytes.try_into().expect("4 bytes"))
 }
 
 fn integers(bytes: &[u8], order: ByteOrder) -> Vec<i32> {
