@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
-use gpu_smooth::front_ends::Chart;
 use gpu_smooth::front_ends::Plane;
+use gpu_smooth::front_ends::{Chart, select};
 use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use gpu_smooth::precision::Precision;
 use gpu_smooth::slide::Periodic;
-use gpu_smooth::{Mesh, MeshError, Slide, Topology, select};
+use gpu_smooth::{Mesh, MeshError, Slide, Topology};
 use mesh_io::{Affine, Constraints, MeshFile, edges_between_regions};
 
 /// A mesh with the vertices that stay, the lines along which vertices slide, and the surface of its coordinates, from the

@@ -1,6 +1,5 @@
 //! The vertices of a mesh that stay, slide or move, by the options of the mesh.
 
-use gpu_smooth::front_ends::select;
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology};
 use gpu_smooth_job::{Domain, SlideBy, overlooks_boundary};
