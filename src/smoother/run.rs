@@ -10,6 +10,7 @@ use crate::outcome::Outcome;
 use crate::parallel::BoxedFuture;
 use crate::parallel::pace::{budget_after, paced};
 use crate::run::{Checkpoint, CheckpointPolicy, NoCheckpoints, Observer, Progress};
+#[cfg(feature = "gpu")]
 use crate::whole::Device;
 
 use super::backend::Backend;
@@ -39,25 +40,27 @@ use super::prepared::Smoother;
 #[must_use = "a run begins by `block` or `.await`"]
 pub struct Run<'r> {
     smoother: &'r Smoother<'r>,
-    options: &'r Options,
-    backend: &'r Backend,
+    options: Options,
+    backend: Backend,
     observer: Box<dyn Observer + 'r>,
     policy: Box<dyn CheckpointPolicy + 'r>,
     resumed: Option<&'r Checkpoint>,
 }
 
 impl Smoother<'_> {
-    /// Returns a run with these options, on the CPU. The run begins by [`Run::block`] or `.await`.
-    pub fn run<'r>(&'r self, options: &'r Options) -> Run<'r> {
+    /// Returns a run with these options, on the CPU. The run begins by [`Run::block`] or `.await`. It borrows the smoother
+    /// until it ends, and has copies of the options and of the backend.
+    pub fn run(&self, options: &Options) -> Run<'_> {
         let (observer, policy) = (Box::new(unobserved), Box::new(NoCheckpoints));
-        Run { smoother: self, options, backend: &Backend::Cpu, observer, policy, resumed: None }
+        let (options, backend) = (options.clone(), Backend::Cpu);
+        Run { smoother: self, options, backend, observer, policy, resumed: None }
     }
 }
 
 impl<'r> Run<'r> {
     /// Sets the engine of the sweeps.
-    pub fn on(self, backend: &'r Backend) -> Self {
-        Self { backend, ..self }
+    pub fn on(self, backend: &Backend) -> Self {
+        Self { backend: backend.clone(), ..self }
     }
 
     /// Sets the observer. The run calls it every few sweeps, and between the iterations of long Newton steps, about ten times a
@@ -90,26 +93,26 @@ impl<'r> Run<'r> {
     /// error holds [`GpuError::Limit`](crate::GpuError::Limit) or [`GpuError::TooLarge`](crate::GpuError::TooLarge) and
     /// comes before the first sweep.
     pub fn block(self) -> Result<Outcome, SmoothError> {
-        let device = match self.backend {
-            Backend::Cpu => None,
-            #[cfg(feature = "gpu")]
-            Backend::Gpu(gpu) => Some(Device::blocking(gpu)),
-        };
-        pollster::block_on(self.begin(device))
+        pollster::block_on(self.begin(false))
     }
 
-    async fn begin(mut self, device: Option<Device<'r>>) -> Result<Outcome, SmoothError> {
-        let Self { smoother, options, resumed, .. } = self;
-        let unswept;
-        let options = if smoother.is_all_kept {
-            let stopping = Stopping::default();
-            unswept = Options { max_sweeps: 0, stopping, improve_worst: None, ..options.clone() };
-            &unswept
-        } else {
-            options
+    /// Does the run. If it `is_awaited`, the application polls the device, otherwise this library.
+    async fn begin(
+        self,
+        #[cfg_attr(not(feature = "gpu"), expect(unused_variables))] is_awaited: bool,
+    ) -> Result<Outcome, SmoothError> {
+        let Self { smoother, mut options, backend, mut observer, mut policy, resumed } = self;
+        let device = match &backend {
+            Backend::Cpu => None,
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(gpu) => Some(Device::new(gpu, is_awaited)),
         };
-        let smoother = smoother.serving(options);
-        smoother.run_at(options, device, resumed, &mut *self.policy, &mut *self.observer).await
+        if smoother.is_all_kept {
+            let stopping = Stopping::default();
+            options = Options { max_sweeps: 0, stopping, improve_worst: None, ..options };
+        }
+        let smoother = smoother.serving(&options);
+        smoother.run_at(&options, device, resumed, &mut *policy, &mut *observer).await
     }
 }
 
@@ -123,12 +126,7 @@ impl<'r> IntoFuture for Run<'r> {
     type IntoFuture = BoxedFuture<'r, Result<Outcome, SmoothError>>;
 
     fn into_future(self) -> Self::IntoFuture {
-        let device = match self.backend {
-            Backend::Cpu => None,
-            #[cfg(feature = "gpu")]
-            Backend::Gpu(gpu) => Some(Device::awaited(gpu)),
-        };
-        Box::pin(paced(budget_after, Box::pin(self.begin(device))))
+        Box::pin(paced(budget_after, Box::pin(self.begin(true))))
     }
 }
 
@@ -190,17 +188,18 @@ mod tests {
     /// With a budget of zero, each thread does one task in a poll: at most [`DEGREE_BLOCK`] visits of a sweep.
     ///
     /// [`DEGREE_BLOCK`]: crate::layout::DEGREE_BLOCK
-    fn assert_polls(device: Option<Device<'_>>, backend: &Backend, options: &Options) {
+    fn assert_polls(backend: &Backend, options: &Options) {
         let mesh = lattice(80);
         let smoother = Smoother::new(&mesh).unwrap();
         let blocked = smoother.run(options).on(backend).block().unwrap();
         let run = smoother.run(options).on(backend);
-        let (awaited, polls) = polled(Duration::ZERO, run.begin(device));
+        let (awaited, polls) = polled(Duration::ZERO, run.begin(false));
         let awaited = awaited.unwrap();
         assert_eq!(awaited.points, blocked.points);
         let history = |outcome: &Outcome| format!("{:?}", outcome.history);
         assert_eq!(history(&awaited), history(&blocked));
-        let in_f64 = if device.is_none() { awaited.sweeps } else { awaited.opening_sweeps };
+        let is_on_cpu = matches!(backend, Backend::Cpu);
+        let in_f64 = if is_on_cpu { awaited.sweeps } else { awaited.opening_sweeps };
         assert!(in_f64 > 0);
         let tasks = 79 * 79 / crate::layout::DEGREE_BLOCK * in_f64 as usize;
         let least = tasks / rayon::current_num_threads();
@@ -211,7 +210,7 @@ mod tests {
     fn an_awaited_run_pauses_within_each_sweep_on_the_cpu() {
         let improved = Options { improve_worst: Some(WorstBy::Imr), ..Options::default() };
         for options in [Options::default(), improved] {
-            assert_polls(None, &Backend::Cpu, &options);
+            assert_polls(&Backend::Cpu, &options);
         }
     }
 
@@ -219,7 +218,6 @@ mod tests {
     #[test]
     fn an_awaited_run_pauses_while_the_cpu_opens_triangles_for_a_device() {
         let gpu = crate::Gpu::open(None).block().unwrap();
-        let device = Some(Device::blocking(&gpu));
-        assert_polls(device, &Backend::Gpu(gpu.clone()), &Options::default());
+        assert_polls(&Backend::Gpu(gpu), &Options::default());
     }
 }

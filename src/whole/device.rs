@@ -20,14 +20,11 @@ pub(crate) struct Device<'s> {
 }
 
 impl<'s> Device<'s> {
-    /// Returns a device for whose results the thread of the run blocks.
-    pub(crate) fn blocking(gpu: &'s Gpu) -> Self {
-        Self { gpu, waiting: Waiting::Block }
-    }
-
-    /// Returns a device that the application polls while it awaits the run.
-    pub(crate) fn awaited(gpu: &'s Gpu) -> Self {
-        Self { gpu, waiting: Waiting::Await }
+    /// Returns the device of a run. If the run `is_awaited`, the application polls the device; otherwise the thread of the run
+    /// blocks for results.
+    pub(crate) fn new(gpu: &'s Gpu, is_awaited: bool) -> Self {
+        let waiting = if is_awaited { Waiting::Await } else { Waiting::Block };
+        Self { gpu, waiting }
     }
 
     /// Checks the size of a mesh, and fails if the device has too little room.

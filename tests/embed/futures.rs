@@ -8,8 +8,8 @@ use std::task::{Context, Poll, Waker};
 use std::time::{Duration, Instant};
 
 use gpu_smooth::{
-    Backend, Goal, Method, Metric, Options, Outcome, Progress, Quality, Smoother, Stop, Stopping,
-    gpu::Sweeps, wgpu,
+    Backend, Goal, Gpu, Method, Metric, Options, Outcome, Progress, Quality, Smoother, Stop,
+    Stopping, gpu::Sweeps, wgpu,
 };
 
 use crate::app::{App, bad_plate};
@@ -88,6 +88,12 @@ fn futures_can_move_between_threads() {
     is_send(&smoother.run(&options).on(&on_app).observe(observe));
     is_send(&smoother.run(&options).on(&on_app).into_future());
     is_send(&device_mesh.read_points().into_future());
+    // A function may return the future of a run with options and a backend of its own.
+    fn begun(smoother: &Smoother<'_>, gpu: Gpu) -> impl Future<Output: Send> + Send {
+        let run = smoother.run(&Options::default()).on(&Backend::Gpu(gpu));
+        run.into_future()
+    }
+    is_send(&begun(&smoother, app.gpu.clone()));
 }
 
 /// A runtime requires spawned tasks to be `Send` and `'static`.
