@@ -177,6 +177,11 @@ impl Checker {
                 }
             }
             Err(error) if !error.use_stderr() => "help",
+            // Without arguments, the help is the answer, on standard error.
+            Err(error) if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+                assert!(words.len() == 1 && error.exit_code() == 2, "{words:?}");
+                "help"
+            }
             Err(error) => {
                 let message = error.render().to_string();
                 assert!(

@@ -6,7 +6,7 @@
 
 #[cfg(unix)]
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -15,15 +15,14 @@ use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{flag, low_level};
 
-use crate::terminal::{progress, tell};
+pub(crate) use crate::terminal::requested::{exit_code, is_requested};
+use crate::terminal::{progress, requested, tell};
 
 /// Interval at which the thread polls for signals. A blocking wait would need different code on each system.
 const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Whether a smoothed state exists that can be written.
 static HAS_RESULT: AtomicBool = AtomicBool::new(false);
-/// Number of the signal that requested the end of the run; 0 without a request.
-static REQUESTED: AtomicI32 = AtomicI32::new(0);
 /// Lock held while any file but the mesh is written.
 static WRITING: Mutex<()> = Mutex::new(());
 
@@ -82,8 +81,7 @@ fn ignores_hangup() -> bool {
 /// Handles a signal. The first signal requests the end of the run if a result exists; other signals end the process.
 fn received(signal: i32, quiet: bool) {
     let has_result = HAS_RESULT.load(Ordering::SeqCst);
-    let set = |from| REQUESTED.compare_exchange(from, signal, Ordering::SeqCst, Ordering::SeqCst);
-    if has_result && set(0).is_ok() {
+    if has_result && requested::request(signal) {
         return;
     }
     let _mesh = mesh_io::atomic::discard_pending_writes();
@@ -96,7 +94,7 @@ fn received(signal: i32, quiet: bool) {
     };
     tell::note(quiet, text);
     // `std::process::exit` would run clean-up code of GPU drivers whose threads are still active.
-    low_level::exit(exit_status(signal).into());
+    low_level::exit(requested::exit_status(signal).into());
 }
 
 /// From now on the first signal only sets what `is_requested` returns, so that the run can write its result. Before, a
@@ -105,25 +103,7 @@ pub(crate) fn has_result() {
     HAS_RESULT.store(true, Ordering::SeqCst);
 }
 
-/// Returns whether a signal has requested the end of the run.
-pub(crate) fn is_requested() -> bool {
-    REQUESTED.load(Ordering::SeqCst) != 0
-}
-
 /// Returns a guard that delays the end of the process by signals for as long as the guard lives.
 pub(crate) fn uninterrupted() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Returns the exit code of a successful command: 0, or that of the signal that interrupted the run.
-pub(crate) fn exit_code() -> u8 {
-    match REQUESTED.load(Ordering::SeqCst) {
-        0 => 0,
-        signal => exit_status(signal),
-    }
-}
-
-/// Returns the exit status with which shells report a signal: 130 for SIGINT, 143 for SIGTERM, 129 for SIGHUP.
-fn exit_status(signal: i32) -> u8 {
-    128 + signal as u8
 }

@@ -5,6 +5,7 @@ pub(crate) mod numbers;
 pub(crate) mod panics;
 pub(crate) mod process;
 pub(crate) mod progress;
+mod requested;
 pub(crate) mod shell_words;
 pub(crate) mod tell;
 mod verbosity;

@@ -11,7 +11,7 @@ use gpu_smooth::gpu::AdapterSummary;
 use serde_json::{Value, json};
 
 use crate::error::CliError;
-use crate::terminal::interrupt;
+use crate::terminal::requested;
 
 /// Whether standard error receives JSON. `START` is the time from which events count seconds.
 static JSON: AtomicBool = AtomicBool::new(false);
@@ -71,7 +71,7 @@ pub(crate) fn say_data(text: &str) {
 pub(crate) fn end_if_closed(problem: &std::io::Error) {
     if problem.kind() == ErrorKind::BrokenPipe {
         // A signal has its own exit code, such as that of a closed terminal.
-        std::process::exit(match interrupt::exit_code() {
+        std::process::exit(match requested::exit_code() {
             0 => CLOSED_PIPE,
             code => code.into(),
         });

@@ -324,6 +324,7 @@ fn every_key_of_a_report_is_documented_and_every_documented_key_is_in_a_report()
         "in out --time-limit 1e-6 --checkpoint r.ckpt",
         "in out --continue r.ckpt",
         "in.gr3 out.gr3 --interpolate all",
+        "in.gr3 out.2dm --lossy",
         "bad out --untangle",
         "right right-out",
     ] {
