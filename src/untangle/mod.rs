@@ -27,6 +27,9 @@ use crate::precision::Precision;
 pub(crate) use means::feasible_means;
 pub use result::{Untangled, Untangling};
 
+/// A function that is called after each sweep.
+type Observe<'r> = dyn FnMut(&Untangling) -> ControlFlow<()> + 'r;
+
 /// An untangling that has not begun: moves free vertices, on the CPU, until no triangle is inverted or flat. It begins by
 /// [`run`](Self::run). Connectivity, boundary and fixed vertices stay. Triangles too flat for double precision are opened as
 /// well. If moves of the vertices near bad triangles suffice, all other vertices keep their coordinates. Free vertices more
@@ -57,7 +60,7 @@ pub use result::{Untangled, Untangling};
 pub struct Untangle<'r> {
     mesh: &'r Mesh,
     stored: Precision,
-    observe: Box<dyn FnMut(&Untangling) -> ControlFlow<()> + 'r>,
+    observe: Box<Observe<'r>>,
 }
 
 impl<'r> Untangle<'r> {

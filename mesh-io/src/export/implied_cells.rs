@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 
 /// Boundary of a mesh, and the vertices of its lines. Mesh generators write points and lines for all corners and curves of
 /// a model. A format without these elements loses nothing if they are on the boundary, or at the vertices of lines, whose
-/// loss is reported by itself. Groups of points and lines are a loss of their own, too.
+/// loss is listed. A conversion lists groups of points and lines among its losses, whether their elements are implied or not.
 pub(super) struct ImpliedCells {
     /// Edges of exactly one face, each with its smaller vertex first.
     boundary: HashSet<[u32; 2]>,

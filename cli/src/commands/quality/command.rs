@@ -7,7 +7,7 @@ use crate::commands::quality::bars::Style;
 use crate::commands::quality::mesh_quality::{MeshQuality, Violation};
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
-use crate::render::html::{self, PageEntry};
+use crate::render::html::{self, MeshNumbers, PageEntry};
 use crate::request::Outputs;
 use crate::terminal::progress::Display;
 use crate::terminal::{Verbosity, interrupt, tell};
@@ -89,13 +89,13 @@ fn entry(quality: &MeshQuality, is_alone: bool) -> Option<PageEntry<'_>> {
         true => path.file_name().unwrap_or_default().display().to_string(),
         false => path.display().to_string(),
     };
-    Some(PageEntry {
+    let numbers = MeshNumbers {
         name,
         triangles: quality.triangles,
         bad: quality.report.inverted,
-        part: quality.page.as_ref()?,
         statistics: &quality.statistics,
-    })
+    };
+    Some(PageEntry { numbers, part: quality.page.as_ref()? })
 }
 
 /// Returns a line for each threshold of each mesh; without thresholds, a line for each mesh.

@@ -21,7 +21,7 @@ const MOST_DOTS: usize = 60;
 /// The quantity along the x axis of a chart of points.
 #[derive(Clone, Copy)]
 pub(crate) enum Unit {
-    /// A number of things, by the name of one.
+    /// A number of sweeps or the like; the name is singular.
     Count(&'static str),
     /// A quantity in a unit.
     Measured(&'static str),

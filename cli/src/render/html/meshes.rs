@@ -6,12 +6,13 @@ use std::path::Path;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use gpu_smooth::measure::{Measure, Measured, Statistics};
+use gpu_smooth::measure::{Measure, Measured};
 use mesh_io::atomic;
 
 use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::render::html::overview::MeshNumbers;
 use crate::render::html::page::{Page, View, ViewerMesh, escape};
 use crate::render::html::tables::measure_name;
 use crate::render::html::{charts, mesh, overview, tables, worst};
@@ -90,14 +91,10 @@ impl MeshPart {
     }
 }
 
-/// A mesh of a page: name, section, and numbers for the overview.
+/// A mesh of a page: numbers for the overview, and section.
 pub(crate) struct PageEntry<'a> {
-    pub(crate) name: String,
-    /// Number of triangles, and of those that are inverted or flat.
-    pub(crate) triangles: usize,
-    pub(crate) bad: usize,
+    pub(crate) numbers: MeshNumbers<'a>,
     pub(crate) part: &'a MeshPart,
-    pub(crate) statistics: &'a [Statistics],
 }
 
 /// Writes a page about measured meshes to `path`.
@@ -107,14 +104,16 @@ pub(crate) fn write_meshes(path: &Path, meshes: &[PageEntry<'_>]) -> Result<(), 
 }
 
 fn page(meshes: &[PageEntry<'_>]) -> String {
-    let notes = tables::notes(&tables::measures(meshes.first().map_or(&[], |m| m.statistics)));
-    let statistics = |entry: &PageEntry<'_>| tables::statistics_table(&[("", entry.statistics)]);
-    let [entry @ PageEntry { name, part, .. }] = meshes else {
+    let numbers: Vec<&MeshNumbers<'_>> = meshes.iter().map(|entry| &entry.numbers).collect();
+    let notes = tables::notes(&tables::measures(numbers.first().map_or(&[], |n| n.statistics)));
+    let statistics =
+        |entry: &PageEntry<'_>| tables::statistics_table(&[("", entry.numbers.statistics)]);
+    let [entry @ PageEntry { numbers: MeshNumbers { name, .. }, part }] = meshes else {
         let mut page = Page::new(&format!("Quality of {} meshes", meshes.len()));
-        page.section("Overview", &(overview::table(meshes) + &notes));
+        page.section("Overview", &(overview::table(&numbers) + &notes));
         for (i, entry) in meshes.iter().enumerate() {
             let content = section(entry, &statistics(entry));
-            page.linked_section(&overview::anchor(i), &entry.name, &content);
+            page.linked_section(&overview::anchor(i), &entry.numbers.name, &content);
         }
         return page.finish();
     };
@@ -133,7 +132,7 @@ fn page(meshes: &[PageEntry<'_>]) -> String {
 
 /// Writes the section of one of several meshes. `statistics` is a table.
 fn section(entry: &PageEntry<'_>, statistics: &str) -> String {
-    let PageEntry { name, part, .. } = entry;
+    let PageEntry { numbers: MeshNumbers { name, .. }, part } = entry;
     let mut text = String::new();
     for sentence in &part.sentences {
         let _ = write!(text, "<p>{}</p>", escape(sentence));

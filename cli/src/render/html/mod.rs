@@ -11,4 +11,5 @@ mod worst;
 mod write;
 
 pub(crate) use meshes::{MeshDescription, MeshPart, PageEntry, write_meshes};
+pub(crate) use overview::MeshNumbers;
 pub(crate) use write::write;

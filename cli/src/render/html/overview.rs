@@ -5,7 +5,6 @@ use std::fmt::Write;
 
 use gpu_smooth::measure::{Better, Statistics};
 
-use crate::render::html::meshes::PageEntry;
 use crate::render::html::page::escape;
 use crate::render::html::tables::{measure_name, measures, wide};
 use crate::report::DistinctMeasures;
@@ -14,6 +13,18 @@ use crate::terminal::numbers::fit8;
 /// Name of the table, to which links lead.
 pub(crate) const TOP: &str = "overview";
 
+/// A row of the table.
+pub(crate) struct MeshNumbers<'a> {
+    /// Name of the mesh.
+    pub(crate) name: String,
+    /// Number of triangles.
+    pub(crate) triangles: usize,
+    /// Number of inverted or flat triangles.
+    pub(crate) bad: usize,
+    /// Statistics of each measure; all rows of a table have the same measures.
+    pub(crate) statistics: &'a [Statistics],
+}
+
 /// Returns the name of the section of a mesh, to which the link of its row leads.
 pub(crate) fn anchor(index: usize) -> String {
     format!("mesh-{}", index + 1)
@@ -21,8 +32,8 @@ pub(crate) fn anchor(index: usize) -> String {
 
 /// Writes the table: the numbers of triangles and of bad triangles, and the worst value of each measure. Rows are sorted by
 /// the worst value of the first measure, worst first.
-pub(crate) fn table(meshes: &[PageEntry<'_>]) -> String {
-    let first = meshes.first().map_or(&[][..], |entry| entry.statistics);
+pub(crate) fn table(meshes: &[&MeshNumbers<'_>]) -> String {
+    let first = meshes.first().map_or(&[][..], |mesh| mesh.statistics);
     let all = measures(first);
     let shown = DistinctMeasures::of(&all).shown;
     let columns: Vec<usize> = (0..all.len()).filter(|&i| shown.contains(&all[i])).collect();
@@ -46,8 +57,8 @@ pub(crate) fn table(meshes: &[PageEntry<'_>]) -> String {
         header("number", &measure_name(all[i]), all[i].definition().formula, place == 0);
     }
     text += "</tr></thead><tbody>";
-    for (index, entry) in sorted(meshes, columns.first().copied()) {
-        let PageEntry { name, triangles, bad, statistics, .. } = entry;
+    for (index, mesh) in sorted(meshes, columns.first().copied()) {
+        let MeshNumbers { name, triangles, bad, statistics } = mesh;
         let _ = write!(
             text,
             "<tr><td><a href=\"#{}\">{}</a></td><td data-key=\"-{triangles}\">{triangles}</td><td data-key=\"-{bad}\">{bad}</td>",
@@ -65,11 +76,11 @@ pub(crate) fn table(meshes: &[PageEntry<'_>]) -> String {
 
 /// Returns the meshes with their indices, worst first by the statistics at `column`.
 fn sorted<'a, 'b>(
-    meshes: &'a [PageEntry<'b>],
+    meshes: &[&'a MeshNumbers<'b>],
     column: Option<usize>,
-) -> Vec<(usize, &'a PageEntry<'b>)> {
-    let mut rows: Vec<_> = meshes.iter().enumerate().collect();
-    let rank = |entry: &PageEntry<'_>| Some(rank(entry.statistics.get(column?)?));
+) -> Vec<(usize, &'a MeshNumbers<'b>)> {
+    let mut rows: Vec<_> = meshes.iter().copied().enumerate().collect();
+    let rank = |mesh: &MeshNumbers<'_>| Some(rank(mesh.statistics.get(column?)?));
     rows.sort_by(|(_, a), (_, b)| rank(a).partial_cmp(&rank(b)).unwrap_or(Ordering::Equal));
     rows
 }

@@ -3,7 +3,6 @@
 use crate::render::picture::arrows;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
 use crate::render::picture::color::{BLACK, WHITE};
-use crate::render::picture::layout::Frame;
 use crate::terminal::numbers::short;
 
 /// Returns the width of lines of the boundary, in pixels.
@@ -28,11 +27,16 @@ pub(crate) fn around(
     canvas.lines(&sides, text / 16.0, BLACK, 1.0);
 }
 
-/// Draws a bar of a round length, with the length in units of the mesh, at the lower left of an inset.
-pub(crate) fn scale_bar(frame: &Frame, text: f32, canvas: &mut dyn Canvas) {
-    let [[left, top], [right, bottom]] = frame.corners;
-    let Some(length) = round_length(f64::from(right - left) / (3.0 * frame.scale)) else { return };
-    let (width, y) = ((length * frame.scale) as f32, bottom - 0.6 * text);
+/// Draws a bar of a round length, with the length in units of the mesh, at the lower left of an inset. `scale` is the
+/// number of pixels per unit.
+pub(crate) fn scale_bar(
+    [[left, top], [right, bottom]]: [Point; 2],
+    scale: f64,
+    text: f32,
+    canvas: &mut dyn Canvas,
+) {
+    let Some(length) = round_length(f64::from(right - left) / (3.0 * scale)) else { return };
+    let (width, y) = ((length * scale) as f32, bottom - 0.6 * text);
     if bottom - top < 4.0 * text {
         return;
     }

@@ -126,7 +126,7 @@ impl Scene<'_> {
             self.outline(panel, t, &frame, text, canvas);
             canvas.clip(None);
             around(corners, text, canvas);
-            scale_bar(&frame, text, canvas);
+            scale_bar(corners, scale, text, canvas);
             draw_name(&self.inset_name(i + 1, value), corners, text, canvas);
         }
         draw_heading(&panel.title, place, text, canvas);
