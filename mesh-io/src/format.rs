@@ -30,6 +30,8 @@ formats! {
     /// The `.node` and `.ele` of the mesh generator Triangle, with the segments of a `.poly`
     /// beside them.
     Triangle = "Triangle .node/.ele";
+    /// gmsh's `.msh`, version 1, as text.
+    Gmsh1 = "gmsh 1 ASCII";
     /// gmsh's `.msh`, versions 2.0 to 2.2, as text.
     Gmsh22 = "gmsh 2.2 ASCII";
     /// gmsh's `.msh`, versions 2.0 to 2.2, in binary.

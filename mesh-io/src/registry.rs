@@ -96,10 +96,10 @@ families! {
         &[],
         reader::<triangle::Triangle>(),
     );
-    GMSH [Gmsh22, Gmsh22Binary, Gmsh40, Gmsh40Binary, Gmsh41, Gmsh41Binary] = entry(
+    GMSH [Gmsh1, Gmsh22, Gmsh22Binary, Gmsh40, Gmsh40Binary, Gmsh41, Gmsh41Binary] = entry(
         "gmsh",
         &[".msh"],
-        &[b"$MeshFormat", b"$Comments"],
+        &[b"$MeshFormat", b"$Comments", b"$NOD\n", b"$NOD\r", b"$NOD "],
         reader::<gmsh::Gmsh>(),
     );
     VTK [Vtk, VtkBinary] = entry(
@@ -235,12 +235,6 @@ families! {
         &[".bdf", ".nas"],
         &[b"BEGIN BULK"],
         reader::<nastran::Nastran>(),
-    );
-    GMSH_1 [] = unsupported(
-        "gmsh 1",
-        &[],
-        &[b"$NOD\n", b"$NOD\r"],
-        "Open it in gmsh, and save it as version 4.1",
     );
     UNV [] = unsupported("I-DEAS universal", &[".unv"], &[], "Open it in gmsh, and save it as .msh");
     LS_DYNA [] = unsupported("LS-DYNA", &[".k", ".key"], &[b"*KEYWORD", b"$# LS-DYNA"], BY_OTHERS);

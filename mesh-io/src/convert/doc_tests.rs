@@ -45,8 +45,8 @@ const ROWS: &[Row] = &[
         ],
     ),
     row(
-        &[Format::Gmsh22, Format::Gmsh22Binary],
-        "versions 2.0 to 2.2, either byte order",
+        &[Format::Gmsh1, Format::Gmsh22, Format::Gmsh22Binary],
+        "version 1 as text, versions 2.0 to 2.2 in text and in either byte order",
         [
             "points, lines, quadrilaterals",
             "physical group and geometrical entity",

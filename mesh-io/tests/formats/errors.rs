@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Checks that the first file is refused with a message of one line that contains all `parts`.
-fn assert_error(files: &[(&str, &str)], parts: &[&str]) {
+pub(crate) fn assert_error(files: &[(&str, &str)], parts: &[&str]) {
     let folder = Folder::new(files);
     let error = MeshFile::read(&folder.path(files[0].0)).unwrap_err().to_string();
     for part in parts {

@@ -181,7 +181,7 @@ fn list_of(made: &Made) -> &'static str {
         Format::Obj => "the list of v rows",
         Format::Adcirc | Format::Mike | Format::Fvcom | Format::Ugrid => "the list of nodes",
         Format::Sms2dm => "the list of ND rows",
-        Format::Gmsh40 | Format::Gmsh40Binary => "$Nodes",
+        Format::Gmsh1 | Format::Gmsh40 | Format::Gmsh40Binary => "$Nodes",
         Format::Selafin => "the list of points",
         Format::Xdmf => "Geometry",
         Format::Exodus => "the list of coordinates",

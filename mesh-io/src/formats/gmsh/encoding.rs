@@ -4,9 +4,11 @@ use crate::binary::byte_order::ByteOrder;
 use crate::edit::numbers::NumberEncoding;
 use crate::precision::Precision;
 
-/// Version of the format. `V2` stands for 2.0 to 2.2, `V40` for 4 and 4.0.
+/// Version of the format. `V1` has no section `$MeshFormat`, and `$NOD` and `$ELM` in place of `$Nodes` and
+/// `$Elements`. `V2` stands for 2.0 to 2.2, `V40` for 4 and 4.0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Version {
+    V1,
     V2,
     V40,
     V41,

@@ -16,7 +16,9 @@ const PARAMETRIC: &str =
 /// Chooses the layout of the rest of a section: row by row if `rows` rows follow, else word by word, as gmsh parses.
 fn lay_out(cursor: &mut Cursor<'_>, rows: u64) {
     let (bytes, at) = (&cursor.source.bytes, cursor.at());
-    let end = memchr::memmem::find(&bytes[at..], b"$End").map_or(bytes.len(), |end| at + end);
+    // Version 1 writes `$END`.
+    let find = |word: &[u8]| memchr::memmem::find(&bytes[at..], word);
+    let end = find(b"$End").or_else(|| find(b"$END")).map_or(bytes.len(), |end| at + end);
     cursor.syntax = of_rows_or_words(cursor, end, rows);
 }
 

@@ -1,4 +1,4 @@
-//! gmsh's `.msh`, versions 2.2, 4.0 and 4.1, in ASCII and in binary.
+//! gmsh's `.msh`, versions 1 (ASCII alone), 2.2, 4.0 and 4.1, in ASCII and in binary.
 //!
 //! The formats: <https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats>. Reading a mesh requires only
 //! `$MeshFormat`, `$Nodes` and `$Elements`. `$PhysicalNames` and `$Entities`, which lists the physical groups of each

@@ -14,7 +14,7 @@ use crate::format::Format;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
-use crate::text::token::quoted;
+use crate::text::token::{float, quoted};
 use crate::visit::ghosts::GhostNodes;
 use crate::visit::reader::FormatReader;
 use crate::visit::storage::CoordinateStorage;
@@ -33,6 +33,7 @@ impl FormatReader for Gmsh {
     ) -> Result<CoordinateStorage, ReadError> {
         let FileEncoding { version, order } = visit_sections(source, visitor)?;
         let format = match (version, order) {
+            (Version::V1, _) => Format::Gmsh1,
             (Version::V2, None) => Format::Gmsh22,
             (Version::V2, Some(_)) => Format::Gmsh22Binary,
             (Version::V40, None) => Format::Gmsh40,
@@ -75,8 +76,11 @@ fn visit_sections(
                 encoding = Some(mesh_format(cursor)?);
                 end_of_section(cursor, "MeshFormat", opened, "one line")?;
             }
-            b"Nodes" | b"ParametricNodes" => {
-                once(cursor, &mut nodes, "Nodes")?;
+            b"Nodes" | b"ParametricNodes" | b"NOD" => {
+                once(cursor, &mut nodes, name)?;
+                if name == b"NOD" {
+                    encoding = Some(FileEncoding { version: Version::V1, order: None });
+                }
                 let FileEncoding { version, order } = known(cursor, encoding)?;
                 let parametric = name == b"ParametricNodes";
                 if parametric {
@@ -85,7 +89,9 @@ fn visit_sections(
                 let mut seen = ZValues::new(visitor);
                 let z_values = &mut seen;
                 let count = match (version, order) {
-                    (Version::V2, None) => text2::nodes(cursor, z_values, visitor)?,
+                    (Version::V1, _) | (Version::V2, None) => {
+                        text2::nodes(cursor, z_values, visitor)?
+                    }
                     (Version::V40, None) => text40::nodes(cursor, z_values, visitor)?,
                     (Version::V40, Some(order)) => {
                         binary40::nodes(cursor, order, z_values, visitor)?
@@ -105,15 +111,16 @@ fn visit_sections(
                 visitor.end_nodes(cursor)?;
                 seen.send("z", form(order), visitor);
             }
-            b"Elements" => {
-                once(cursor, &mut elements, "Elements")?;
+            b"Elements" | b"ELM" => {
+                once(cursor, &mut elements, name)?;
+                let name = str::from_utf8(name).unwrap_or_default();
                 if !nodes {
-                    let problem = "$Elements stands before $Nodes";
-                    return Err(cursor.error(problem, "Put $Nodes first, as gmsh does"));
+                    let problem = format!("${name} stands before the nodes");
+                    return Err(cursor.error(problem, "Put the nodes first, as gmsh does"));
                 }
                 elements_at = Some(cursor.clone());
                 let count = read_elements(cursor, known(cursor, encoding)?, &model, visitor)?;
-                end_of_section(cursor, "Elements", opened, &format!("{count} elements"))?;
+                end_of_section(cursor, name, opened, &format!("{count} elements"))?;
                 cursor.syntax = Syntax::PLAIN;
             }
             b"PhysicalNames" if visitor.asks_for_groups() => {
@@ -145,7 +152,7 @@ fn visit_sections(
                 data::read(cursor, nodes, order, visitor);
                 skip_section(cursor, name, opened)?;
             }
-            name if name.starts_with(b"End") => {
+            name if name.starts_with(b"End") || name.starts_with(b"END") => {
                 let problem = format!("${} ends a section that never began", quoted(name));
                 return Err(cursor.error(problem, "Remove the line, or save the mesh again"));
             }
@@ -183,7 +190,7 @@ fn read_elements<'a>(
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     match (version, order) {
-        (Version::V2, None) => text2::elements(cursor, visitor),
+        (Version::V1, _) | (Version::V2, None) => text2::elements(cursor, version, visitor),
         (Version::V40 | Version::V41, None) => text4::elements(cursor, version, model, visitor),
         (Version::V2, Some(order)) => binary2::elements(cursor, order, visitor),
         (Version::V40 | Version::V41, Some(order)) => {
@@ -196,10 +203,11 @@ fn read_elements<'a>(
 fn mesh_format(cursor: &mut Cursor<'_>) -> Result<FileEncoding, ReadError> {
     row(cursor, 0, 1, "format lines")?;
     let name = cursor.token().unwrap_or_default();
-    let version = match name {
-        b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
-        b"4" | b"4.0" => Version::V40,
-        b"4.1" => Version::V41,
+    // gmsh reads the version as a number, and some programs write `2.200000`.
+    let version = match float(name) {
+        Some(number) if (2.0..=2.2).contains(&number) => Version::V2,
+        Some(number) if number == 4.0 => Version::V40,
+        Some(number) if number == 4.1 => Version::V41,
         _ => {
             let problem = format!("gmsh's format version {} is not read", quoted(name));
             let remedy = "Save as version 4.1 or 2.2 (gmsh old.msh -save -format msh41 -o new.msh)";
@@ -230,9 +238,9 @@ fn known(cursor: &Cursor<'_>, encoding: Option<FileEncoding>) -> Result<FileEnco
 }
 
 /// Returns an error if a section named `name` was read before; else records it in `seen`.
-fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadError> {
+fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &[u8]) -> Result<(), ReadError> {
     if std::mem::replace(seen, true) {
-        let problem = format!("this is the second ${name} section");
+        let problem = format!("this is the second ${} section", quoted(name));
         return Err(cursor.error(problem, "Save each mesh to a separate file"));
     }
     Ok(())
@@ -241,7 +249,7 @@ fn once(cursor: &Cursor<'_>, seen: &mut bool, name: &str) -> Result<(), ReadErro
 /// Moves past the last line of a section, after all announced items were read.
 ///
 /// # Errors
-/// If further items follow, or if the last line is not `$End` and the section's name.
+/// If further items follow, or if the last line is not that of the section.
 fn end_of_section(
     cursor: &mut Cursor<'_>,
     name: &str,
@@ -253,24 +261,34 @@ fn end_of_section(
         let problem = format!("${name} goes on after the {announced} it announces");
         return Err(cursor.error(problem, "Correct the count, or save the mesh again"));
     }
-    match cursor.token().and_then(|token| token.strip_prefix(b"$End")) {
-        Some(end) if end == name.as_bytes() => Ok(()),
-        _ => Err(no_end(cursor, name, opened)),
+    match is_end(cursor, name.as_bytes()) {
+        true => Ok(()),
+        false => Err(no_end(cursor, name, opened)),
     }
 }
 
 /// Moves past the last line of a section without reading the section.
 fn skip_section(cursor: &mut Cursor<'_>, name: &[u8], opened: Location) -> Result<(), ReadError> {
     while cursor.next_row() {
-        if cursor.is_at(b'$') && cursor.token().and_then(|t| t.strip_prefix(b"$End")) == Some(name)
-        {
+        if cursor.is_at(b'$') && is_end(cursor, name) {
             return Ok(());
         }
     }
     Err(no_end(cursor, &quoted(name), opened))
 }
 
+/// Returns whether the next word ends the section: `$End` and the name, or `$END` and a name of version 1.
+fn is_end(cursor: &mut Cursor<'_>, name: &[u8]) -> bool {
+    let end = cursor.token().and_then(|word| word.strip_prefix(end_of(name).as_bytes()));
+    end == Some(name)
+}
+
+/// Returns the beginning of the last line of a section. Names of version 1 have capital letters alone.
+fn end_of(name: &[u8]) -> &'static str {
+    if name.iter().all(u8::is_ascii_uppercase) { "$END" } else { "$End" }
+}
+
 fn no_end(cursor: &Cursor<'_>, name: &str, opened: Location) -> ReadError {
-    let problem = format!("${name} has no $End{name}");
+    let problem = format!("${name} has no {}{name}", end_of(name.as_bytes()));
     cursor.source.error_at(opened, problem, CUT_OFF)
 }

@@ -1,5 +1,6 @@
-//! Sections of version 2.2 as text, with a line for each node and element.
+//! Sections of versions 1 and 2.2 as text, with a line for each node and element.
 
+use super::encoding::Version;
 use super::kind::{kind_of, node_tags};
 use super::lists::{counts, each};
 use super::repeats::ElementSender;
@@ -10,7 +11,7 @@ use crate::visit::items::{Element, RegionAttribute};
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
 
-/// Reads `$Nodes` after its first line. Returns the number of nodes.
+/// Reads `$Nodes` or `$NOD` after its first line. Returns the number of nodes.
 pub(super) fn nodes(
     cursor: &mut Cursor<'_>,
     z_values: &mut ZValues,
@@ -39,9 +40,10 @@ pub(super) fn columns() -> Vec<RegionAttribute> {
     ["physical", "entity"].map(RegionAttribute::tags_from_one).into()
 }
 
-/// Reads `$Elements` after its first line. Returns the number of elements.
+/// Reads `$Elements` or `$ELM` after its first line. Returns the number of elements.
 pub(super) fn elements(
     cursor: &mut Cursor<'_>,
+    version: Version,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let read = |cursor: &mut Cursor<'_>| cursor.integer("the number of elements");
@@ -49,7 +51,7 @@ pub(super) fn elements(
     visitor.expect_elements(cursor.capacity(count, "1 2 0 1 2 3\n".len()));
     visitor.region_attributes(columns());
     let progress = Progress::new(0, count, "elements");
-    let read = |cursor: &mut Cursor<'_>, _| element(cursor);
+    let read = |cursor: &mut Cursor<'_>, _| element(cursor, version);
     let mut elements = ElementSender::default();
     each(cursor, count, progress, visitor, read, |cursor, visitor, _, element| {
         elements.send(cursor, visitor, &element)
@@ -67,11 +69,25 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     Ok((tag, point, cursor.z(format_args!("node {tag}"))?))
 }
 
+/// Reads the row of an element. In version 1, the two tags stand without their number, and the number of nodes precedes
+/// the nodes.
 #[inline]
-fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
+fn element(cursor: &mut Cursor<'_>, version: Version) -> Result<Element, ReadError> {
     let tag = cursor.integer("an element tag")?;
     let kind = cursor.integer(format_args!("the type of element {tag}"))?;
     let kind = kind_of(cursor, kind)?;
+    if version == Version::V1 {
+        let mut region = [0; 2];
+        for number in &mut region {
+            *number = cursor.signed(format_args!("a tag of element {tag}"))?;
+        }
+        let count = cursor.integer(format_args!("the number of nodes of element {tag}"))?;
+        if count != kind.nodes() as u64 {
+            let problem = format!("element {tag} is a {} of {count} nodes", kind.name());
+            return Err(cursor.error(problem, CORRECT));
+        }
+        return Ok(Element { id: tag, kind, region, nodes: node_tags(cursor, kind, tag)? });
+    }
     let groups = cursor.integer(format_args!("the number of tags of element {tag}"))?;
     let mut region = [0; 2];
     for number in region.iter_mut().take(usize::try_from(groups).unwrap_or(usize::MAX)) {

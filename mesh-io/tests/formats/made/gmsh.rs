@@ -1,6 +1,6 @@
-//! Makes files of version 4.0 of gmsh's format, as text and in binary.
+//! Makes files of version 1 of gmsh's format, and of version 4.0 as text and in binary.
 
-use super::{LINE, Made, POINT, PROBED, Text, fixing, number, region, regions, z};
+use super::{LINE, Made, POINT, PROBED, QUADRILATERAL, Text, fixing, number, region, regions, z};
 use mesh_io::Format;
 use mesh_io::Precision;
 use support::Binary;
@@ -15,7 +15,37 @@ fn tag(vertex: u32) -> u32 {
 }
 
 pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
-    vec![as_text(mesh), in_binary(mesh, false), in_binary(mesh, true)]
+    vec![version_1(mesh), as_text(mesh), in_binary(mesh, false), in_binary(mesh, true)]
+}
+
+/// Makes a file of version 1, without a section for the version.
+fn version_1(mesh: &Mesh) -> Made {
+    let mut text = Text::new("$NOD\n");
+    text.count(mesh.points.len());
+    text.put("\n");
+    let vertices = text.rows(mesh.points.iter().enumerate().map(|(i, &[x, y])| {
+        format!("{} {} {}  {}", tag(i as u32), number(i, x), number(i + 1, y), z(i))
+    }));
+    text.put("$ENDNOD\n$ELM\n");
+    text.count(mesh.triangles.len() + 3);
+    text.put("\n");
+    let of = |vertices: &[u32]| {
+        let tags: Vec<_> = vertices.iter().map(|&v| tag(v).to_string()).collect();
+        format!("{} {}", tags.len(), tags.join(" "))
+    };
+    let others = [
+        format!("900 15 0 3 {}", of(&[POINT])),
+        format!("901 1 8 4 {}", of(&LINE)),
+        format!("902 3 5 1 {}", of(&QUADRILATERAL)),
+    ];
+    let rows = mesh.triangles.iter().enumerate();
+    let rows = rows.map(|(t, c)| format!("{} 2 {} 1 {}", t + 1, region(t), of(c)));
+    let listed = text.rows(others.into_iter().chain(rows));
+    text.put("$ENDELM\n");
+    let regions = regions(mesh);
+    let mesh = fixing(mesh, [POINT].into_iter().chain(LINE).chain(QUADRILATERAL));
+    let probes = [(u64::from(tag(PROBED.0)), vertices[VERTEX]), (18, listed[3 + TRIANGLE])];
+    Made { regions, ..text.made("version 1", "in.msh", Format::Gmsh1, mesh, probes) }
 }
 
 /// Returns the mesh with its vertices in another order.
