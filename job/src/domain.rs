@@ -8,7 +8,7 @@ use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use gpu_smooth::precision::Precision;
 use gpu_smooth::slide::Periodic;
 use gpu_smooth::{Mesh, MeshError, Slide, Topology};
-use mesh_io::{Affine, Constraints, MeshFile, edges_between_regions};
+use mesh_io::{Affine, Constraints, MeshFile, edges_between_regions, interface_vertices};
 
 /// A mesh with the vertices that stay, the lines along which vertices slide, and the surface of its coordinates, from the
 /// facts of a file or of an application. Options of a run then fix further vertices.
@@ -99,8 +99,8 @@ impl Domain {
         }
     }
 
-    /// Makes the domain of points and triangles. The vertices of `lines` and those between different `regions` of the
-    /// triangles are fixed, and may slide along these edges. Without regions, `regions` is empty.
+    /// Makes the domain of points and triangles. The vertices of `lines` and inner vertices between different `regions` of the
+    /// triangles are fixed, and may slide along these edges, as in [`Self::of_file`]. Without regions, `regions` is empty.
     ///
     /// # Panics
     /// Panics if a triangle has a vertex that does not exist, and if there are regions.
@@ -111,9 +111,7 @@ impl Domain {
         regions: &[i64],
     ) -> Self {
         let interface_edges = edges_between_regions(regions, &triangles, points.len());
-        let mut interfaces = interface_edges.as_flattened().to_vec();
-        interfaces.sort_unstable();
-        interfaces.dedup();
+        let interfaces = interface_vertices(regions, &triangles, points.len());
         let fixed = lines.as_flattened().to_vec();
         Self { lines, interface_edges, ..Self::with(points, triangles, fixed, interfaces) }
     }
@@ -365,7 +363,7 @@ mod tests {
     fn vertices_that_are_fixed_by_hand_are_not_between_regions() {
         assert_eq!(
             (&square().mesh().fixed[..], square().interface_vertices()),
-            (&[1, 2, 0, 4][..], &[0, 4][..])
+            (&[1, 2, 4][..], &[4][..])
         );
         for free_first in [false, true] {
             let mut domain = square();
@@ -383,7 +381,7 @@ mod tests {
         domain.fix_all_but(&[0, 4]).unwrap();
         assert_eq!(
             (&domain.mesh().fixed[..], domain.interface_vertices()),
-            (&[1, 2, 3, 0, 4][..], &[0, 4][..])
+            (&[1, 2, 3, 4][..], &[4][..])
         );
         domain.free_interfaces();
         assert_eq!(domain.mesh().fixed, [1, 2, 3]);

@@ -40,6 +40,7 @@ mod domain;
 mod error;
 mod facts;
 mod job;
+mod moved;
 pub mod options;
 mod plane;
 mod precision;
@@ -50,9 +51,11 @@ pub use checkpoint::{CheckpointFile, CheckpointWriter, is_checkpoint};
 pub use domain::{Curves, Domain, SlideBy};
 pub use error::{JobError, PlaneError};
 pub use facts::{
-    Adapted, is_at_wall, look_like_degrees, overlooks_boundary, overlooks_wall, vertices_in_rows,
+    Adapted, RiseReason, WorstEffect, WorstRise, cost_in_percent, is_at_wall, look_like_degrees,
+    overlooks_boundary, overlooks_wall, vertices_in_rows,
 };
 pub use job::{Job, Smoothed};
+pub use moved::moved_fixed_vertex;
 pub use plane::{plane_of_file, points_in_space, z_field};
 pub use precision::smoother_precision;
 pub use run::{EngineRequest, MethodName, RunRequest};

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import pathlib
 
     from gpu_smooth._options import Array, Doubles, Integers, Path
+    from gpu_smooth._result import Result
 
 
 class Group(NamedTuple):
@@ -134,7 +135,9 @@ class MeshFile:
         """
         return self._native.data(name)
 
-    def write(self, path: Path, points: Array) -> None:
+    def write(
+        self, path: Path, points: Array | Result, *, slide: bool = False, moved_fixed: bool = False
+    ) -> None:
         """Write the file with its vertices at other points, and no other change.
 
         Numbers whose bits are unchanged keep their text. An existing file is replaced whole or not at all.
@@ -143,17 +146,28 @@ class MeshFile:
         ----------
         path : str, bytes or path-like
             File to write; may be the file that was read. A name that ends in .gz or .zst compresses the file.
-        points : array_like of float, shape (n, 2) or (n, 3)
-            Positions of the vertices. If third coordinates of the file differ, those of the array replace them.
+        points : Result or array_like of float, shape (n, 2) or (n, 3)
+            Positions of the vertices, or the result of a run, which has them. If third coordinates of the file differ, those
+            of the array replace them.
+        slide : bool, default False
+            Whether vertices may have slid along the boundary, lines and edges between regions, as by `smooth` with
+            `slide=True`. A `Result` knows. Vertices of points and other elements, and ends of groups, are still compared.
+        moved_fixed : bool, default False
+            Write any points, such as those of an application that has moved the boundary.
 
         Raises
         ------
         FileError
             The file cannot be written.
         MeshError
-            The points are not finite, or not one per vertex.
+            The points are not finite, or not one per vertex; or a vertex has moved that is on the boundary, on a line, between
+            regions or on other elements of the file, such as if points of another mesh were passed (`MeshError.vertex`).
         """
-        self._native.write(os.fsdecode(path), points)
+        from gpu_smooth._result import Result
+
+        if isinstance(points, Result):
+            points, slide = points.points, points._outcome.slides
+        self._native.write(os.fsdecode(path), points, slide=slide, moved_fixed=moved_fixed)
 
     def difference(self, other: MeshFile) -> str | None:
         """Return the first difference to another file apart from coordinates, None without one."""

@@ -22,7 +22,7 @@ _METHODS = (
 )
 _PROPERTIES = (
     "axes", "metric", "has_target", "engine", "stop", "fault", "remarks", "sweeps", "corrections", "newton_steps",
-    "newton_iterations", "best_sweep", "movable_f", "remaining", "held_back", "slid", "floored", "prepare_seconds", "seconds",
+    "newton_iterations", "best_sweep", "movable_f", "remaining", "held_back", "slides", "slid", "floored", "prepare_seconds", "seconds",
 )
 
 
@@ -129,7 +129,7 @@ class Result:
         """Failure of the GPU after which the run continued on the CPU; None if no GPU failed."""
         return self._outcome.fault
 
-    @property
+    @functools.cached_property
     def remarks(self) -> list[str]:
         """Remarks on the mesh and the run, such as vertices that stay or slide; those of a `MeshWarning` too."""
         return self._outcome.remarks

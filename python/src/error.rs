@@ -146,6 +146,22 @@ pub(crate) fn other_plane(py: Python<'_>, vertex: usize) -> PyErr {
     with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
 }
 
+/// Returns the exception of a point to write, at which a vertex is that a run keeps.
+pub(crate) fn moved_fixed(py: Python<'_>, vertex: usize, slides: bool) -> PyErr {
+    let text = match slides {
+        false => format!(
+            "points[{vertex}]: the vertex has moved, but is on the boundary, on a line, between regions or on other elements of \
+             the file. Pass slide=True if the mesh was smoothed with slide=True, or the Result in place of points, or \
+             moved_fixed=True to write any points"
+        ),
+        true => format!(
+            "points[{vertex}]: the vertex has moved, but is an end of a group or on other elements of the file, and does not \
+             slide. Pass fixed=MeshFile.anchored to the run, or moved_fixed=True to write any points"
+        ),
+    };
+    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+}
+
 /// Sets the attributes of an exception that name triangles and a vertex.
 fn with_indices(
     py: Python<'_>,

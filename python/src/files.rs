@@ -174,8 +174,26 @@ impl MeshFile {
     }
 
     /// Writes the file with its vertices at other points. Third coordinates are written if those of the file differ.
-    fn write(&self, py: Python<'_>, path: PathBuf, points: &Bound<'_, PyAny>) -> PyResult<()> {
+    #[pyo3(signature = (path, points, *, slide, moved_fixed))]
+    fn write(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        points: &Bound<'_, PyAny>,
+        slide: &Bound<'_, PyAny>,
+        moved_fixed: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         let points = arrays::points("points", points)?;
+        let slides = Given { name: "slide", value: slide }.flag()?;
+        if !(Given { name: "moved_fixed", value: moved_fixed }.flag()?) {
+            let stored = points.form.stored();
+            let moved = threads::detached(py, || {
+                gpu_smooth_job::moved_fixed_vertex(&self.0, &points.xy, stored, slides)
+            })?;
+            if let Some(vertex) = moved.map_err(|error| error::of_reading(py, &error))? {
+                return Err(error::moved_fixed(py, vertex as usize, slides));
+            }
+        }
         let z = points.form.kept_z().filter(|_| self.0.has_third_coordinates());
         let written = threads::detached(py, || {
             let mut fields = Vec::new();

@@ -77,10 +77,7 @@ impl Input {
         if options.surface() == Surface::Sphere {
             domain.lay_out_on_sphere(stored)?;
         }
-        let settings = options.settings();
-        if let Some(limit) = settings.only_bad {
-            domain.fix_far_from_bad(limit, settings.rings_of_bad())?;
-        }
+        movement::fix_far_from_bad(&mut domain, options, remarks)?;
         let layers = movement::keep_layers(&mut domain, options, remarks)?;
         if !options.settings().slides {
             remarks.interfaces(domain.interface_vertices().len());

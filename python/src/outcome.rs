@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use gpu_smooth::front_ends::Plane;
-use gpu_smooth::{Backend, Metric, Options, Outcome as RunOutcome, Quality as MeshQuality};
-use gpu_smooth_job::TargetKind;
+use gpu_smooth::{
+    Backend, MeshError, Metric, Options, Outcome as RunOutcome, Quality as MeshQuality,
+};
+use gpu_smooth_job::{TargetKind, WorstRise};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -13,6 +15,7 @@ use crate::arrays;
 use crate::error;
 use crate::measures::Quality;
 use crate::prepared::Prepared;
+use crate::remarks;
 use crate::threads;
 
 /// The result of a run. The class `Result` of the package shows it.
@@ -20,8 +23,9 @@ use crate::threads;
 pub(crate) struct Outcome {
     outcome: RunOutcome,
     prepared: Arc<Prepared>,
-    base: Metric,
+    options: Options,
     engine: String,
+    /// Remarks on the run.
     remarks: Vec<String>,
 }
 
@@ -31,16 +35,14 @@ impl Outcome {
         prepared: Arc<Prepared>,
         options: &Options,
         backend: &Backend,
-        of_run: Vec<String>,
+        remarks: Vec<String>,
     ) -> Self {
-        let base = options.scheme.base();
         let engine = match backend {
             Backend::Cpu => "cpu".to_owned(),
             Backend::Gpu(_) if prepared.smoother.slides_on_cpu() => "cpu".to_owned(),
             Backend::Gpu(gpu) => gpu.adapter().name.clone(),
         };
-        let remarks = [&prepared.remarks[..], &of_run].concat();
-        Self { outcome, prepared, base, engine, remarks }
+        Self { outcome, prepared, options: options.clone(), engine, remarks }
     }
 
     fn quality(&self, py: Python<'_>, points: &[[f64; 2]]) -> PyResult<Quality> {
@@ -118,7 +120,7 @@ impl Outcome {
     /// Name of the metric that judges the run.
     #[getter]
     fn metric(&self) -> &'static str {
-        self.base.name()
+        self.options.scheme.base().name()
     }
 
     /// Whether f of the history is measured relative to targets.
@@ -145,10 +147,27 @@ impl Outcome {
         self.outcome.device_fault.as_ref().map(|fault| fault.error.to_string())
     }
 
-    /// Remarks on the mesh and the run.
+    /// Remarks on the mesh and the run. Those that cost a pass over the mesh are made here, when the caller wants to read them.
     #[getter]
-    fn remarks(&self) -> Vec<String> {
-        self.remarks.clone()
+    fn remarks(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let prepared = &*self.prepared;
+        let worst = |points: &[[f64; 2]]| {
+            let (surface, topology) = (prepared.options.surface(), prepared.smoother.topology());
+            MeshQuality::on(surface, points, topology).map(|quality| quality.worst_movable_imr)
+        };
+        let of_mesh = threads::detached(py, || -> Result<_, MeshError> {
+            let worst = [worst(prepared.points_before())?, worst(&self.outcome.points)?];
+            let points = &prepared.smoother.mesh().points;
+            Ok((prepared.smoother.topology().hanging_nodes(points)?, worst))
+        })?;
+        let (hanging, worst) = of_mesh.map_err(|error| error::of_mesh(py, &error))?;
+        let Options { scheme, guard, .. } = &self.options;
+        let rise = WorstRise::of(worst, scheme, *guard, self.has_target());
+        let mut all = prepared.remarks.clone();
+        all.extend(remarks::hanging(&hanging, |v| prepared.owner(v)));
+        all.extend_from_slice(&self.remarks);
+        all.extend(rise.map(|rise| remarks::worst_rise(rise, scheme.base())));
+        Ok(all)
     }
 
     /// Number of sweeps done.
@@ -197,6 +216,12 @@ impl Outcome {
     #[getter]
     fn held_back(&self) -> usize {
         self.outcome.held_back
+    }
+
+    /// Whether vertices of the boundary and of lines may slide.
+    #[getter]
+    fn slides(&self) -> bool {
+        self.prepared.options.settings().slides
     }
 
     /// Number of vertices that slid along lines.

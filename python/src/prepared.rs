@@ -70,6 +70,13 @@ impl Prepared {
         arrays::matrix(py, numbers, [triangles.len(), 3])
     }
 
+    /// Returns the vertex of the call for a vertex of the mesh, which is a copy if a chart has made it.
+    pub(crate) fn owner(&self, vertex: u32) -> u32 {
+        let copy = (vertex as usize).checked_sub(self.vertices());
+        let owner = || self.layout.domain.chart()?.owners().get(copy?).copied();
+        owner().unwrap_or(vertex)
+    }
+
     /// Returns the number of vertices that were passed.
     pub(crate) fn vertices(&self) -> usize {
         let chart = self.layout.domain.chart();

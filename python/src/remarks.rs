@@ -1,10 +1,14 @@
 //! Remarks on a mesh and a run, in words of Python's keywords.
 
 use gpu_smooth::layers::{KeepLayers, Layers};
-use gpu_smooth::outcome::Floored;
+use gpu_smooth::options::WorstBy;
+use gpu_smooth::outcome::{Floored, Improved};
 use gpu_smooth::targets::OutsideReport;
-use gpu_smooth::{Outcome, Smoother};
-use gpu_smooth_job::{Adapted, TargetFacts, vertices_in_rows};
+use gpu_smooth::topology::HangingNode;
+use gpu_smooth::{Metric, Outcome, Smoother};
+use gpu_smooth_job::{
+    Adapted, RiseReason, TargetFacts, WorstEffect, WorstRise, cost_in_percent, vertices_in_rows,
+};
 
 use crate::observer::RunObserver;
 
@@ -46,6 +50,14 @@ impl<'a> Remarks<'a> {
                 numbered(count, "vertex between regions stays", "vertices between regions stay");
             self.add(format!("regions: {stay}. Pass slide=True to let them slide, or no regions"));
         }
+    }
+
+    /// Remarks on bad triangles, `bad` in number, near which `free` of `of_all` free vertices move.
+    pub(crate) fn only_bad(&mut self, limit: f64, bad: usize, [free, of_all]: [usize; 2]) {
+        let are = numbered(bad, "triangle is", "triangles are");
+        self.add(format!(
+            "only_bad: {are} above an inverse mean ratio of {limit}, and {free} of {of_all} free vertices may move"
+        ));
     }
 
     /// Remarks on boundary layers that stay.
@@ -159,7 +171,7 @@ impl<'a> Remarks<'a> {
             let held = numbered(outcome.held_back, "vertex", "vertices");
             self.add(format!("a guard keeps {held} from moving on"));
         }
-        if let Some(Floored { moved, returned, least_angle, worst_imr, .. }) = outcome.floored {
+        if let Some(Floored { moved, returned, least_angle, worst_imr, f }) = outcome.floored {
             let (mut worse, mut ends) = (Vec::new(), Vec::new());
             let [before, swept, end] = least_angle;
             if swept < before {
@@ -173,10 +185,14 @@ impl<'a> Remarks<'a> {
             }
             let vertices = numbered(moved + returned, "vertex", "vertices");
             self.add(format!(
-                "the sweeps left {}. {vertices} moved on or went back, to end at {}",
+                "the sweeps left {}. {vertices} moved on or went back, to end at {}, which {}",
                 worse.join(" and "),
-                ends.join(" and ")
+                ends.join(" and "),
+                cost(f)
             ));
+        }
+        if let Some(improved) = &outcome.improved {
+            self.add(worst_improved(improved));
         }
         if let Some(fault) = &outcome.device_fault {
             let (sweep, error) = (fault.sweep, &fault.error);
@@ -184,6 +200,83 @@ impl<'a> Remarks<'a> {
                 "the GPU failed after sweep {sweep}, and the run continued on the CPU: {error}"
             ));
         }
+    }
+}
+
+/// Returns a remark on vertices that hang on edges of other triangles; `None` without hanging nodes. `owner` returns the
+/// vertex of the call.
+pub(crate) fn hanging(nodes: &[HangingNode], owner: impl Fn(u32) -> u32) -> Option<String> {
+    let HangingNode { vertex, edge } = *nodes.first()?;
+    let [a, b] = edge.map(&owner);
+    let (such, nodes) = match nodes.len() {
+        1 => ("", "1 hanging node".to_owned()),
+        n => ("such as ", format!("{n} hanging nodes")),
+    };
+    Some(format!(
+        "points: {nodes}: {such}vertex {} is inside the edge between vertices {} and {}. The mesh is open there, and both \
+         sides stay as boundary. Cut the triangles at such edges in two",
+        owner(vertex),
+        a.min(b),
+        a.max(b)
+    ))
+}
+
+/// Returns a remark on the worst triangle, which a run by the base metric `base` made worse.
+pub(crate) fn worst_rise(rise: WorstRise, base: Metric) -> String {
+    let [before, after] = rise.worst;
+    let mean = "f is a mean, which may fall as one triangle gets worse.";
+    let remedy = match rise.reason {
+        RiseReason::JudgesNoShape => {
+            let base = base.name();
+            format!("{base} does not judge shapes. scheme=\"imr\" and scheme=\"{base}+imr\" do")
+        }
+        RiseReason::GuardsTargets => {
+            format!("{mean} guard=\"worst\" bounds triangles as the target transforms them")
+        }
+        RiseReason::GuardsUnrounded => format!(
+            "{mean} guard=\"worst\" bounds triangles before points are rounded to the type of their array"
+        ),
+        _ => format!("{mean} Pass guard=\"worst\" to prevent it"),
+    };
+    format!("worst imr of movable triangles rose from {before:.6} to {after:.6}: {remedy}")
+}
+
+/// Returns a remark on the improvement of the worst triangles.
+fn worst_improved(improved: &Improved) -> String {
+    let Improved { by, vertices, worst, stuck, f } = *improved;
+    let name = match by {
+        WorstBy::Imr => "worst imr".to_owned(),
+        by => format!("least {}", by.name().trim_start_matches("min-")),
+    };
+    let [before, after] = worst.map(|value| match by {
+        WorstBy::MinAngle => format!("{value:.2}°"),
+        _ => format!("{value:.6}"),
+    });
+    let (moved, cost) = (numbered(vertices, "vertex", "vertices"), cost(f));
+    let text = match WorstEffect::of(vertices, worst) {
+        WorstEffect::Nothing => {
+            format!("the {name} of movable triangles, {after}, could not be improved")
+        }
+        WorstEffect::Worst => format!(
+            "the {name} of movable triangles was improved from {before} to {after} by {moved}, which {cost}"
+        ),
+        WorstEffect::Others => format!(
+            "the {name} of movable triangles stays {after}. Others were improved by {moved}, which {cost}"
+        ),
+    };
+    let worse = match stuck {
+        0 => String::new(),
+        1 => ". 1 triangle is worse, and all its corners are fixed".to_owned(),
+        n => format!(". {n} triangles are worse, and all their corners are fixed"),
+    };
+    format!("improve_worst: {text}{worse}")
+}
+
+/// Describes the change of f, as the end of a sentence.
+fn cost(f: [f64; 2]) -> String {
+    match cost_in_percent(f) {
+        None => "changed f by less than 0.01 %".to_owned(),
+        Some(change) => format!("changed f by {change:+.2} %"),
     }
 }
 

@@ -30,6 +30,16 @@ def lattice(side: int, seed: int = 1, by: float = 0.24) -> tuple[Points, Triangl
     return points + moves, np.concatenate([lower, upper])
 
 
+def alternating(side: int) -> tuple[Points, Triangles]:
+    """Return a square of right triangles whose diagonals alternate from row to row; sweeps by imr would make them sharper."""
+    points, triangles = lattice(side, by=0.0)
+    corner = (np.arange(side) + (side + 1) * np.arange(1, side, 2)[:, None]).ravel()
+    odd = np.isin(triangles[:, 0], corner)
+    lower = np.stack([corner, corner + 1, corner + side + 1], axis=1)
+    upper = np.stack([corner + 1, corner + side + 2, corner + side + 1], axis=1)
+    return points, np.concatenate([triangles[~odd], lower, upper])
+
+
 def written(path: Path, points: npt.NDArray[Any], triangles: Triangles) -> Path:
     """Write a mesh as a VTK file of the type of the points, with all digits. Points of two coordinates get z = 0."""
     kind = {"float64": "double", "float32": "float"}[points.dtype.name]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import importlib
 import inspect
+import pickle
 import pkgutil
 import shutil
 import subprocess
@@ -14,7 +15,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from conftest import command_line
+from conftest import MESHES, command_line
 
 import gpu_smooth
 from gpu_smooth import FileError, GpuSmoothError, MeshError, OptionError
@@ -209,3 +210,39 @@ def test_options_of_smooth_file_are_those_of_python(plate: Path, tmp_path: Path)
     with pytest.raises(FileError) as missing:
         gpu_smooth.smooth_file(tmp_path / "none.node", destination)
     assert str(missing.value).startswith(str(tmp_path))
+
+
+def test_points_whose_fixed_vertices_moved_are_written_only_if_told(tmp_path: Path) -> None:
+    file = gpu_smooth.MeshFile(gmsh_file(tmp_path / "in.msh"))
+    out = tmp_path / "out.msh"
+    # Vertex 0 is an end of the inlet, 3 a corner, and 1 and 4 are between regions.
+    for vertex in 0, 3, 4:
+        points = file.points
+        points[vertex] += 0.01
+        with pytest.raises(MeshError, match=rf"points\[{vertex}\]: the vertex has moved.*slide=True.*moved_fixed=True") as refused:
+            file.write(out, points)
+        assert refused.value.vertex == vertex and not out.exists()
+    points = file.points
+    points[[3, 4]] += 0.01
+    file.write(out, points, slide=True)
+    points[0] += 0.01
+    with pytest.raises(MeshError, match=r"points\[0\]: .* end of a group.*moved_fixed=True"):
+        file.write(out, points, slide=True)
+    file.write(out, points, moved_fixed=True)
+    assert np.array_equal(gpu_smooth.MeshFile(out).points, points)
+    # Rounded points of vertices that have not moved are no moves.
+    file.write(out, file.points.astype(np.float32))
+
+
+@pytest.mark.parametrize("slide", [False, True])
+def test_a_result_is_written_as_its_points_whether_vertices_slid_or_not(tmp_path: Path, slide: bool) -> None:
+    file = gpu_smooth.MeshFile(MESHES / "plate.node")
+    result = gpu_smooth.run(file, slide=slide, engine="cpu")
+    for given in result, pickle.loads(pickle.dumps(result)):
+        file.write(tmp_path / "out.node", given)
+        assert np.array_equal(gpu_smooth.MeshFile(tmp_path / "out.node").points, result.points)
+    if slide:
+        assert result.slid > 0
+        with pytest.raises(MeshError, match="moved_fixed"):
+            file.write(tmp_path / "out.node", result.points)
+    file.write(tmp_path / "out.node", result.points, slide=slide)

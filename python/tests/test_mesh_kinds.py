@@ -112,7 +112,7 @@ def test_a_mesh_file_is_smoothed_as_by_the_command_line(tmp_path: Path, name: st
     path = MESHES / name
     file = gpu_smooth.MeshFile(path)
     out, expected = tmp_path / f"a{path.suffix}", tmp_path / f"b{path.suffix}"
-    file.write(out, gpu_smooth.smooth(file, slide=slide, engine="cpu"))
+    file.write(out, gpu_smooth.smooth(file, slide=slide, engine="cpu"), slide=slide)
     gpu_smooth.smooth_file(path, expected, slide=slide, engine="cpu")
     ours, theirs = gpu_smooth.MeshFile(out).points, gpu_smooth.MeshFile(expected).points
     assert np.array_equal(ours, theirs)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import MESHES, Points, Triangles, command_line, lattice, written
+from conftest import MESHES, Points, Triangles, alternating, command_line, lattice, written
 
 import gpu_smooth
 from gpu_smooth import MeshWarning
@@ -107,7 +107,7 @@ def test_vertices_between_regions_and_sliding_vertices_are_remarks(mesh: Mesh) -
     regions = (points[triangles].mean(axis=1)[:, 0] > 6.0).astype(int)
     told = remark(gpu_smooth.run(points, triangles, regions=regions), "regions: ")
     between = int(re.findall(r"\d+", told)[0])
-    assert between == 13 and "slide=True" in told
+    assert between == 11 and "slide=True" in told, "vertices of the boundary are not counted"
     result = gpu_smooth.run(points, triangles, regions=regions, slide=True)
     assert re.match(r"slide: \d+ vertices on the boundary and other lines may slide$", remark(result, "slide: "))
     rows = np.arange(1, 12) * 13
@@ -119,12 +119,62 @@ def test_vertices_between_regions_and_sliding_vertices_are_remarks(mesh: Mesh) -
         gpu_smooth.run(points, triangles, slide=True, periodic=pairs)
 
 
+def test_hanging_nodes_are_a_remark(mesh: Mesh) -> None:
+    points, triangles = mesh
+    # The lower of the two triangles at an edge is cut in two, but not the upper one.
+    a, b, c = triangles[30]
+    middle = len(points)
+    cut = np.concatenate([np.delete(triangles, 30, axis=0), [[a, middle, c], [middle, b, c]]])
+    given = np.concatenate([points, [0.5 * (points[a] + points[b])]])
+    result = gpu_smooth.run(given, cut)
+    told = remark(result, "points: 1 hanging node: vertex ")
+    assert f"vertex {middle} is inside the edge between vertices {min(a, b)} and {max(a, b)}" in told
+
+
+def test_vertices_near_bad_triangles_are_counted(mesh: Mesh, tmp_path: Path) -> None:
+    points, triangles = mesh
+    words = (written(tmp_path / "in.vtk", points, triangles), tmp_path / "out.vtk", "--only-bad", "1.6")
+    told = re.search(r"(\d+) triangles? above it; .* (\d+ of \d+ free vertices may move)", command_line(*words).stderr)
+    assert told
+    ours = remark(gpu_smooth.run(points, triangles, only_bad=1.6), "only_bad: ")
+    assert ours.startswith(f"only_bad: {told[1]} triangle") and ours.endswith(told[2])
+
+
+@pytest.mark.parametrize("measure", ["imr", "min-angle", "altitude"])
+def test_improved_worst_triangles_are_a_remark(tmp_path: Path, measure: Any) -> None:
+    path = MESHES / "hand.node"
+    done = command_line(path, tmp_path / "out.node", f"--improve-worst={measure}", "--engine", "cpu")
+    told = re.search(r"the (?:worst|least) \w+ of movable triangles was improved from .*", done.stdout)
+    assert told, done.stdout
+    file = gpu_smooth.MeshFile(path)
+    ours = remark(gpu_smooth.run(file, improve_worst=measure, engine="cpu"), "improve_worst: ")
+    texts = [re.sub(r"[0-9.]+", "0", text) for text in (ours, f"improve_worst: {told[0]}")]
+    assert texts[0] == texts[1]
+    numbers = [[float(n) for n in re.findall(r"[0-9]+(?:[.][0-9]+)?", text)] for text in (ours, told[0])]
+    assert numbers[0] == pytest.approx(numbers[1], rel=1e-4)
+
+
+def test_a_worse_worst_triangle_is_a_remark_with_a_remedy(tmp_path: Path) -> None:
+    points, triangles = alternating(12)
+    words = written(tmp_path / "in.vtk", points, triangles), tmp_path / "out.vtk", "--method", "multilevel"
+    done = command_line(*words, "--engine", "cpu")
+    told = re.search(r"worst imr rose from (\S+) to (\S+): f is a mean, .*--guard worst", done.stdout)
+    assert told, done.stdout
+    result = gpu_smooth.run(points, triangles, method="multilevel", engine="cpu")
+    ours = remark(result, "worst imr of movable triangles rose from ")
+    assert 'guard="worst"' in ours
+    found = re.search(r"rose from (\S+) to (\S+):", ours)
+    assert found and float(found[1]) == pytest.approx(float(told[1]), rel=1e-5)
+    assert float(found[2]) == pytest.approx(float(told[2]), rel=1e-3)
+    assert "rose from" not in str(gpu_smooth.run(points, triangles).remarks)
+
+
 def test_the_end_of_a_run_has_remarks() -> None:
     file = gpu_smooth.MeshFile(MESHES / "hand.node")
     result = gpu_smooth.run(file.points, file.triangles)
     assert result.floored > 0
     told = remark(result, "the sweeps left a least angle of ")
-    assert f"{result.floored} vertices moved on or went back" in told
+    assert f"{result.floored} vertices moved on or went back" in told and "changed f by" in told
     result = gpu_smooth.run(file.points, file.triangles, scheme="rms", guard="worst")
     assert remark(result, "a guard keeps ").startswith(f"a guard keeps {result.held_back} vert")
     assert pickle.loads(pickle.dumps(result)).remarks == result.remarks

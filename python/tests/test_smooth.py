@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Points, Triangles, command_line, lattice, written
+from conftest import Points, Triangles, alternating, command_line, lattice, written
 
 import gpu_smooth
 from gpu_smooth import MeshError, MeshWarning, OptionError, _native
@@ -212,17 +212,8 @@ def test_coincident_vertices_of_two_parts_slide_together() -> None:
 
 @pytest.mark.parametrize("engine", ["cpu", "gpu"])
 def test_right_triangles_do_not_become_sharp_by_default(engine: Any) -> None:
-    # Diagonals alternate from row to row. Sweeps would leave an angle of 36 degrees, and no vertex can move without an
-    # angle below 45 degrees.
-    points, triangles = lattice(12, by=0.0)
-    side = 12
-    corner = (np.arange(side) + (side + 1) * np.arange(1, side, 2)[:, None]).ravel()
-    odd = np.isin(triangles[:, 0], corner)
-    other = np.concatenate([
-        np.stack([corner, corner + 1, corner + side + 1], axis=1),
-        np.stack([corner + 1, corner + side + 2, corner + side + 1], axis=1),
-    ])
-    triangles = np.concatenate([triangles[~odd], other])
+    # Sweeps would leave an angle of 36 degrees, and no vertex can move without an angle below 45 degrees.
+    points, triangles = alternating(12)
     result = gpu_smooth.run(points, triangles, engine=engine)
     assert result.floored == 121 and np.array_equal(result.points, points)
     sharp = gpu_smooth.run(points, triangles, engine=engine, method="multilevel")

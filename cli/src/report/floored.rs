@@ -3,6 +3,7 @@
 use gpu_smooth::outcome::Floored;
 use serde::Serialize;
 
+use crate::report::improved::cost;
 use crate::terminal::numbers::sig6;
 
 /// The work of the floor under the worst triangles. Values are those before the run, after the last sweep, and after the
@@ -49,10 +50,7 @@ impl FlooredReport {
             (0, returned) => format!("{} went back", vertices(returned)),
             (moved, returned) => format!("{} moved on and {returned} went back", vertices(moved)),
         };
-        let cost = match 100.0 * (f[1] / f[0] - 1.0) {
-            change if change.abs() < 0.005 => "changed f by less than 0.01 %".to_owned(),
-            change => format!("changed f by {change:+.2} %"),
-        };
+        let cost = cost(*f);
         format!(
             "the sweeps left {}; {work} to end at {}, which {cost}",
             worse.join(" and "),

@@ -1,12 +1,10 @@
 //! The report on the improvement of the worst triangles.
 
 use gpu_smooth::outcome::Improved;
+use gpu_smooth_job::{WorstEffect, cost_in_percent};
 use serde::Serialize;
 
 use crate::terminal::numbers::sig6;
-
-/// Smallest relative change of the worst value that the report mentions.
-const TO_SPEAK_OF: f64 = 1e-3;
 
 /// The result of improving the worst triangles.
 #[derive(Serialize)]
@@ -42,32 +40,22 @@ impl ImprovedReport {
             "min-angle" => format!("{x:.2}°"),
             _ => sig6(x),
         };
-        let mut text = match vertices {
-            0 => {
-                format!(
-                    "the {worst} of movable triangles, {}, could not be improved",
-                    shown(*after)
-                )
-            }
-            n => {
-                let vertices = if *n == 1 { "vertex" } else { "vertices" };
-                let cost = match 100.0 * (f[1] / f[0] - 1.0) {
-                    change if change.abs() < 0.005 => "changed f by less than 0.01 %".to_owned(),
-                    change => format!("changed f by {change:+.2} %"),
-                };
-                // Patches around other triangles may have improved nevertheless.
-                match (after / before - 1.0).abs() > TO_SPEAK_OF {
-                    true => format!(
-                        "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which {cost}",
-                        shown(*before),
-                        shown(*after)
-                    ),
-                    false => format!(
-                        "the {worst} of movable triangles stays {}; others were improved by {n} {vertices}, which {cost}",
-                        shown(*after)
-                    ),
-                }
-            }
+        let (cost, n) = (cost(*f), *vertices);
+        let vertices = if n == 1 { "vertex" } else { "vertices" };
+        let mut text = match WorstEffect::of(n, self.worst) {
+            WorstEffect::Nothing => format!(
+                "the {worst} of movable triangles, {}, could not be improved",
+                shown(*after)
+            ),
+            WorstEffect::Worst => format!(
+                "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which {cost}",
+                shown(*before),
+                shown(*after)
+            ),
+            WorstEffect::Others => format!(
+                "the {worst} of movable triangles stays {}; others were improved by {n} {vertices}, which {cost}",
+                shown(*after)
+            ),
         };
         text += &match stuck {
             0 => String::new(),
@@ -75,6 +63,14 @@ impl ImprovedReport {
             n => format!("; {n} triangles are worse, and all their corners are fixed"),
         };
         text
+    }
+}
+
+/// Describes the change of f, as the end of a sentence.
+pub(super) fn cost(f: [f64; 2]) -> String {
+    match cost_in_percent(f) {
+        None => "changed f by less than 0.01 %".to_owned(),
+        Some(change) => format!("changed f by {change:+.2} %"),
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use gpu_smooth::Metric;
+use gpu_smooth::{Guard, Metric};
+use gpu_smooth_job::{RiseReason, WorstRise};
 
 use crate::load::stay_as_ends;
 use crate::report::{
@@ -152,30 +153,24 @@ impl Report {
 
     /// Returns a warning if the worst movable element became worse by more than 1 %; `None` otherwise.
     pub(crate) fn warning(&self) -> Option<String> {
-        let (before, after) = (self.before.worst_movable_imr, self.after.worst_movable_imr);
-        if after <= 1.01 * before {
-            return None;
-        }
-        let judges_shape =
-            |metric: &str| metric.parse::<Metric>().is_ok_and(|metric| metric.has_barrier());
-        let shape = self.scheme.split('+').any(judges_shape);
+        let worst = [self.before.worst_movable_imr, self.after.worst_movable_imr];
+        let guard = if self.guards_worst { Guard::Worst } else { Guard::ByMetric };
+        let rise = WorstRise::of(worst, &self.scheme.parse().ok()?, guard, self.target.is_some())?;
         let base = self.base();
-        let remedy = match shape {
-            true => {
-                let bounds = match (self.guards_worst, &self.target) {
-                    (false, _) => "; --guard worst does not let it",
-                    (true, Some(_)) => {
-                        "; --guard worst bounds triangles as the target transforms them"
-                    }
-                    (true, None) => {
-                        "; --guard worst bounds triangles before their coordinates are rounded to the digits of the file"
-                    }
-                };
-                format!("f is a mean, which may fall as one element gets worse{bounds}")
+        let mean = "f is a mean, which may fall as one element gets worse; --guard worst";
+        let remedy = match rise.reason {
+            RiseReason::JudgesNoShape => {
+                format!("{base} does not judge shapes; --scheme imr or {base}+imr does")
             }
-            false => format!("{base} does not judge shapes; --scheme imr or {base}+imr does"),
+            RiseReason::GuardsTargets => {
+                format!("{mean} bounds triangles as the target transforms them")
+            }
+            RiseReason::GuardsUnrounded => format!(
+                "{mean} bounds triangles before their coordinates are rounded to the digits of the file"
+            ),
+            _ => format!("{mean} does not let it"),
         };
-        let (before, after) = (sig6(before), sig6(after));
+        let [before, after] = worst.map(sig6);
         let of = if self.has_worse_fixed() { " of movable triangles" } else { "" };
         Some(format!("worst imr{of} rose from {before} to {after}: {remedy}"))
     }

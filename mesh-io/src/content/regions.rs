@@ -78,16 +78,20 @@ impl TriangleRegions {
 }
 
 /// Returns the interior vertices at which triangles of different regions meet, ascending. Boundary vertices are left
-/// out.
-pub(crate) fn interface_vertices(
-    regions: &[u32],
+/// out. `regions` has the region of each triangle; a shorter list leaves further triangles out. `triangles` have vertices
+/// below `vertices`, zero-based.
+///
+/// # Panics
+/// Panics if a triangle has a vertex that is not below `vertices`.
+pub fn interface_vertices<R: Copy + PartialEq>(
+    regions: &[R],
     triangles: &[[u32; 3]],
     vertices: usize,
 ) -> Vec<u32> {
     #[derive(Clone, Copy)]
-    struct Vertex {
+    struct Vertex<R> {
         /// The region of the vertex's first triangle.
-        region: Option<u32>,
+        region: Option<R>,
         is_between: bool,
         /// Exclusive or of the neighbor indices over all triangles of the vertex. Each neighbor of an interior vertex
         /// occurs in two triangles, and the result is 0. On the boundary, the two end vertices of the fan occur once
@@ -102,7 +106,7 @@ pub(crate) fn interface_vertices(
             vertex.neighbors ^= next ^ last;
         }
     }
-    let held = |(_, vertex): &(u32, Vertex)| vertex.is_between && vertex.neighbors == 0;
+    let held = |(_, vertex): &(u32, Vertex<R>)| vertex.is_between && vertex.neighbors == 0;
     (0..).zip(all).filter(held).map(|(v, _)| v).collect()
 }
 

@@ -206,8 +206,8 @@ fn mesh_format(cursor: &mut Cursor<'_>) -> Result<FileEncoding, ReadError> {
     // gmsh reads the version as a number, and some programs write `2.200000`.
     let version = match float(name) {
         Some(number) if (2.0..=2.2).contains(&number) => Version::V2,
-        Some(number) if number == 4.0 => Version::V40,
-        Some(number) if number == 4.1 => Version::V41,
+        Some(4.0) => Version::V40,
+        Some(4.1) => Version::V41,
         _ => {
             let problem = format!("gmsh's format version {} is not read", quoted(name));
             let remedy = "Save as version 4.1 or 2.2 (gmsh old.msh -save -format msh41 -o new.msh)";
