@@ -166,7 +166,8 @@ class MeshFile:
         from gpu_smooth._result import Result
 
         if isinstance(points, Result):
-            points, slide = points.points, points._outcome.slides
+            slide = points._outcome.slides
+            points = points.points
         self._native.write(os.fsdecode(path), points, slide=slide, moved_fixed=moved_fixed)
 
     def difference(self, other: MeshFile) -> str | None:
