@@ -25,7 +25,7 @@ impl Smoother<'_> {
     /// # Errors
     /// [`MeshError::PointCount`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`], [`MeshError::Infeasible`] or
     /// [`MeshError::OverlappingStar`], as for [`Self::new`]; all triangles of a mirrored mesh are inverted. The smoother is
-    /// then unchanged. [`untangle`](fn@crate::untangle) of [`Self::mesh`] with the new points opens inverted triangles.
+    /// then unchanged. [`Untangle`](crate::Untangle) of [`Self::mesh`] with the new points opens inverted triangles.
     ///
     /// # Examples
     ///
