@@ -365,21 +365,17 @@ fn part<'d>(document: &'d str, mark: &str, end: &str) -> &'d str {
 
 /// Each list of formats must have every format, by its usual file ending or by its name.
 #[test]
-fn the_lists_of_formats_in_both_readme_files_have_every_format() {
-    let readme = document("README.md");
+fn the_list_of_formats_in_the_readme_file_has_every_format() {
     let of_library = document("mesh-io/README.md");
+    let list = part(&of_library, "## Formats", "\n\n[");
     let families = || REGISTRY.iter().filter(|family| family.is_read());
-    for (name, list) in [
-        ("the paragraph **Formats.** of README.md", part(&readme, "**Formats.**", "\n\n")),
-        ("the table of mesh-io/README.md", part(&of_library, "## Formats", "\n\n[")),
-    ] {
-        for family in families().filter(|family| !HOLDS_OTHERS.contains(&family.name)) {
-            let ending = format!("`{}`", family.extensions[0]);
-            let has = list.contains(&ending) || list.contains(family.name);
-            assert!(has, "{name} must name {} by its ending {ending}", family.name);
-        }
+    for family in families().filter(|family| !HOLDS_OTHERS.contains(&family.name)) {
+        let ending = format!("`{}`", family.extensions[0]);
+        let has = list.contains(&ending) || list.contains(family.name);
+        assert!(has, "mesh-io/README.md must name {} by its ending {ending}", family.name);
     }
-    assert!(Compression::of(Path::new("m.msh.gz")).is_some() && readme.contains("`.gz`"));
+    let is_packed = Compression::of(Path::new("m.msh.gz")).is_some();
+    assert!(is_packed && document("docs/commands.md").contains("`.gz`"));
 }
 
 /// Names of registry entries for container files, whose formats have separate entries.
@@ -387,15 +383,18 @@ const HOLDS_OTHERS: [&str; 1] = ["HDF5 or netCDF"];
 
 /// The paragraph names a target by the name that `--to` takes, or by the first word of the format's name.
 #[test]
-fn the_readme_names_every_format_that_meshes_are_converted_to() {
-    let readme = document("README.md");
-    let paragraph = part(&readme, "**Conversion.**", "\n\n").to_lowercase();
+fn the_document_of_commands_names_every_format_that_meshes_are_converted_to() {
+    let commands = document("docs/commands.md");
+    let paragraph = part(&commands, "**Conversion.**", "\n\n").to_lowercase();
     for target in TARGETS {
         let format = target.format.to_string().to_lowercase();
         let has =
             [target.name, format.split(' ').next().unwrap()].map(|name| paragraph.contains(name));
         let name = target.name;
-        assert!(has.contains(&true), "the paragraph **Conversion.** of README.md must name {name}");
+        assert!(
+            has.contains(&true),
+            "the paragraph **Conversion.** of docs/commands.md must name {name}"
+        );
     }
 }
 
@@ -415,27 +414,27 @@ fn targets_of(format: Format) -> impl Iterator<Item = &'static Target> {
 }
 
 #[test]
-fn the_tables_of_both_readme_files_state_which_formats_are_converted_to() {
-    for (name, mark) in [("README.md", "| **Formats.**"), ("mesh-io/README.md", "| format |")] {
-        let text = document(name);
-        let cells = |row| str::trim_matches(row, '|').split('|').map(str::trim).collect();
-        let rows: Vec<Vec<&str>> = part(&text, mark, "\n\n").lines().skip(2).map(cells).collect();
-        for format in Format::ALL {
-            let count = rows.iter().filter(|row| is_about(row, format)).count();
-            assert_eq!(count, 1, "the table of {name} needs one row for {format}");
-        }
-        for row in &rows {
-            let formats = || Format::ALL.into_iter().filter(|&format| is_about(row, format));
-            let is_target = |format| targets_of(format).next().is_some();
-            let has_binary = formats().flat_map(targets_of).any(|target| {
-                matches!(target.write, WriteFunction::Encoded { .. } | WriteFunction::Binary(_))
-            });
-            let column = *row.last().unwrap();
-            let place = format!("{name}, row {}: {column}", row[0]);
-            assert_eq!(column == "no", !formats().any(is_target), "{place}");
-            assert!(column != "yes" || formats().all(is_target), "{place}");
-            assert!(!column.contains("text") || column.contains("binary") == has_binary, "{place}");
-        }
+fn the_table_of_the_readme_file_states_which_formats_are_converted_to() {
+    let name = "mesh-io/README.md";
+    let text = document(name);
+    let cells = |row| str::trim_matches(row, '|').split('|').map(str::trim).collect();
+    let rows = part(&text, "| format |", "\n\n");
+    let rows: Vec<Vec<&str>> = rows.lines().skip(2).map(cells).collect();
+    for format in Format::ALL {
+        let count = rows.iter().filter(|row| is_about(row, format)).count();
+        assert_eq!(count, 1, "the table of {name} needs one row for {format}");
+    }
+    for row in &rows {
+        let formats = || Format::ALL.into_iter().filter(|&format| is_about(row, format));
+        let is_target = |format| targets_of(format).next().is_some();
+        let has_binary = formats().flat_map(targets_of).any(|target| {
+            matches!(target.write, WriteFunction::Encoded { .. } | WriteFunction::Binary(_))
+        });
+        let column = *row.last().unwrap();
+        let place = format!("{name}, row {}: {column}", row[0]);
+        assert_eq!(column == "no", !formats().any(is_target), "{place}");
+        assert!(column != "yes" || formats().all(is_target), "{place}");
+        assert!(!column.contains("text") || column.contains("binary") == has_binary, "{place}");
     }
 }
 
