@@ -2,8 +2,8 @@
 """Makes the pictures of the documents again, but those of docs/paper.md and docs/performance.md, which name their commands.
 
     pip install pillow
-    cargo build --release -p gpu-smooth-cli && cargo build --release -p gpu-smooth-examples --example make_mesh
-    docs/pictures.py target/release/gpu-smooth target/release/examples/make_mesh chromium [MESHES]
+    cargo build --release -p gpu-smooth-cli && cargo build --release -p gpu-smooth-examples --example make_mesh --example live
+    docs/pictures.py target/release/gpu-smooth target/release/examples chromium [MESHES]
 
 MESHES is a folder with the meshes of docs/targets.md, whose pictures are left out without the folder:
 
@@ -50,7 +50,8 @@ tell(canvases[1], { clientX: shown.left + 0.78 * shown.width, clientY: shown.top
 def main():
     if len(sys.argv) not in (4, 5):
         sys.exit(__doc__)
-    program, make_mesh = (str(pathlib.Path(name).resolve()) for name in sys.argv[1:3])
+    program, examples = (pathlib.Path(name).resolve() for name in sys.argv[1:3])
+    make_mesh = examples / "make_mesh"
     browser = sys.argv[3]
     meshes = pathlib.Path(sys.argv[4]).resolve() if len(sys.argv) == 5 else None
     with tempfile.TemporaryDirectory() as folder:
@@ -70,6 +71,10 @@ def main():
         run(make_mesh, ROOT / "meshes/plate.outline", "turned", *recipe)
         run(program, "turned.node", "out.node", "--untangle", "--force", "--picture", "untangled.png", "--picture-size", "800")
         save(folder / "untangled.png", 160)
+        run(make_mesh, ROOT / "meshes/plate.outline", "coarse", "--vertices", "700")
+        script = ROOT / "examples/live/moving-hole.script"
+        run(examples / "live", "coarse.node", "--script", script, "--out", folder, "--headless", "--size", "640x560")
+        save_frames(sorted(folder.glob("[0-9][0-9].png")), "moving-hole.png")
         write_lattice(folder / "lattice")
         sweep = ("--engine", "cpu", "--max-sweeps", "1", "--force", "--picture-size", "400", "--picture-measure", "imr")
         run(program, "lattice.node", "out.node", *sweep, "--picture", "sweep.svg")
@@ -84,6 +89,14 @@ def save(path, colors, name=None):
     picture = Image.open(path).convert("RGB")
     palette = picture.quantize(colors, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     palette.save(DOCS / (name or path.name), optimize=True)
+
+
+def save_frames(paths, name):
+    """Writes the meshes of screenshots of examples/live to docs as a moving picture, without the panel above the mesh."""
+    frames = [Image.open(path).convert("RGB").crop((50, 185, 590, 550)) for path in paths]
+    palette = frames[0].quantize(24, dither=Image.Dither.NONE)
+    first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
+    first.save(DOCS / name, save_all=True, append_images=others, duration=90, loop=0, optimize=True)
 
 
 def screenshot(run, browser, page):

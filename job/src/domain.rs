@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 
-use gpu_smooth::front_ends::Plane;
-use gpu_smooth::front_ends::{Chart, select};
+use gpu_smooth::front_ends::{Chart, Plane, select};
 use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use gpu_smooth::precision::Precision;
 use gpu_smooth::slide::Periodic;
@@ -69,6 +68,16 @@ pub struct Curves {
     pub has_lost_pairs: bool,
     /// Index of the first pair in [`SlideBy::sides`] of whose sides no translation or rotation maps one to the other.
     pub unlike_sides: Option<usize>,
+}
+
+/// The effect of [`Domain::fix_far_from_bad`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct NearBad {
+    /// Number of bad triangles.
+    pub triangles: usize,
+    /// Number of free vertices afterwards and before.
+    pub free: [usize; 2],
 }
 
 impl Domain {
@@ -248,16 +257,19 @@ impl Domain {
     }
 
     /// Fixes the vertices that are far from bad triangles, those with an inverse mean ratio above `limit`. Vertices within
-    /// `rings` rings of triangles around a bad triangle are near.
+    /// `rings` rings of triangles around a bad triangle are near. Without a bad triangle, all vertices are fixed.
     ///
     /// # Errors
     /// [`MeshError`] if the mesh cannot be smoothed; see [`Topology::new`].
-    pub fn fix_far_from_bad(&mut self, limit: f64, rings: u32) -> Result<(), MeshError> {
+    pub fn fix_far_from_bad(&mut self, limit: f64, rings: u32) -> Result<NearBad, MeshError> {
         let topology = Topology::new(self.mesh())?;
         let bad = select::triangles_above(&self.mesh().points, &topology, limit);
         let near = select::vertices_near(&topology, &bad, rings);
+        let is_free = |vertex: &&u32| topology.free()[**vertex as usize];
+        let free = [near.iter().filter(is_free).count(), topology.free_count()];
         drop(topology);
-        self.fix_all_but(&near)
+        self.fix_all_but(&near)?;
+        Ok(NearBad { triangles: bad.len(), free })
     }
 
     /// Fixes all vertices except `vertices`. A listed vertex stays fixed if it was fixed before.

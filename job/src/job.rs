@@ -80,8 +80,9 @@ impl<'f> Job<'f> {
         Self { slide: Some(by), ..self }
     }
 
-    /// Sets the options of the mesh by the words that the command line and the Python package share, such as `slide`. The options
-    /// of the run are in [`Settings::run`], which [`options`](Self::options) takes. A target is set before its settings.
+    /// Adds the options of the mesh by the words that the command line and the Python package share, such as `slide`. A target is
+    /// set before its options. The options of the run are in [`Settings::run`], which [`options`](Self::options) takes; the
+    /// surface is chosen by [`on_sphere`](Self::on_sphere).
     ///
     /// # Errors
     /// [`JobError::Smooth`] with `only-bad` if the mesh cannot be smoothed.
@@ -93,13 +94,11 @@ impl<'f> Job<'f> {
         let by = SlideBy::default();
         let corner_angle = settings.corner_angle.unwrap_or(by.corner_angle);
         let by = SlideBy { corner_angle, hausdorff: settings.hausdorff, ..by };
-        let target = TargetRequest {
-            rings: settings.target_rings,
-            of_places: settings.of_places,
-            ..self.target
-        };
-        let slide = settings.slides.then_some(by);
-        Ok(Self { slide, target, untangles: settings.untangles, ..self })
+        let rings = settings.target_rings.or(self.target.rings);
+        let of_places = settings.of_places.or(self.target.of_places);
+        let target = TargetRequest { rings, of_places, ..self.target };
+        let slide = if settings.slides { Some(by) } else { self.slide };
+        Ok(Self { slide, target, untangles: self.untangles || settings.untangles, ..self })
     }
 
     /// Untangles the mesh before the run, if triangles are inverted or flat; see [`Untangle`].

@@ -48,7 +48,7 @@ mod run;
 mod target;
 
 pub use checkpoint::{CheckpointFile, CheckpointWriter, is_checkpoint};
-pub use domain::{Curves, Domain, SlideBy};
+pub use domain::{Curves, Domain, NearBad, SlideBy};
 pub use error::{JobError, PlaneError};
 pub use facts::{
     Adapted, RiseReason, WorstEffect, WorstRise, cost_in_percent, is_at_wall, look_like_degrees,

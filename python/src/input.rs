@@ -77,7 +77,11 @@ impl Input {
         if options.surface() == Surface::Sphere {
             domain.lay_out_on_sphere(stored)?;
         }
-        movement::fix_far_from_bad(&mut domain, options, remarks)?;
+        let settings = options.settings();
+        if let Some(limit) = settings.only_bad {
+            let near = domain.fix_far_from_bad(limit, settings.rings_of_bad())?;
+            remarks.only_bad(limit, near.triangles, near.free);
+        }
         let layers = movement::keep_layers(&mut domain, options, remarks)?;
         if !options.settings().slides {
             remarks.interfaces(domain.interface_vertices().len());

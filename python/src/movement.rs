@@ -1,6 +1,5 @@
 //! The vertices of a mesh that stay, slide or move, by the options of the mesh.
 
-use gpu_smooth::front_ends::select;
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology};
 use gpu_smooth_job::{Domain, SlideBy, overlooks_boundary};
@@ -17,22 +16,6 @@ pub(crate) fn domain(mesh: Mesh, options: &MeshOptions) -> Result<Domain, MeshEr
         domain.pair(options.periodic.clone());
     }
     Ok(domain)
-}
-
-/// Fixes the vertices that are far from bad triangles, if the options ask for that.
-pub(crate) fn fix_far_from_bad(
-    domain: &mut Domain,
-    options: &MeshOptions,
-    remarks: &mut Remarks<'_>,
-) -> Result<(), MeshError> {
-    let Some(limit) = options.settings().only_bad else { return Ok(()) };
-    let topology = Topology::new(domain.mesh())?;
-    let bad = select::triangles_above(&domain.mesh().points, &topology, limit);
-    let near = select::vertices_near(&topology, &bad, options.settings().rings_of_bad());
-    let free = near.iter().filter(|&&vertex| topology.free()[vertex as usize]).count();
-    remarks.only_bad(limit, bad.len(), [free, topology.free_count()]);
-    drop(topology);
-    domain.fix_all_but(&near)
 }
 
 /// Returns the boundary layers that stay. Fixes their vertices, which untangling leaves alone too, unless no other vertex

@@ -67,14 +67,14 @@ impl RunOptions {
         value: &Bound<'_, PyAny>,
         function: &str,
     ) -> PyResult<()> {
-        let (name, names): (String, _) = (name.extract()?, names());
+        let name: String = name.extract()?;
         let is_known = match value.is_none() {
-            true => names.contains(&name),
+            true => names().contains(&name),
             false => self.set(Given { name: &name, value })?,
         };
         match is_known {
             true => Ok(()),
-            false => Err(values::unknown(value.py(), &name, function, &names)),
+            false => Err(values::unknown(value.py(), &name, function, &names())),
         }
     }
 

@@ -27,7 +27,7 @@ use crate::precision::Precision;
 pub(crate) use means::feasible_means;
 pub use result::{Untangled, Untangling};
 
-/// A function that is called after each sweep.
+/// The observer of an untangling, called after each sweep.
 type Observe<'r> = dyn FnMut(&Untangling) -> ControlFlow<()> + 'r;
 
 /// An untangling that has not begun: moves free vertices, on the CPU, until no triangle is inverted or flat. It begins by

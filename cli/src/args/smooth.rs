@@ -17,8 +17,8 @@ pub(crate) struct SmoothArgs {
     /// input
     #[arg(required = true, value_name = "IN")]
     pub(crate) input: Option<PathBuf>,
-    /// File for the smoothed mesh, which may be IN itself. The format is that of IN, unless the name ends as those of another
-    /// format do. The file is compressed if its name ends in .gz or .zst; - writes to standard output
+    /// File for the smoothed mesh, which may be IN itself. OUT has the format of IN, unless its ending belongs to another format.
+    /// The file is compressed if its name ends in .gz or .zst; - writes to standard output
     #[arg(required_unless_present = "out_dir", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Further meshes, with --out-dir

@@ -184,7 +184,7 @@ impl TypedValueParser for RowParser {
 mod tests {
     use super::*;
 
-    /// A name that the table does not have would be no option at all.
+    /// A command would lack an option without notice if the table did not have the name.
     #[test]
     fn each_name_of_a_command_is_an_option_of_the_table() {
         let count = |has: fn(&str) -> bool| OPTIONS.iter().filter(|row| has(row.name)).count();

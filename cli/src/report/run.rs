@@ -130,7 +130,7 @@ pub(crate) struct FaultReport {
 #[derive(Serialize)]
 pub(crate) struct MeshReport {
     pub(crate) format: String,
-    /// The format of OUT; `None` if OUT has the format of IN.
+    /// The format of OUT; `None` if IN and OUT have one format.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) output_format: Option<String>,
     pub(crate) vertices: usize,

@@ -19,7 +19,7 @@ use crate::terminal::progress::Stage;
 
 /// Numbers of free and fixed vertices, and the engine of a run.
 pub(crate) struct Rehearsal {
-    /// The format of IN, and that of OUT if it is another one.
+    /// The format of IN, and the format of OUT if the formats differ.
     pub(crate) format: String,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,

@@ -170,7 +170,7 @@ fn engine_report(taken: &OpenEngine, outcome: &Outcome) -> EngineReport {
     }
 }
 
-/// Returns the format of IN, and that of OUT if OUT is another one.
+/// Returns the format of IN, and the format of OUT if the formats differ.
 pub(super) fn formats(input: &Input<'_>) -> String {
     let own = input.file.source.format();
     match input.form {

@@ -31,7 +31,7 @@ pub enum Kind {
     NumberOrAuto(OptionRange, fn(&mut Settings, Option<f64>)),
     /// A duration in seconds, 0 or above.
     Seconds(fn(&mut Settings, Duration)),
-    /// One of several words. The function has its place in the list.
+    /// One of several words. The function takes the index of the word in the list.
     Word(&'static [&'static str], fn(&mut Settings, usize)),
     /// As [`Kind::Word`]. The option alone stands for the first word.
     WordOrFlag(&'static [&'static str], fn(&mut Settings, usize)),

@@ -17,7 +17,7 @@ pub(crate) enum Waiting {
     Await,
 }
 
-/// A call that waits for a device, and has not begun. [`block`](Self::block) makes the call and blocks the thread until
+/// A call that will wait for a device. [`block`](Self::block) makes the call and blocks the thread until
 /// the device is done; `.await` makes it without blocking. Every call of this crate that waits for a device is of this
 /// type, or a [`Run`](crate::Run), which has the same two methods.
 ///

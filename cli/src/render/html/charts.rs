@@ -201,12 +201,15 @@ pub(crate) fn lines(title: &str, unit: Unit, points: &[[f64; 2]]) -> String {
             let _ = write!(text, "<circle class=\"dot\" cx=\"{a:.1}\" cy=\"{b:.1}\" r=\"3\"/>");
         }
     }
-    let mut from = left;
-    for (i, [a, b]) in points.iter().enumerate() {
+    // A span of several points has the values of its first point, and the last span those of the last point.
+    let (mut from, mut first) = (left, 0);
+    for i in 0..points.len() {
         let to = places.get(i + 1).map_or(right, |next| (places[i][0] + next[0]) / 2.0);
-        if to - from >= LEAST_HIT {
-            hit(&mut text, [from, to], &format!("{}: {}", unit.described(*a), sig6(*b)));
-            from = to;
+        let is_last = i + 1 == points.len();
+        if to - from >= LEAST_HIT || is_last {
+            let [a, b] = points[if is_last { i } else { first }];
+            hit(&mut text, [from, to], &format!("{}: {}", unit.described(a), sig6(b)));
+            (from, first) = (to, i + 1);
         }
     }
     text + "</svg></figure>"
@@ -332,8 +335,12 @@ mod tests {
             let chart = lines("f", Unit::Count("sweep"), &points);
             let hits = chart.matches("class=\"hit\"").count();
             assert!(hits == points.len() || (100..200).contains(&hits), "{hits} of {last}");
-            let has_first = chart.contains("<title>sweep 0: 2.000000</title>");
-            assert_eq!(has_first, hits == points.len(), "{last}");
+            for sweep in [0.0, last] {
+                assert!(
+                    chart.contains(&format!("<title>sweep {sweep}: 2.000000</title>")),
+                    "{last}"
+                );
+            }
         }
     }
 }

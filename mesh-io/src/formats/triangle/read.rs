@@ -230,8 +230,8 @@ struct Attributes<'a> {
     /// The number of attributes of each triangle.
     columns: u64,
     texts: Interner<&'a [u8]>,
-    /// The region of each attribute text, by the text's number in `texts`: the number of the first attribute, and the
-    /// number of the further ones together.
+    /// The region of each attribute text, by the text's number in `texts`: the number of the first attribute, and a
+    /// number for all further attributes.
     regions: Vec<[i64; 2]>,
     names: Interner<String>,
     /// The attribute text of the last triangle, whose groups the visitor has, and its region.
