@@ -34,6 +34,8 @@ pub struct Domain {
     chart: Option<Chart>,
     /// The plane of the mesh; `None` if all z are equal, or z is data.
     plane: Option<Plane>,
+    /// Whether all vertices stay, as only those near bad triangles may move, and no triangle is bad.
+    keeps_all: bool,
 }
 
 /// How vertices slide along lines; see [`Domain::curves`].
@@ -257,7 +259,8 @@ impl Domain {
     }
 
     /// Fixes the vertices that are far from bad triangles, those with an inverse mean ratio above `limit`. Vertices within
-    /// `rings` rings of triangles around a bad triangle are near. Without a bad triangle, all vertices are fixed.
+    /// `rings` rings of triangles around a bad triangle are near. Without a bad triangle, [`Self::layers`] has all vertices, so
+    /// that runs end before the first sweep.
     ///
     /// # Errors
     /// [`MeshError`] if the mesh cannot be smoothed; see [`Topology::new`].
@@ -268,8 +271,16 @@ impl Domain {
         let is_free = |vertex: &&u32| topology.free()[**vertex as usize];
         let free = [near.iter().filter(is_free).count(), topology.free_count()];
         drop(topology);
-        self.fix_all_but(&near)?;
+        match bad.is_empty() {
+            true => self.keeps_all = true,
+            false => self.fix_all_but(&near)?,
+        }
         Ok(NearBad { triangles: bad.len(), free })
+    }
+
+    /// Returns whether all vertices stay, because [`Self::fix_far_from_bad`] has found no bad triangle.
+    pub fn keeps_all(&self) -> bool {
+        self.keeps_all
     }
 
     /// Fixes all vertices except `vertices`. A listed vertex stays fixed if it was fixed before.
@@ -310,7 +321,8 @@ impl Domain {
     }
 
     /// Finds the boundary layers that `keep` names. Walls are the boundary, the lines, and edges between regions, or the
-    /// vertices `walls` if given. `faces` are the elements of layers that are no triangles, as lists of vertices.
+    /// vertices `walls` if given. `faces` are the elements of layers that are no triangles, as lists of vertices. The layers have
+    /// all vertices if [`keeps_all`](Self::keeps_all) holds.
     ///
     /// # Errors
     /// [`MeshError`] if `walls` has a vertex that does not exist.
@@ -322,6 +334,10 @@ impl Domain {
         faces: &[Vec<u32>],
     ) -> Result<Layers, MeshError> {
         let (points, lines) = (&self.mesh.points, &self.lines());
+        if self.keeps_all {
+            let vertices = (0..points.len() as u32).collect();
+            return Ok(Layers { vertices, ..Layers::default() });
+        }
         keep.find(&Elements { topology, points, faces, lines }, walls)
     }
 

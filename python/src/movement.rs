@@ -26,11 +26,14 @@ pub(crate) fn keep_layers(
     remarks: &mut Remarks<'_>,
 ) -> Result<Layers, MeshError> {
     let (keep, walls) = (options.keep_layers, options.walls.as_deref());
-    if keep == KeepLayers::None {
+    if keep == KeepLayers::None && !domain.keeps_all() {
         return Ok(Layers::default());
     }
     let topology = Topology::new(domain.mesh())?;
     let layers = domain.layers(&topology, keep, walls, &[])?;
+    if domain.keeps_all() {
+        return Ok(layers);
+    }
     if walls.is_none() && overlooks_boundary(&layers, keep, &topology) {
         remarks.overlooked_layers();
     }

@@ -136,6 +136,9 @@ def test_vertices_near_bad_triangles_are_counted(mesh: Mesh, tmp_path: Path) -> 
     words = (written(tmp_path / "in.vtk", points, triangles), tmp_path / "out.vtk", "--only-bad", "1.6")
     told = re.search(r"(\d+) triangles? above it; .* (\d+ of \d+ free vertices may move)", command_line(*words).stderr)
     assert told
+    kept = gpu_smooth.run(points, triangles, only_bad=1e6, keep_layers="none", slide=True)
+    assert remark(kept, "only_bad: ").startswith("only_bad: 0 triangles are above")
+    assert np.array_equal(kept.points, points)
     ours = remark(gpu_smooth.run(points, triangles, only_bad=1.6), "only_bad: ")
     assert ours.startswith(f"only_bad: {told[1]} triangle") and ours.endswith(told[2])
 

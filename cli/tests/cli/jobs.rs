@@ -115,6 +115,23 @@ fn a_job_and_the_command_line_write_equal_files_by_the_options_of_a_mesh() {
 }
 
 #[test]
+fn without_a_bad_triangle_a_job_and_the_command_line_move_no_vertex() {
+    let mesh = disturbed();
+    let files = &support::write_regions(&mesh, &halves(&mesh, [[1, 7], [2, 7]]))[0];
+    let (folder, input) = (folder(files), files[0].0);
+    let line = folder.line(&format!("{input} out.node --engine cpu --only-bad 1e6"));
+    assert_eq!(line.code, Some(0), "{}", line.err);
+    let given = GivenOptions::of(&[("only-bad", "1e6"), ("slide", "true")]).unwrap();
+    let file = MeshFile::read(&folder.path(input)).unwrap();
+    let job = Job::of_file(&file).unwrap().settings(given.settings()).unwrap();
+    let smoothed = job.smooth(&Options::default(), &Backend::Cpu).unwrap();
+    smoothed.write(&folder.path("own.node")).unwrap();
+    for own in ["out.node", "own.node"] {
+        assert_eq!(folder.text(own), folder.text(input), "{own}");
+    }
+}
+
+#[test]
 fn a_job_untangles_as_the_command_line_does() {
     let mut mesh = disturbed();
     let regions = halves(&mesh, [[1, 7], [2, 7]]);
