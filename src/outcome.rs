@@ -96,6 +96,9 @@ pub struct Outcome {
     /// The work of the floor under the worst triangles. `None` if no shape was worse after the sweeps than before the run,
     /// or if the options or the mesh have another aim; see [`Floored`].
     pub floored: Option<Floored>,
+    /// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute). `None` if the sweeps left no large angle, or
+    /// if the run has another base metric or targets; see [`LargeAngles`].
+    pub large_angles: Option<LargeAngles>,
     /// The result of improving the worst triangles; `None` without
     /// [`Options::improve_worst`](crate::Options::improve_worst).
     pub improved: Option<Improved>,
@@ -143,6 +146,26 @@ pub struct Floored {
     pub worst_imr: [f64; 3],
     /// f by the base metric, after the last sweep and in [`Outcome::points`].
     pub f: [f64; 2],
+}
+
+/// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute): vertices around triangles with an angle above
+/// 87.1 degrees take further Newton steps by growing penalties on large and on small angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LargeAngles {
+    /// Number of vertices that moved after the sweeps.
+    pub moved: usize,
+    /// Number of triangles that can move and have an angle above 87.1 degrees: after the last sweep, and in
+    /// [`Outcome::points`].
+    pub triangles: [usize; 2],
+    /// f by the base metric, after the last sweep and in [`Outcome::points`].
+    pub f: [f64; 2],
+}
+
+impl LargeAngles {
+    /// Cotangent of the angle of 87.1 degrees, above which an angle is large. If all angles are smaller, no edge is longer
+    /// than ten times the distance between the circumcenters beside it.
+    pub(crate) const COTANGENT: f64 = 0.05;
 }
 
 impl Floored {

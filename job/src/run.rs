@@ -6,6 +6,8 @@ use gpu_smooth::{Goal, Method, Metric, Options, Scheme, Stopping};
 
 /// The share of the way to the desired f at which a run with a goal ends, if the user gives none.
 const FRACTION: f64 = 0.95;
+/// The tolerance of a run by ACUTE, if the user gives none. By a smaller tolerance, no triangle more becomes acute.
+const ACUTE_TOLERANCE: f64 = 1e-4;
 
 /// The name of a method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,17 +58,19 @@ impl RunRequest {
     /// Returns the options of the library for points of a precision. `default` is the metric of a run without a scheme; see
     /// [`TargetKind::default_metric`](crate::TargetKind::default_metric).
     pub fn options(&self, default: Metric, stored: Precision) -> Options {
+        let scheme = self.scheme.clone().unwrap_or_else(|| default.into());
         let fraction = self.fraction.unwrap_or(FRACTION);
         let goal = Goal { fraction, desired: self.desired.flatten() };
         let stopping = match (self.has_goal(), self.tolerance) {
             (true, _) => Stopping::Goal(goal),
             (false, Some(tolerance)) => Stopping::Tolerance(tolerance),
+            (false, None) if scheme.base() == Metric::Acute => Stopping::Tolerance(ACUTE_TOLERANCE),
             (false, None) => Stopping::default(),
         };
         let options = self
             .options
             .clone()
-            .scheme(self.scheme.clone().unwrap_or_else(|| default.into()))
+            .scheme(scheme)
             .method(self.method())
             .stopping(stopping)
             .stored(stored);
@@ -140,6 +144,16 @@ mod tests {
         assert_eq!(method(asked), Method::Auto);
         let asked = RunRequest { omega: Some(1.2), ..RunRequest::default() };
         assert!(matches!(method(asked), Method::Relaxed(Relaxed { omega: Some(1.2), .. })));
+    }
+
+    #[test]
+    fn acute_has_a_tolerance_of_its_own() {
+        let stopping = |tolerance| {
+            let request = RunRequest { tolerance, ..RunRequest::default() };
+            request.options(Metric::Acute, Precision::Double).stopping
+        };
+        assert_eq!(stopping(None), Stopping::Tolerance(1e-4));
+        assert_eq!(stopping(Some(1e-6)), Stopping::Tolerance(1e-6));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::options::WorstBy;
-use gpu_smooth::outcome::{Floored, Improved};
+use gpu_smooth::outcome::{Floored, Improved, LargeAngles};
 use gpu_smooth::targets::OutsideReport;
 use gpu_smooth::topology::HangingNode;
 use gpu_smooth::{Metric, Outcome, Smoother};
@@ -189,6 +189,14 @@ impl<'a> Remarks<'a> {
                 worse.join(" and "),
                 ends.join(" and "),
                 cost(f)
+            ));
+        }
+        if let Some(LargeAngles { moved, triangles: [before, after], f, .. }) = outcome.large_angles
+        {
+            let (triangles, cost) = (numbered(before, "triangle", "triangles"), cost(f));
+            let vertices = numbered(moved, "vertex", "vertices");
+            self.add(format!(
+                "the sweeps left {triangles} with an angle above 87.1°. {vertices} moved on to end with {after}, which {cost}"
             ));
         }
         if let Some(improved) = &outcome.improved {

@@ -160,12 +160,12 @@ impl Curved for OfImr {
 }
 
 impl Metric {
-    /// Returns the formulas of a metric with Hessians of triangles. `None` for EDGE, which is no function of the
-    /// invariants.
+    /// Returns the formulas of a metric with Hessians of triangles. `None` for EDGE and ACUTE, which are no functions of
+    /// the invariants.
     pub(crate) fn curved(self) -> Option<OfInvariants> {
         match self.formulas() {
             AnyFormulas::Invariants(formulas) => Some(formulas),
-            AnyFormulas::Edges(_) => None,
+            AnyFormulas::Edges(_) | AnyFormulas::Cotangents(_) => None,
         }
     }
 }

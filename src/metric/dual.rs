@@ -186,7 +186,30 @@ impl<T: Real> Mul<f64> for Dual<T> {
     }
 }
 
-/// Numbers with derivatives. `min` and `max` return constants, as their derivatives would be discontinuous.
+impl<T: Real> Dual<T> {
+    /// Returns a number with the value `value`, and the derivatives of `one` if `chooses_one` is 1, or of `other` if it
+    /// is 0.
+    #[inline(always)]
+    fn chosen(value: T, chooses_one: T, one: Self, other: Self) -> Self {
+        let chosen = |one: T, other: T| other + (one - other) * chooses_one;
+        let ([x, y], [xx, xy, yy]) = (one.gradient, one.hessian);
+        let ([ox, oy], [oxx, oxy, oyy]) = (other.gradient, other.hessian);
+        Self {
+            value,
+            gradient: [chosen(x, ox), chosen(y, oy)],
+            hessian: [chosen(xx, oxx), chosen(xy, oxy), chosen(yy, oyy)],
+        }
+    }
+}
+
+/// Returns 1 for a positive number, even the least difference of two numbers near 1, and 0 for zero and negative numbers.
+#[inline(always)]
+fn step<T: Real>(x: T) -> T {
+    (x * 2f64.powi(1000)).min(x.constant(1.0)).max(x.constant(0.0))
+}
+
+/// Numbers with derivatives. `min` and `max` return the derivatives of the number that they choose, and those of `other`
+/// if both numbers are equal.
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn constant(self, value: f64) -> Self {
@@ -204,11 +227,11 @@ impl<T: Real> Real for Dual<T> {
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self::of(self.value.min(other.value))
+        Self::chosen(self.value.min(other.value), step(other.value - self.value), self, other)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self::of(self.value.max(other.value))
+        Self::chosen(self.value.max(other.value), step(self.value - other.value), self, other)
     }
 }
 

@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn derivatives_by_any_slopes_are_those_of_dual_numbers() {
         let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], ideal: Ideal::of_area(0.6) };
-        // Dual numbers have no derivatives of the minimum in the penalty.
+        // Without a penalty, which has no effect on smooth metrics.
         let smoothings = [0, 1, 3].map(Smoothing::of);
         for slopes in [(-1.0, -1.0), (1.0, 0.0), (0.0, 1.0), (0.3, -1.7), (0.0, 0.0)] {
             let slopes = Given(slopes.0, slopes.1);

@@ -15,27 +15,38 @@ pub(crate) struct Hinge {
 }
 
 impl Hinge {
+    /// No penalty.
+    pub(crate) const NONE: Self = Self { limit: f64::INFINITY, ramp: f64::INFINITY };
+    /// The penalty on the negative cotangents of angles above 78.7 degrees. The ramp ends at the right angle.
+    pub(crate) const LARGE_ANGLES: Self = Self { limit: -0.2, ramp: 0.2 };
+
     /// Returns value, first and second derivative of the penalty at `x`.
-    fn at(self, x: f64) -> [f64; 3] {
-        let (excess, r) = (x - self.limit, self.ramp);
-        // Also false if both `x` and the limit are infinite.
-        if excess > 0.0 {
-            let t = excess.min(r);
-            let beyond = excess - t;
-            [t * t * t / (3.0 * r) + beyond * (r + beyond), t * t / r + 2.0 * beyond, 2.0 * t / r]
-        } else {
-            [0.0; 3]
-        }
+    #[inline(always)]
+    pub(super) fn at<T: Real>(self, x: T) -> [T; 3] {
+        let r = x.constant(self.ramp);
+        let excess = (x - self.limit).max(x.constant(0.0));
+        let t = excess.min(r);
+        let beyond = excess - t;
+        [
+            t * t * t / x.constant(3.0 * self.ramp) + beyond * (r + beyond),
+            t * t / r + beyond * 2.0,
+            t * 2.0 / r,
+        ]
+    }
+
+    /// Returns [`at`](Self::at), and 0 if there is no penalty, also at an infinite number.
+    fn given(self, x: f64) -> [f64; 3] {
+        if self.limit < f64::INFINITY { self.at(x) } else { [0.0; 3] }
     }
 
     /// Returns the penalty on `x`.
     pub(crate) fn of(self, x: f64) -> f64 {
-        self.at(x)[0]
+        self.given(x)[0]
     }
 
     /// Returns the penalty on `x` with its derivatives.
     pub(crate) fn expansion(self, x: Dual) -> Dual {
-        let [value, first, second] = self.at(x.value);
+        let [value, first, second] = self.given(x.value);
         x.chain(value, first, second)
     }
 }
@@ -43,6 +54,7 @@ impl Hinge {
 impl<T: Real> Corner<T> {
     /// Returns the cotangents of the three angles, which rise without bound as the triangle becomes flat. The squared
     /// inverse mean ratio is a third of the sum of their squares, plus 2/3.
+    #[inline(always)]
     pub(crate) fn cotangents(&self) -> [T; 3] {
         let ([ax, ay], [bx, by]) = (self.a, self.b);
         let (cx, cy) = (bx - ax, by - ay);
@@ -88,8 +100,7 @@ mod tests {
             assert!(((right - left) / (2.0 * h) - first).abs() < 1e-7, "{x}");
             assert!(((right - 2.0 * value + left) / (h * h) - second).abs() < 1e-3, "{x}");
         }
-        let free = Hinge { limit: f64::INFINITY, ramp: f64::INFINITY };
-        assert_eq!([1e300, f64::INFINITY].map(|x| free.of(x)), [0.0; 2]);
+        assert_eq!([1e300, f64::INFINITY].map(|x| Hinge::NONE.of(x)), [0.0; 2]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The quality metrics: a table with a row per metric, the invariants and dual numbers in their formulas, and schemes
 //! of several metrics.
 
+mod acute;
 mod ar;
 mod area;
 mod corner;

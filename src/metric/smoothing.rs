@@ -98,12 +98,7 @@ mod tests {
                     let [ax, bx] = [ax, bx].map(|x| Dual::variable(x, 0, -1.0));
                     let [ay, by] = [ay, by].map(|y| Dual::variable(y, 1, -1.0));
                     let dual = Corner { a: [ax, ay], b: [bx, by], ideal: t.ideal };
-                    // Dual numbers have no derivatives of a minimum.
-                    let [_, ratio] = smoothing.ratio(&dual);
-                    let expected = match ratio.value < 1.0 {
-                        true => smoothing.power(ratio) * PENALTY,
-                        false => ratio.constant(PENALTY),
-                    };
+                    let expected = smoothing.penalty(&dual);
                     let found = smoothing.penalty_expansion(&t, Own);
                     let numbers = |d: &Dual| {
                         let ([x, y], [xx, xy, yy]) = (d.gradient, d.hessian);

@@ -8,7 +8,7 @@ use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::{EdgeSlopes, Own};
 use crate::metric::properties::Properties;
 use crate::metric::smoothing::Smoothing;
-use crate::metric::{ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
+use crate::metric::{acute, ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
 
 /// Generates the enum, the table and the formulas from one row per metric. Metrics in braces are rare: they take less
 /// time to compile, and their sweeps take longer.
@@ -20,6 +20,10 @@ macro_rules! metrics {
         => {
             $($(#[$rare_doc:meta])* $rare:ident = $rare_file:ident of invariants;)*
         }
+        => {
+            $(#[$angle_doc:meta])*
+            $angle:ident = $angle_file:ident of cotangents;
+        }
     ) => {
         /// A quality metric q of a triangle. Smaller values are better. [`Metric::citation`] names the source of each
         /// metric.
@@ -29,6 +33,7 @@ macro_rules! metrics {
             $(#[$edge_doc])* $edge,
             $($(#[$doc])* $variant,)*
             $($(#[$rare_doc])* $rare,)*
+            $(#[$angle_doc])* $angle,
         }
 
         /// A metric that is a function of a triangle's [`Invariants`].
@@ -37,7 +42,7 @@ macro_rules! metrics {
 
         impl Metric {
             /// Every metric: first Park & Shontz's metrics in the order of their Table 1, then further metrics.
-            pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)*];
+            pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)* Metric::$angle];
 
             /// Returns the metric's row of properties, for this project's own tests and benchmarks.
             #[doc(hidden)]
@@ -46,6 +51,7 @@ macro_rules! metrics {
                     Metric::$edge => &$edge_file::PROPERTIES,
                     $(Metric::$variant => &$file::PROPERTIES,)*
                     $(Metric::$rare => &$rare_file::PROPERTIES,)*
+                    Metric::$angle => &$angle_file::PROPERTIES,
                 }
             }
 
@@ -58,6 +64,7 @@ macro_rules! metrics {
                     $edge_file::excess(corner),
                     $($file::value(&invariants),)*
                     $($rare_file::value(&invariants),)*
+                    $angle_file::excess(corner),
                 ]
             }
 
@@ -68,6 +75,7 @@ macro_rules! metrics {
                     Metric::$edge => AnyFormulas::Edges(OfEdges),
                     $(Metric::$variant => AnyFormulas::Invariants(OfInvariants::$variant),)*
                     $(Metric::$rare => AnyFormulas::Invariants(OfInvariants::$rare),)*
+                    Metric::$angle => AnyFormulas::Cotangents(OfCotangents),
                 }
             }
         }
@@ -88,7 +96,7 @@ macro_rules! metrics {
                         const $f: $crate::metric::OfInvariants = $crate::metric::OfInvariants::$variant;
                         $body
                     })*
-                    $($crate::metric::Metric::$rare)|* => {}
+                    $($crate::metric::Metric::$rare)|* | $crate::metric::Metric::$angle => {}
                 }
             };
         }
@@ -148,18 +156,29 @@ metrics! {
     /// and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 94).
     Tmop94 = tmop_94 of invariants;
     }
+    => {
+    /// ACUTE, the inverse mean ratio with penalties on angles above 78.7 and below 37.6 degrees: √(imr² + 300 Σ ψ(0.2 -
+    /// cot) + 30 Σ ψ(cot - 1.3)), with the sums over the three angles and ψ(x) = x³ / 0.6 for x from 0 to 0.2, and a
+    /// quadratic beyond.
+    Acute = acute of cotangents;
+    }
 }
 
 /// The metric EDGE, a function of the edge lengths of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OfEdges;
 
-/// The formulas of any metric. Hot loops are compiled for each of the two variants, and look up a metric of the
+/// The metric ACUTE, a function of the cotangents of the angles of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfCotangents;
+
+/// The formulas of any metric. Hot loops are compiled for all variants together, and look up a metric of the
 /// invariants at run time. A compilation for every metric would take minutes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum AnyFormulas {
     Edges(OfEdges),
     Invariants(OfInvariants),
+    Cotangents(OfCotangents),
 }
 
 /// The functions of a metric that engines compute.
@@ -260,6 +279,38 @@ impl Formulas for OfInvariants {
     }
 }
 
+impl Formulas for OfCotangents {
+    #[inline(always)]
+    fn metric(self) -> Metric {
+        Metric::Acute
+    }
+
+    #[inline(always)]
+    fn inverse_mean_ratio<T: Real>(self, corner: &Corner<T>) -> (T, T) {
+        OfEdges.inverse_mean_ratio(corner)
+    }
+
+    #[inline(always)]
+    fn excess<T: Real>(self, corner: &Corner<T>) -> T {
+        acute::excess(corner)
+    }
+
+    #[inline(always)]
+    fn model<T: Real>(self, corner: &Corner<T>, _: Smoothing) -> T {
+        acute::excess(corner)
+    }
+
+    #[inline(always)]
+    fn expansion<T: Real>(
+        self,
+        corner: &Corner<T>,
+        edges: impl EdgeSlopes,
+        _: Smoothing,
+    ) -> Dual<T> {
+        acute::expansion(corner, edges)
+    }
+}
+
 /// Formulas that look up the metric for each triangle.
 impl Formulas for AnyFormulas {
     #[inline(always)]
@@ -267,6 +318,7 @@ impl Formulas for AnyFormulas {
         match self {
             AnyFormulas::Edges(f) => f.metric(),
             AnyFormulas::Invariants(f) => f.metric(),
+            AnyFormulas::Cotangents(f) => f.metric(),
         }
     }
 
@@ -282,6 +334,7 @@ impl Formulas for AnyFormulas {
             || match self {
                 AnyFormulas::Edges(f) => f.excess(corner),
                 AnyFormulas::Invariants(f) => f.excess(corner),
+                AnyFormulas::Cotangents(f) => f.excess(corner),
             },
         )
     }
@@ -293,6 +346,7 @@ impl Formulas for AnyFormulas {
             || match self {
                 AnyFormulas::Edges(f) => f.model(corner, smoothing),
                 AnyFormulas::Invariants(f) => f.model(corner, smoothing),
+                AnyFormulas::Cotangents(f) => f.model(corner, smoothing),
             },
         )
     }
@@ -309,6 +363,7 @@ impl Formulas for AnyFormulas {
             || match self {
                 AnyFormulas::Edges(f) => f.expansion(corner, edges, smoothing),
                 AnyFormulas::Invariants(f) => f.expansion(corner, edges, smoothing),
+                AnyFormulas::Cotangents(f) => f.expansion(corner, edges, smoothing),
             },
         )
     }
@@ -388,6 +443,12 @@ impl Metric {
 
     /// Returns whether q² is smooth, so that Newton's method minimizes q² directly. False for EDGE alone.
     pub const fn is_smooth(self) -> bool {
+        !matches!(self.formulas(), AnyFormulas::Edges(_))
+    }
+
+    /// Returns whether q² is a function of the [`Invariants`], and so has Hessians of triangles by their corners. False
+    /// for EDGE and ACUTE.
+    pub(crate) const fn is_of_invariants(self) -> bool {
         matches!(self.formulas(), AnyFormulas::Invariants(_))
     }
 

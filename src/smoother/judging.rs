@@ -10,7 +10,7 @@ use crate::error::{MeshError, SmoothError};
 use crate::layout::Problem;
 use crate::metric::{Corner, Ideal, Metric};
 use crate::options::Options;
-use crate::outcome::{Floored, GoalOutcome, Improved, Outcome, Slid};
+use crate::outcome::{Floored, GoalOutcome, Improved, LargeAngles, Outcome, Slid};
 use crate::parallel::paced;
 use crate::precision::Precision;
 use crate::quality::Quality;
@@ -77,6 +77,7 @@ struct Stored {
     returned: usize,
     improving: Option<Improvement>,
     floored: Option<Floored>,
+    large_angles: Option<LargeAngles>,
     /// Number of vertices that moved, before the floor.
     moved: usize,
     /// f before rounding, as the engine of the last sweep computed it, and in double precision.
@@ -129,6 +130,7 @@ impl Smoother<'_> {
             stored.returned = 0;
             let (moved, f) = (stored.moved, over_all.f(base, initial));
             stored.floored = stored.floored.map(|floored| floored.undone(moved, f));
+            stored.large_angles = None;
         }
         let projection_error = self.projection_error(&stored.points).await;
         let best = if gains { stored.written } else { initial };
@@ -136,7 +138,7 @@ impl Smoother<'_> {
         let least = base.least_objective(stored.problem.targets().is_some());
         let possible = (best - least).max(0.0) / best.max(MIN_SCALE);
         let (lost, error) = (stored.lost(initial), stored.error());
-        let Stored { points, curves, returned, floored, .. } = stored;
+        let Stored { points, curves, returned, floored, large_angles, .. } = stored;
         Ok(Outcome {
             stop: ended.stop,
             sweeps: ended.history.len() as u32 - 1,
@@ -162,6 +164,7 @@ impl Smoother<'_> {
             returned,
             slid: curves.as_ref().map(|curves| self.slid(curves, &points)),
             floored,
+            large_angles,
             improved,
             device_fault: ended.fault,
             smooth: Duration::ZERO,
@@ -204,15 +207,17 @@ impl Smoother<'_> {
             returned,
             improving,
             floored: None,
+            large_angles: None,
             moved,
             swept,
             exact: before.unwrap_or(rounded),
             rounded,
             written: rounded,
         };
-        if let Some(raised) = self.raised(options, &mut stored, ended, observe).await? {
+        if self.finished(options, &mut stored, ended, observe).await? {
             let f = [stored.rounded, stored.written].map(|f| over_all.f(base, f));
-            stored.floored = Some(Floored { f, ..raised });
+            stored.floored = stored.floored.map(|floored| Floored { f, ..floored });
+            stored.large_angles = stored.large_angles.map(|large| LargeAngles { f, ..large });
         }
         Ok(stored)
     }
@@ -274,16 +279,17 @@ impl Smoother<'_> {
         Ok((improving, without.0, without.1))
     }
 
-    /// Raises the result to the floor if a measure has become worse. Returns the record of the floor.
-    async fn raised(
+    /// Raises the result to the floor if a measure has become worse, and lessens large angles after a run by ACUTE. Returns
+    /// whether either has been done.
+    async fn finished(
         &self,
         options: &Options,
         stored: &mut Stored,
         ended: &mut RunEnd,
         observe: &mut dyn Observer,
-    ) -> Result<Option<Floored>, MeshError> {
+    ) -> Result<bool, MeshError> {
         let Stored { points, at, problem, curves, rounded, written, .. } = stored;
-        let Some(floor) = self.lacking_floor(options, points).await else { return Ok(None) };
+        let floor = self.lacking_floor(options, points).await;
         let (was_canceled, sweep) = (ended.stop == Stop::Canceled, ended.history.len() as u32 - 1);
         let now = Progress { phase: Phase::Improving, sweep, f: *rounded };
         // A canceled run ends soon, but not with a worse triangle than before.
@@ -294,10 +300,26 @@ impl Smoother<'_> {
             }
             goes_on
         };
-        let raised = floor.raise(options, problem, curves.as_mut(), at, points, goes_on).await?;
+        match floor {
+            Some(floor) => {
+                let curves = curves.as_mut();
+                let raised = floor.raise(options, problem, curves, at, points, goes_on).await?;
+                stored.floored = Some(raised);
+            }
+            None if was_canceled => return Ok(false),
+            None => {
+                let curves = curves.as_mut();
+                let lessened =
+                    self.lessen_large_angles(options, problem, curves, at, points, goes_on);
+                stored.large_angles = lessened.await?;
+            }
+        }
+        if stored.floored.is_none() && stored.large_angles.is_none() {
+            return Ok(false);
+        }
         *at = self.problem.normalized(points, take(at)).await;
         *written = objective(options.scheme.base(), problem, at).await;
-        Ok(Some(raised))
+        Ok(true)
     }
 
     /// Returns the number of vertices whose points differ from the mesh.

@@ -4,11 +4,13 @@ mod backend;
 mod floor;
 mod goal;
 mod judging;
+mod large_angles;
 mod moved;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod over_all;
 mod prepared;
+mod rounds;
 mod run;
 mod running;
 mod slivers;

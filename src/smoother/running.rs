@@ -178,6 +178,7 @@ impl Smoother<'_> {
             returned: 0,
             slid: None,
             floored: None,
+            large_angles: None,
             improved: None,
             device_fault: None,
             smooth: start.elapsed(),

@@ -2,15 +2,16 @@
 //! becomes less bad.
 
 mod badness;
-pub(crate) mod floor;
 mod penalties;
 mod region;
 mod regions;
+pub(crate) mod rounds;
 mod shapes;
 mod stage;
 
 pub(crate) use badness::Badness;
 pub(crate) use penalties::Penalties;
 pub(crate) use region::MoveConstraints;
+pub(crate) use regions::around;
 pub(crate) use shapes::WorstShapes;
 pub(crate) use stage::{Passes, stuck, worst_movable};

@@ -19,31 +19,51 @@ const FIRST_WEIGHT: f64 = 1000.0;
 /// can be no better than the limit need such weights.
 const SLOW_ROUNDS: u32 = 8;
 const LAST_WEIGHT: f64 = 1e12;
+/// Width of the cubic part of the penalty on small angles beside the penalty on large angles.
+const SMALL_RAMP: f64 = 0.2;
+/// Weight of penalties on small angles beside those on large angles.
+const SMALL_SHARE: f64 = 0.3;
 
-/// The function of a triangle that vertices lower while the floor brings triangles back: imr² + weight (Σ ψ(cot) +
-/// ψ(imr²)), with a penalty ψ on the cotangents of the three angles and on imr², the squared inverse mean ratio.
+/// The function of a triangle that vertices lower in rounds of Newton steps: imr² + weight (Σ ψ(cot) + Σ ψ(-cot) + ψ(imr²)),
+/// with penalties ψ on small angles and on large angles by their cotangents, and on imr², the squared inverse mean ratio.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Penalties {
-    cotangent: Hinge,
+    small: Hinge,
+    large: Hinge,
     square: Hinge,
     weight: f64,
+    /// Factor of the penalty on small angles.
+    small_share: f64,
 }
 
 impl Penalties {
-    /// Returns the penalties of the first round, for triangles that must not be worse than `worst`.
+    /// Returns the penalties of the floor in the first round, for triangles that must not be worse than `worst`.
     pub(crate) fn new(worst: WorstShapes) -> Self {
         let angle = ANGLE_RESERVE * worst.least_angle().to_radians();
         let hinge = |limit: f64| Hinge { limit, ramp: RAMP * limit };
         Self {
-            cotangent: hinge(angle.tan().recip()),
+            small: hinge(angle.tan().recip()),
+            large: Hinge::NONE,
             square: hinge(1.0 + SQUARE_RESERVE * (worst.imr * worst.imr - 1.0)),
             weight: FIRST_WEIGHT,
+            small_share: 1.0,
+        }
+    }
+
+    /// Returns penalties on angles above 78.7 degrees, as in ACUTE, and on angles whose cotangent is above `small`.
+    pub(crate) fn on_large_angles(small: f64, weight: f64) -> Self {
+        Self {
+            small: Hinge { limit: small, ramp: SMALL_RAMP },
+            large: Hinge::LARGE_ANGLES,
+            square: Hinge::NONE,
+            weight,
+            small_share: SMALL_SHARE,
         }
     }
 
     /// Returns the limits of the penalties.
     pub(crate) fn limits(&self) -> WorstShapes {
-        WorstShapes { cotangent: self.cotangent.limit, imr: self.square.limit.sqrt() }
+        WorstShapes { cotangent: self.small.limit, imr: self.square.limit.sqrt() }
     }
 
     /// Returns the penalties of a round, counted from 0.
@@ -60,8 +80,9 @@ impl Penalties {
     fn of(&self, corner: &Corner<f64>) -> f64 {
         let cotangents = corner.cotangents();
         let square = Self::square(cotangents);
-        let angles: f64 = cotangents.iter().map(|&x| self.cotangent.of(x)).sum();
-        square + self.weight * (angles + self.square.of(square))
+        let small: f64 = cotangents.iter().map(|&x| self.small.of(x)).sum();
+        let large: f64 = cotangents.iter().map(|&x| self.large.of(-x)).sum();
+        square + self.weight * (small * self.small_share + large + self.square.of(square))
     }
 
     /// Returns the function with its derivatives by the vertex at which the edges of the triangle start.
@@ -70,27 +91,28 @@ impl Penalties {
         let (a, b) = (vertex(corner.a), vertex(corner.b));
         let cotangents = Corner { a, b, ideal: corner.ideal }.cotangents();
         let square = Self::square(cotangents);
-        let penalties = cotangents
-            .into_iter()
-            .fold(self.square.expansion(square), |sum, x| sum + self.cotangent.expansion(x));
+        let penalties = cotangents.into_iter().fold(self.square.expansion(square), |sum, x| {
+            let small = self.small.expansion(x) * self.small_share;
+            sum + small + self.large.expansion(x * -1.0)
+        });
         square + penalties * self.weight
     }
 }
 
 /// The sum of [`Penalties`] over a patch.
-pub(crate) struct FloorObjective<'a> {
+pub(crate) struct PenaltyObjective<'a> {
     pub(crate) patch: &'a FanPatch,
     pub(crate) penalties: Penalties,
 }
 
-impl FloorObjective<'_> {
+impl PenaltyObjective<'_> {
     fn corners(&self, at: [f64; 2]) -> impl Iterator<Item = Corner<f64>> {
         let seen = move |triangle: &FanCorner| triangle.in_plane(at.into(), self.patch.ideal);
         self.patch.corners.iter().map(seen)
     }
 }
 
-impl Objective<f64> for FloorObjective<'_> {
+impl Objective<f64> for PenaltyObjective<'_> {
     fn expansion(&self, at: [f64; 2]) -> Dual {
         let add = |sum, corner| sum + self.penalties.expansion(&corner);
         self.corners(at).fold(Dual::default(), add)
@@ -104,12 +126,12 @@ impl Objective<f64> for FloorObjective<'_> {
 /// The penalties for vertices that slide, whose trials keep triangles positive.
 impl OfPatch for Penalties {
     fn of<'p>(&'p self, patch: &'p FanPatch) -> Box<dyn Objective<f64> + 'p> {
-        Box::new(Feasible(FloorObjective { patch, penalties: *self }))
+        Box::new(Feasible(PenaltyObjective { patch, penalties: *self }))
     }
 }
 
 /// An objective whose trials are accepted only if no triangle is inverted, flat or below the floor of the patch.
-struct Feasible<'a>(FloorObjective<'a>);
+struct Feasible<'a>(PenaltyObjective<'a>);
 
 impl Objective<f64> for Feasible<'_> {
     fn expansion(&self, at: [f64; 2]) -> Dual {

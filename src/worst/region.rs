@@ -12,7 +12,7 @@ use crate::patch::{
 };
 use crate::run::SweepParams;
 use crate::worst::badness::Badness;
-use crate::worst::penalties::{FloorObjective, Penalties};
+use crate::worst::penalties::{Penalties, PenaltyObjective};
 
 /// Binary logarithms of the exponents k of the p-norms, in the order in which a region lowers the norms.
 const DOUBLINGS: [u32; 3] = [3, 5, 7];
@@ -138,7 +138,7 @@ impl<'a> Region<'a> {
             let mut most = 0.0_f64;
             for v in 0..count {
                 let patch = &self.patch(v);
-                let objective = FloorObjective { patch, penalties };
+                let objective = PenaltyObjective { patch, penalties };
                 most = most.max(self.step(v, patch, &objective, f64::INFINITY));
                 pause().await;
             }

@@ -29,19 +29,27 @@ impl WorstShapes {
     /// Returns the shape of a triangle with vertices at `points`, as seen on `surface`.
     #[inline]
     pub(crate) fn of(surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> Self {
-        let [x, y] = surface.lengths_in(points, triangle);
-        let doubled_area = orientation(points, triangle) * x * y;
-        let [p, q, r] = triangle.map(|v| points[v as usize]);
-        let to = |from: [f64; 2], to: [f64; 2]| [(to[0] - from[0]) * x, (to[1] - from[1]) * y];
-        let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
-        let (a, b, c) = (to(p, q), to(p, r), to(q, r));
-        let most = dot(a, b).max(-dot(a, c)).max(dot(b, c));
-        let squares = dot(a, a) + dot(b, b) + dot(c, c);
+        let Products { dots, squares, doubled_area } = Products::of(surface, points, triangle);
+        let most = dots[0].max(dots[1]).max(dots[2]);
         let (cotangent, imr) = (most / doubled_area, squares / (TWO_SQRT_3 * doubled_area));
         // The comparisons are false for NaN.
         match doubled_area > 0.0 && cotangent > 0.0 && imr > 0.0 {
             true => Self { cotangent, imr },
             false => Self::FLAT,
+        }
+    }
+
+    /// Returns the cotangent of the largest angle of a triangle with vertices at `points`, as seen on `surface`. Negative
+    /// infinity if the triangle is inverted or flat.
+    pub(crate) fn least_cotangent(
+        surface: Surface,
+        points: &[[f64; 2]],
+        triangle: &[u32; 3],
+    ) -> f64 {
+        let Products { dots, doubled_area, .. } = Products::of(surface, points, triangle);
+        match doubled_area > 0.0 {
+            true => dots[0].min(dots[1]).min(dots[2]) / doubled_area,
+            false => f64::NEG_INFINITY,
         }
     }
 
@@ -61,6 +69,30 @@ impl WorstShapes {
     /// Returns the smallest angle in degrees.
     pub(crate) fn least_angle(self) -> f64 {
         1f64.atan2(self.cotangent).to_degrees()
+    }
+}
+
+/// Products of the edges of a triangle.
+struct Products {
+    /// For each angle, the scalar product of its two edges.
+    dots: [f64; 3],
+    /// Sum of the squared edge lengths.
+    squares: f64,
+    /// Twice the signed area.
+    doubled_area: f64,
+}
+
+impl Products {
+    #[inline]
+    fn of(surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> Self {
+        let [x, y] = surface.lengths_in(points, triangle);
+        let doubled_area = orientation(points, triangle) * x * y;
+        let [p, q, r] = triangle.map(|v| points[v as usize]);
+        let to = |from: [f64; 2], to: [f64; 2]| [(to[0] - from[0]) * x, (to[1] - from[1]) * y];
+        let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
+        let (a, b, c) = (to(p, q), to(p, r), to(q, r));
+        let squares = dot(a, a) + dot(b, b) + dot(c, c);
+        Self { dots: [dot(a, b), -dot(a, c), dot(b, c)], squares, doubled_area }
     }
 }
 

@@ -32,8 +32,26 @@ pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, ideal: Ide
         Metric::Tmop80 => root(0.5 * (shape + square)),
         Metric::Tmop94 => root(shape + 1.5 * linear),
         Metric::SoftSize => root(shape + 0.4 * linear),
+        Metric::Acute => {
+            let sides = [a, b, c].map(|side| side * side);
+            let cotangent = |k: usize| {
+                let [opposite, one, two] = [0, 1, 2].map(|i| sides[(k + i) % 3]);
+                (one + two - opposite) / (4.0 * area)
+            };
+            root([0, 1, 2].map(cotangent).into_iter().map(acute_share).sum::<f64>() + 2.0 / 3.0)
+        }
         _ => panic!("{metric}: write the formula of q here, another way than src/metric does"),
     }
+}
+
+/// Returns the share of an angle in q² by ACUTE, from its cotangent.
+fn acute_share(cotangent: f64) -> f64 {
+    let penalty = |x: f64| match x {
+        ..=0.0 => 0.0,
+        ..=0.2 => x.powi(3) / 0.6,
+        _ => 0.04 / 3.0 + (x - 0.2) * x,
+    };
+    cotangent * cotangent / 3.0 + 300.0 * penalty(0.2 - cotangent) + 30.0 * penalty(cotangent - 1.3)
 }
 
 /// Returns whether q² of a large triangle is nearly linear in the area, so that second derivatives cancel.
@@ -46,7 +64,8 @@ pub(crate) fn is_linear_in_size(metric: Metric) -> bool {
         | Metric::Imr
         | Metric::Ar
         | Metric::ShapeSize
-        | Metric::Tmop80 => false,
+        | Metric::Tmop80
+        | Metric::Acute => false,
         _ => {
             panic!("{metric}: say here whether q² of a large triangle is nearly linear in the area")
         }
@@ -93,6 +112,10 @@ pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
             ["t.size_weight - e)", "t.size_weight + e)"],
             ["2.0 * (e + weight", "2.0 * (1.01 * e + weight"],
         ],
+        Metric::Acute => [
+            ["penalties.y * unit * area_slope", "penalties.y * unit * 1.01 * area_slope"],
+            ["dot(t.b, c), -c, 0.0", "dot(t.b, c), c, 0.0"],
+        ],
         _ => panic!("{metric}: add two mistakes that a test must notice in its WGSL"),
     }
 }
@@ -136,6 +159,20 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
             // The area is a difference of products of the edges.
             Scales {
                 sizes: [q * q, 2.0 * q * q * per_length, bend],
+                conditions: [1.0 + a * b / doubled; 3],
+            }
+        }
+        Metric::Acute => {
+            // A cotangent changes by 1 / sin² of its angle, which is at most the product of two edges squared over the
+            // squared area. The penalties are at most 300 (x + 0.2)², and the second derivative at most 600.
+            let most = (a.max(b).max(c).powi(2) / doubled).max(1.0);
+            let per_length = (a + b + c) * most / doubled;
+            Scales {
+                sizes: [
+                    300.0 * (most + 0.2) * (most + 0.2),
+                    600.0 * (most + 0.2) * per_length,
+                    600.0 * (most + 1.0) * per_length * per_length,
+                ],
                 conditions: [1.0 + a * b / doubled; 3],
             }
         }

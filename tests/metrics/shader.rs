@@ -33,9 +33,10 @@ struct Found {
 
 fn wgsl(metric: Metric, derivatives: Derivatives) -> String {
     let name = metric.name().replace('-', "_");
-    let excess = match metric.is_smooth() {
-        true => format!("{name}_value(invariants(t))"),
-        false => format!("{name}_excess(t)"),
+    let of_corner = format!("{name}_excess");
+    let excess = match metric.properties().wgsl.contains(&of_corner) {
+        true => format!("{of_corner}(t)"),
+        false => format!("{name}_value(invariants(t))"),
     };
     let body = format!(
         "    sharpness = {SHARPNESS}u;

@@ -5,6 +5,7 @@ mod distinct;
 mod floored;
 mod histogram;
 mod improved;
+mod large_angles;
 mod run;
 mod spacing;
 mod summary;
@@ -17,6 +18,7 @@ pub(crate) use distinct::DistinctMeasures;
 pub(crate) use floored::FlooredReport;
 pub(crate) use histogram::{Histogram, histogram};
 pub(crate) use improved::ImprovedReport;
+pub(crate) use large_angles::LargeAnglesReport;
 pub(crate) use run::{
     ChangeReport, EngineReport, FaultReport, GoalReport, MeshReport, QualityReport, Refusal,
     Report, Seconds, SlideReport, UntangleReport, history,

@@ -11,7 +11,9 @@ use gpu_smooth::{
 use serde::Serialize;
 
 use crate::load::explain::BadTriangleReport;
-use crate::report::{Certificate, FlooredReport, ImprovedReport, SpacingReport, TargetReport};
+use crate::report::{
+    Certificate, FlooredReport, ImprovedReport, LargeAnglesReport, SpacingReport, TargetReport,
+};
 
 /// The report of a run. Times are in seconds, angles in degrees.
 #[derive(Serialize)]
@@ -88,6 +90,9 @@ pub(crate) struct Report {
     /// Work of the floor under the worst triangles; `None` if the sweeps made no shape worse.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) floored: Option<FlooredReport>,
+    /// Work on large angles after a run by ACUTE; `None` if the sweeps left none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) large_angles: Option<LargeAnglesReport>,
     /// Result of improving the worst triangles; `None` without `--improve-worst`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) improved: Option<ImprovedReport>,

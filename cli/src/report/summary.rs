@@ -64,6 +64,7 @@ impl Report {
         sentences.extend(spacing_sentences(&self.spacing));
         sentences.extend(self.slides());
         sentences.extend(self.floored.as_ref().map(|floored| floored.sentence()));
+        sentences.extend(self.large_angles.as_ref().map(|angles| angles.sentence()));
         sentences.extend(self.improved.as_ref().map(|improved| improved.sentence()));
         sentences
     }

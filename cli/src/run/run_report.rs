@@ -85,6 +85,7 @@ pub(super) fn report(
             SlideReport { ends, has_weirs, ..slid.into() }
         }),
         floored: outcome.floored.map(Into::into),
+        large_angles: outcome.large_angles.map(Into::into),
         improved: outcome.improved.map(Into::into),
         change: measured.change.into(),
         spacing: measured.spacing,

@@ -71,7 +71,7 @@ pub const OPTIONS: &[OptionRow] = &[
         "Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep",
     )
     .takes("T")
-    .default("1e-6")
+    .usually("1e-6, 1e-4 by acute")
     .excludes(&["fraction", "desired"]),
     row(
         "fraction",

@@ -72,14 +72,14 @@ impl Arguments for Metric {
     }
 }
 
-/// A smooth metric: every metric but EDGE.
+/// A metric of the invariants of a triangle: every metric but EDGE and ACUTE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct SmoothMetric(pub(crate) Metric);
+pub struct InvariantMetric(pub(crate) Metric);
 
-impl Arguments for SmoothMetric {
+impl Arguments for InvariantMetric {
     fn list(plan: Option<&Plan>) -> Vec<Self> {
         let metrics = <Metric as Arguments>::list(plan).into_iter();
-        metrics.filter(|metric| metric.is_smooth()).map(Self).collect()
+        metrics.filter(|metric| metric.is_of_invariants()).map(Self).collect()
     }
 }
 
@@ -128,8 +128,8 @@ impl From<Metric> for Composition {
     }
 }
 
-impl From<SmoothMetric> for Composition {
-    fn from(metric: SmoothMetric) -> Self {
+impl From<InvariantMetric> for Composition {
+    fn from(metric: InvariantMetric) -> Self {
         metric.0.into()
     }
 }

@@ -193,12 +193,13 @@ fn active_metric(composition: &Composition) -> String {
     let properties = metric.properties();
     let name = wgsl_name(metric);
     let mut text = INVARIANTS.to_owned() + properties.wgsl;
-    let (model, derivatives_of) = match metric.is_smooth() {
-        true => (
+    let (model, derivatives_of) = match (metric.is_of_invariants(), metric.is_smooth()) {
+        (true, _) => (
             format!("{name}_value(invariants(t))"),
             format!("expansion(t, {name}_slopes(invariants(t)))"),
         ),
-        false => {
+        (false, true) => (format!("{name}_excess(t)"), format!("{name}_derivatives(t)")),
+        (false, false) => {
             text.push_str(PENALTY_SOURCE);
             ("smoothed_model(t)".to_owned(), "smoothed_derivatives(t)".to_owned())
         }
@@ -275,7 +276,10 @@ fn tracked_metrics(metrics: &[Metric]) -> String {
     text.extend(metrics.iter().map(|m| m.properties().wgsl));
     let call = |&metric: &Metric| {
         let name = wgsl_name(metric);
-        if metric.is_smooth() { format!("{name}_value(i)") } else { format!("{name}_excess(t)") }
+        match metric.is_of_invariants() {
+            true => format!("{name}_value(i)"),
+            false => format!("{name}_excess(t)"),
+        }
     };
     let mut calls: Vec<String> = metrics.iter().map(call).collect();
     calls.push("select(1.0, 0.0, is_positive(doubled_area(t)))".to_owned());

@@ -5,7 +5,7 @@
 
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::layouts::BindLayout;
-use crate::gpu::kernels::row::{Arguments, Composition, Row, SmoothMetric, Source, User};
+use crate::gpu::kernels::row::{Arguments, Composition, InvariantMetric, Row, Source, User};
 use crate::gpu::kernels::uniforms::{FINISH_WORKGROUP, SLOTS, WORKGROUP};
 use crate::layout::MapKind;
 use crate::metric::Metric;
@@ -545,7 +545,7 @@ kernels! {
     }
 
     /// The Hessian at the free vertices, or the positive semidefinite part of it.
-    FindHessian(metric: SmoothMetric) {
+    FindHessian(metric: InvariantMetric) {
         entry_point: "find_hessian",
         layout: Hessian,
         width: WORKGROUP,
@@ -559,7 +559,7 @@ kernels! {
     }
 
     /// The Hessian at the sliding vertices, or the positive semidefinite part of it.
-    FindSlideHessian(metric: SmoothMetric) {
+    FindSlideHessian(metric: InvariantMetric) {
         entry_point: "find_slide_hessian",
         layout: SlideHessian,
         width: WORKGROUP,

@@ -9,7 +9,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, filled_with_pauses, zeroed};
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::kernels::form::MeshForm;
-use crate::gpu::kernels::row::SmoothMetric;
+use crate::gpu::kernels::row::InvariantMetric;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     CoarseOp, FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepLine, StepOp, StepState,
@@ -93,7 +93,7 @@ impl<'g> List<'g> {
         let lists = size_of_val(&list.nest.structure[..]) as u64;
         let rows = u64::from(list.nest.rows).max(list.entries()) * ROW;
         check(gpu, list.fine_bytes().max(rows).max(lists))?;
-        list.list_set_up(SmoothMetric(dispatches.plan.scheme.base())).await?;
+        list.list_set_up(InvariantMetric(dispatches.plan.scheme.base())).await?;
         list.list_iteration().await?;
         list.list_trials(problem, dispatches).await?;
         Ok(list)
@@ -173,7 +173,7 @@ impl<'g> List<'g> {
 
     /// Lists the positive part of the Hessian and the levels, which follow from it. The Hessian itself then overwrites its positive
     /// part.
-    async fn list_set_up(&mut self, metric: SmoothMetric) -> Result<(), GpuError> {
+    async fn list_set_up(&mut self, metric: InvariantMetric) -> Result<(), GpuError> {
         let StepOp { vertices, .. } = self.step;
         let aggregates = self.nest.op(0).rows;
         let place = Op::Step(StepOp { rows: aggregates, ..self.step });

@@ -6,17 +6,9 @@ use crate::layout::Problem;
 use crate::parallel::paced;
 use crate::worst::penalties::Penalties;
 use crate::worst::region::{MoveConstraints, Region};
-use crate::worst::regions::around;
 
-/// Number of rings of vertices around the triangles beyond the limits that move too.
-const RINGS: u32 = 2;
 /// Number of visits of each vertex in a round.
 pub(crate) const VISITS: u32 = 5;
-
-/// Returns the regions of free vertices that a round moves: those around `seeds`, which are vertices of the problem.
-pub(crate) fn regions(problem: &Problem, seeds: impl IntoIterator<Item = u32>) -> Vec<Vec<u32>> {
-    around(problem, seeds, RINGS)
-}
 
 /// Does a round: visits the free vertices of each region [`VISITS`] times. Returns the vertices of the problem that have
 /// moved, with their normalized positions.

@@ -1,0 +1,84 @@
+//! The end of a run by ACUTE: a few rounds of Newton steps around the triangles that are still nearly right or obtuse.
+
+use glam::DVec2;
+
+use crate::error::MeshError;
+use crate::layout::Problem;
+use crate::metric::Metric;
+use crate::options::Options;
+use crate::outcome::LargeAngles;
+use crate::slide::OnCurves;
+use crate::targets::Surface;
+use crate::whole::altitude;
+use crate::worst::{Penalties, WorstShapes};
+
+use super::prepared::Smoother;
+use super::rounds::{Aim, Movable, Present};
+
+/// Weight of the penalties in the first round. Each round triples the weight.
+const FIRST_WEIGHT: f64 = 1000.0;
+/// Cotangent of 36 degrees, the largest angle below which angles have a penalty.
+const LARGEST_SMALL: f64 = 1.376_381_920_471_173_5;
+
+/// The rounds at the end of a run by ACUTE.
+struct ToAcute {
+    /// Cotangent of the angle below which angles have a penalty: the least angle after the sweeps, but at most 36 degrees.
+    small: f64,
+}
+
+impl Aim for ToAcute {
+    const ROUNDS: u32 = 5;
+    const RINGS: u32 = 3;
+
+    fn penalties(&self, round: u32) -> Penalties {
+        Penalties::on_large_angles(self.small, FIRST_WEIGHT * 3f64.powi(round as i32))
+    }
+
+    fn is_beyond(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
+        WorstShapes::least_cotangent(surface, points, triangle) < LargeAngles::COTANGENT
+    }
+
+    fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
+        self.is_beyond(surface, points, triangle)
+    }
+}
+
+impl Smoother<'_> {
+    /// Lessens the large angles that a run by ACUTE has left at `points`, its result as stored, which are those of
+    /// `positions`. Returns the record of the rounds. `None` if the run has another base metric or targets, or if no
+    /// triangle that can move has a large angle.
+    pub(super) async fn lessen_large_angles(
+        &self,
+        options: &Options,
+        problem: &Problem,
+        curves: Option<&mut OnCurves>,
+        positions: &[DVec2],
+        points: &mut [[f64; 2]],
+        goes_on: impl FnMut() -> bool,
+    ) -> Result<Option<LargeAngles>, MeshError> {
+        let is_acute = options.scheme.base() == Metric::Acute;
+        if !is_acute || self.problem.targets().is_some() || self.field.is_some() {
+            return Ok(None);
+        }
+        let movable = Movable::new(self);
+        let worst = movable.worst_shapes([points, points]).await[0];
+        let aim = ToAcute { small: worst.cotangent.max(LARGEST_SMALL) };
+        let count = async |points: &[[f64; 2]]| {
+            movable.chosen(|t| aim.is_beyond(movable.surface, points, t)).await.len()
+        };
+        let before = count(points).await;
+        if before == 0 {
+            return Ok(None);
+        }
+        let swept = points.to_vec();
+        let present = Present { problem, curves, positions, points };
+        movable.descend(&aim, options, present, goes_on).await;
+        while self.certified(points, Some(options.stored)).await? > 0
+            || options.keep_altitude
+                && altitude::restore(&self.topology, &self.mesh.points, points, f64::INFINITY) > 0
+        {
+        }
+        let moved = points.iter().zip(&swept).filter(|(to, from)| to != from).count();
+        Ok(Some(LargeAngles { moved, triangles: [before, count(points).await], f: [0.0; 2] }))
+    }
+}

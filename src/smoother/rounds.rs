@@ -1,0 +1,150 @@
+//! Rounds of Newton steps around triangles beyond limits, on a mesh with its points as they are stored.
+
+use std::borrow::Cow;
+use std::collections::HashSet;
+
+use glam::DVec2;
+
+use crate::layout::Problem;
+use crate::options::{Options, WorstBy};
+use crate::parallel::paced;
+use crate::run::Plan;
+use crate::slide::{OnCurves, Sliding};
+use crate::targets::Surface;
+use crate::whole::altitude;
+use crate::worst::{Badness, MoveConstraints, Penalties, around, rounds};
+
+use super::prepared::Smoother;
+
+/// Number of triangles that one task measures.
+const CHUNK: usize = 1 << 12;
+/// Largest number of visits in all rounds: a constant, and a multiple of the number of free vertices. On a regular mesh,
+/// every triangle may be as bad as the worst. The limits keep the time of the rounds below that of the run.
+const MAX_VISITS: [usize; 2] = [20_000, 4];
+
+/// The limits of some rounds, and the penalties on triangles beyond them.
+pub(super) trait Aim: Sync {
+    /// Largest number of rounds.
+    const ROUNDS: u32;
+    /// Number of rings of vertices around the triangles beyond the limits that move too.
+    const RINGS: u32;
+
+    /// Returns the penalties of a round, counted from 0.
+    fn penalties(&self, round: u32) -> Penalties;
+
+    /// Returns whether vertices around a triangle take steps in the rounds.
+    fn is_beyond(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool;
+
+    /// Returns whether a triangle that is beyond the limits demands another round.
+    fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool;
+}
+
+/// A mesh on which rounds move the free vertices, and the vertices that slide.
+pub(super) struct Movable<'s> {
+    pub(super) smoother: &'s Smoother<'s>,
+    pub(super) surface: Surface,
+    /// Whether each vertex of the mesh may move: is free or slides.
+    may_move: Cow<'s, [bool]>,
+}
+
+/// The state of a run that rounds change: normalized positions of the vertices of a problem, and the same positions as
+/// points that are stored.
+pub(super) struct Present<'r> {
+    pub(super) problem: &'r Problem,
+    pub(super) curves: Option<&'r mut OnCurves>,
+    pub(super) positions: &'r [DVec2],
+    pub(super) points: &'r mut [[f64; 2]],
+}
+
+impl<'s> Movable<'s> {
+    pub(super) fn new(smoother: &'s Smoother<'_>) -> Self {
+        let is_on_sphere = smoother.problem.is_projected();
+        let surface = if is_on_sphere { Surface::Sphere } else { Surface::Plane };
+        let mut may_move = Cow::Borrowed(smoother.topology.free());
+        for v in smoother.sliding.as_deref().map(Sliding::vertices).unwrap_or_default() {
+            may_move.to_mut()[smoother.problem.vertices()[v as usize] as usize] = true;
+        }
+        Self { smoother, surface, may_move }
+    }
+
+    pub(super) fn can_move(&self, triangle: &[u32; 3]) -> bool {
+        triangle.iter().any(|&v| self.may_move[v as usize])
+    }
+
+    /// Returns the indices of the triangles that can move and satisfy `is_chosen`, ascending.
+    pub(super) async fn chosen(&self, is_chosen: impl Fn(&[u32; 3]) -> bool + Sync) -> Vec<u32> {
+        let triangles = self.smoother.topology.triangles();
+        let of = |t: &u32| {
+            let triangle = &triangles[*t as usize];
+            self.can_move(triangle) && is_chosen(triangle)
+        };
+        let chosen = paced::map_ranges(triangles.len(), CHUNK, |range| -> Vec<u32> {
+            (range.start as u32..range.end as u32).filter(of).collect()
+        });
+        chosen.await.concat()
+    }
+
+    /// Does rounds of Newton steps by the penalties of `aim`. In each round, the free vertices around the triangles beyond
+    /// the limits, and the vertices near them that slide, take steps. The rounds end if no triangle demands more, if
+    /// `goes_on` returns false, or at the largest number of rounds or visits.
+    pub(super) async fn descend<A: Aim>(
+        &self,
+        aim: &A,
+        options: &Options,
+        present: Present<'_>,
+        mut goes_on: impl FnMut() -> bool,
+    ) {
+        let Present { problem, mut curves, positions, points } = present;
+        let rules = MoveConstraints {
+            badness: Badness(WorstBy::Imr),
+            step: Plan::new(options).base_step(1.0),
+            shape: f64::INFINITY,
+            floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
+            bounds: problem.radii(),
+        };
+        let topology = &self.smoother.topology;
+        let corners = |t: u32| topology.triangles()[t as usize];
+        let number = problem.numbers(points.len());
+        let mut positions = paced::copied(positions).await;
+        let mut beyond = self.chosen(|t| aim.is_beyond(self.surface, points, t)).await;
+        let [least, share] = MAX_VISITS;
+        let mut visits = least.max(share * problem.free_count());
+        for round in 0..A::ROUNDS {
+            let seeds = || beyond.iter().flat_map(|&t| corners(t)).map(|v| number[v as usize]);
+            let regions = around(problem, seeds(), A::RINGS);
+            let in_round = regions.iter().map(Vec::len).sum::<usize>() * rounds::VISITS as usize;
+            if in_round > visits || !goes_on() {
+                return;
+            }
+            visits -= in_round;
+            let penalties = aim.penalties(round);
+            let mut near = HashSet::new();
+            if curves.is_some() {
+                near.extend(seeds());
+                near.extend(regions.iter().flatten().flat_map(|&v| problem.ring_of(v)));
+            }
+            let moves = rounds::round(problem, &rules, penalties, &positions, regions).await;
+            for (v, to) in moves {
+                positions[v as usize] = to;
+                let at = problem.vertices()[v as usize];
+                points[at as usize] = problem.point(to).map(|x| options.stored.rounded(x));
+                beyond.extend_from_slice(topology.star(at));
+            }
+            let slid = curves.as_mut().map(|curves| {
+                curves.visit_by(&penalties, problem, &mut positions, |v| near.contains(&v))
+            });
+            for (at, point) in slid.into_iter().flatten() {
+                points[at as usize] = point.map(|x| options.stored.rounded(x));
+                beyond.extend_from_slice(topology.star(at));
+            }
+            beyond.sort_unstable();
+            beyond.dedup();
+            beyond.retain(|&t| {
+                self.can_move(&corners(t)) && aim.is_beyond(self.surface, points, &corners(t))
+            });
+            if !beyond.iter().any(|&t| aim.demands_more(self.surface, points, &corners(t))) {
+                return;
+            }
+        }
+    }
+}
