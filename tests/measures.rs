@@ -73,6 +73,9 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
         Measure::Shape => 1.0 / condition,
         Measure::Skewness => ((most - third) / (2.0 * third)).max((third - least) / third),
         Measure::SizeRatio => 1.0,
+        // The mesh consists of one triangle, without neighbors.
+        Measure::Orthogonality => 0.0,
+        Measure::FlowLink => 2.0 / 3f64.powf(0.75),
         // The mesh consists of one triangle, so the triangle's area is the mean area.
         Measure::Metric(metric) => oracles::quality(metric, [a, b, c], area, Ideal::of_area(area)),
     }

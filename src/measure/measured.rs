@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::error::MeshError;
+use crate::measure::edges::{WorstEdges, worst_edges};
 use crate::measure::sizes::{doubled_areas, size_ratios};
 use crate::measure::table::Measure;
 use crate::measure::triangle::Triangle;
@@ -35,6 +36,7 @@ pub struct Measured<'a> {
     surface: Surface,
     mean_area: f64,
     size_ratios: OnceLock<Vec<f64>>,
+    worst_edges: OnceLock<Vec<WorstEdges>>,
 }
 
 impl<'a> Measured<'a> {
@@ -61,7 +63,8 @@ impl<'a> Measured<'a> {
         let areas = doubled_areas(surface, points, topology);
         let sums = map_ranges(areas.len(), CHUNK, |range| areas[range].iter().sum::<f64>());
         let mean_area = sums.iter().sum::<f64>() / 2.0 / areas.len() as f64;
-        Ok(Self { points, topology, surface, mean_area, size_ratios: OnceLock::new() })
+        let (size_ratios, worst_edges) = (OnceLock::new(), OnceLock::new());
+        Ok(Self { points, topology, surface, mean_area, size_ratios, worst_edges })
     }
 
     /// Returns the positions of the vertices.
@@ -79,13 +82,22 @@ impl<'a> Measured<'a> {
         self.topology.triangles().len()
     }
 
-    /// Computes the size ratios of all triangles if `measures` need them, before any triangle is measured. Lazy
-    /// computation inside a parallel loop could deadlock: the scheduler could give a thread that waits for the ratios a
-    /// task that also waits.
+    /// Returns the surface on which the vertices have their coordinates.
+    pub(crate) fn surface(&self) -> Surface {
+        self.surface
+    }
+
+    /// Computes the size ratios and the worst edges of all triangles if `measures` need them, before any triangle is
+    /// measured. Lazy computation inside a parallel loop could deadlock: the scheduler could give a thread that waits for
+    /// the ratios a task that also waits.
     pub(crate) fn prepare(&self, measures: &[Measure]) {
         if measures.contains(&Measure::SizeRatio) && self.size_ratios.get().is_none() {
             // If another caller has set the ratios first, they have equal values.
             let _ = self.size_ratios.set(size_ratios(self.surface, self.points, self.topology));
+        }
+        let needs_edges = measures.iter().any(|measure| measure.is_of_edges());
+        if needs_edges && self.worst_edges.get().is_none() {
+            let _ = self.worst_edges.set(worst_edges(self.surface, self.points, self.topology));
         }
     }
 
@@ -94,9 +106,12 @@ impl<'a> Measured<'a> {
     pub(crate) fn triangle(&self, index: usize) -> Triangle {
         let corners = &self.topology.triangles()[index];
         let size_ratio = self.size_ratios.get().map_or(f64::NAN, |ratios| ratios[index]);
+        let worst_edges = self.worst_edges.get().map(|edges| edges[index]);
         let lengths = self.surface.lengths_in(self.points, corners);
         let points = corners.map(|v| self.points[v as usize]);
-        Triangle::new(points, lengths, self.mean_area, size_ratio)
+        let mut triangle = Triangle::new(points, lengths, self.mean_area, size_ratio);
+        triangle.worst_edges = worst_edges;
+        triangle
     }
 
     /// Returns the value of a measure for the triangle `index`, NaN if the mesh has no triangle of this index.

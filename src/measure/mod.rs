@@ -1,9 +1,12 @@
-//! Quality measures of triangles: a table with a row per measure, values for a mesh, and statistics over its triangles.
+//! Quality measures of triangles and edges: a table with a row per measure, values for a mesh, and statistics over its triangles.
 
 mod altitude;
 mod change;
+mod edges;
+mod large_angles;
 mod measured;
 mod moments;
+mod neighbors;
 mod ranks;
 mod search;
 mod sizes;
@@ -15,6 +18,8 @@ mod vertices;
 pub(crate) use altitude::altitude;
 pub(crate) use change::mean_edges;
 pub use change::{Change, Distribution};
+pub use edges::InnerEdge;
+pub use large_angles::WhyLarge;
 pub use measured::Measured;
 pub use statistics::{QUANTILES, Statistics};
 pub use table::{Better, Definition, Measure, UnknownMeasure};

@@ -1,5 +1,6 @@
 //! The measure `size-ratio`, which depends on the neighbors of a triangle.
 
+use crate::measure::neighbors::for_each_across;
 use crate::parallel::collect;
 use crate::targets::Surface;
 use crate::topology::Topology;
@@ -42,33 +43,4 @@ pub(crate) fn size_ratios(
         }
         most
     })
-}
-
-/// Calls `visit` with the triangle across the edge from `start` to `end` of triangle `t`; not at all on the boundary.
-///
-/// Searches the star of the vertex that has fewer triangles. For all edges of a mesh this takes linear time, however
-/// many triangles some vertices have.
-#[inline]
-fn for_each_across(
-    topology: &Topology<'_>,
-    t: usize,
-    [start, end]: [u32; 2],
-    mut visit: impl FnMut(usize),
-) {
-    let (at_start, at_end) = (topology.star(start), topology.star(end));
-    let from_start = at_start.len() <= at_end.len();
-    let (vertex, star) = if from_start { (start, at_start) } else { (end, at_end) };
-    if topology.free()[vertex as usize] {
-        // The star is counter-clockwise around the vertex: across an edge that starts at the vertex is the previous
-        // triangle, across an edge that ends there the next one.
-        if let Some(at) = star.iter().position(|&other| other as usize == t) {
-            let step = if from_start { star.len() - 1 } else { 1 };
-            visit(star[(at + step) % star.len()] as usize);
-        }
-        return;
-    }
-    let far = if from_start { end } else { start };
-    let triangles = topology.triangles();
-    let across = |&other: &usize| other != t && triangles[other].contains(&far);
-    star.iter().map(|&other| other as usize).filter(across).for_each(visit);
 }

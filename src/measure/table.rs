@@ -1,6 +1,7 @@
 //! The table of quality measures, one row per measure. The command line, the documentation and the tests loop over
 //! [`Measure::ALL`].
 
+use crate::measure::edges::EQUILATERAL;
 use crate::measure::triangle::Triangle;
 use crate::metric::Metric;
 
@@ -31,6 +32,9 @@ pub struct Definition {
     /// Publication that defines the measure.
     pub source: &'static str,
 }
+
+const MESHKERNEL: &str =
+    "MeshKernel 8, Deltares; a circumcenter outside of its triangle moves to the edge toward it";
 
 const VERDICT: &str = "Stimpson, Ernst, Knupp, Pébay & Thompson, The Verdict Geometric Quality Library, SAND2007-1751 (2007)";
 
@@ -177,6 +181,28 @@ measures! {
         better: Better::Lower,
         source: "ANSYS Fluent User's Guide, Mesh Quality: cell size change, as the larger over the smaller area",
     };
+    /// The worst orthogonality of an edge of the triangle; see [`InnerEdge`](crate::measure::InnerEdge). 0 for a triangle
+    /// without neighbors.
+    Orthogonality = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.orthogonality), Definition {
+        name: "orthogonality",
+        formula: "max over the neighbors of |cos| between the shared edge and the segment between both circumcenters",
+        unit: "",
+        range: [0.0, 1.0],
+        ideal: 0.0,
+        better: Better::Lower,
+        source: MESHKERNEL,
+    };
+    /// The shortest flow link of the triangle; see [`InnerEdge`](crate::measure::InnerEdge). 0.877 for a triangle without
+    /// neighbors.
+    FlowLink = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.flow_link), Definition {
+        name: "flow-link",
+        formula: "min over the neighbors N of the distance of both circumcenters / ((√S + √S_N) / 2)",
+        unit: "",
+        range: [0.0, f64::INFINITY],
+        ideal: EQUILATERAL,
+        better: Better::Higher,
+        source: MESHKERNEL,
+    };
 }
 
 const fn of_metric(metric: Metric) -> Definition {
@@ -215,6 +241,13 @@ impl Measure {
             Measure::Metric(Metric::Imr | Metric::Ar) => Some(Measure::Condition),
             _ => None,
         }
+    }
+
+    /// Returns whether the measure of a triangle is the worst value of its edges, which [`Measured::edges`] has.
+    ///
+    /// [`Measured::edges`]: crate::measure::Measured::edges
+    pub const fn is_of_edges(self) -> bool {
+        matches!(self, Measure::Orthogonality | Measure::FlowLink)
     }
 
     /// Returns the name on the command line.
@@ -280,7 +313,10 @@ mod tests {
             assert!(least < most);
             // A metric that sees sizes is ideal at the mean size, and may be below its ideal for a smaller triangle.
             let may_be_below = |metric: &Metric| !metric.properties().scale_invariant;
-            if matches!(measure, Measure::Metric(metric) if may_be_below(metric)) {
+            // Links between long triangles may be longer than between equilateral ones.
+            let may_pass = matches!(measure, Measure::Metric(metric) if may_be_below(metric))
+                || *measure == Measure::FlowLink;
+            if may_pass {
                 assert!((least..most).contains(&ideal), "{measure}");
             } else {
                 assert_eq!(ideal, if better == Better::Higher { most } else { least }, "{measure}");

@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use crate::measure::edges::WorstEdges;
 use crate::metric::{Corner, Ideal, Metric};
 use crate::topology::predicates::orientation;
 
@@ -23,6 +24,8 @@ pub(crate) struct Triangle {
     angles: OnceCell<[f64; 2]>,
     /// Value of the measure `size-ratio`, which depends on neighbors.
     pub(crate) size_ratio: f64,
+    /// The worst values of the triangle's edges; `None` if no measure needs them.
+    pub(crate) worst_edges: Option<WorstEdges>,
 }
 
 /// Returns the largest power of two that is at most `x`, but no less than the smallest normal number, whose inverse is
@@ -69,6 +72,7 @@ impl Triangle {
             per_unit: 1.0,
             angles: OnceCell::new(),
             size_ratio,
+            worst_edges: None,
         }
     }
 
@@ -112,6 +116,7 @@ impl Triangle {
             per_unit: per_unit * shrink,
             angles: OnceCell::new(),
             size_ratio,
+            worst_edges: None,
         }
     }
 
