@@ -219,7 +219,7 @@ impl MeshVisitor for ContentBuilder {
         self.content.points.push(at);
     }
 
-    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { id, kind, region, nodes } = element;
         if kind == CellKind::Polygon {
             // Elements of this kind are corners of required triangles, which the file lists a second time.

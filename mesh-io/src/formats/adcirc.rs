@@ -53,7 +53,10 @@ impl FormatReader for Adcirc {
                     let problem = format!("element {id} has {corners} nodes");
                     return Err(cursor.error(problem, "Elements of three and four nodes are read"));
                 };
-                Ok(Element { id, kind, region: [0; 2], nodes: nodes(cursor, kind)? })
+                let nodes = nodes(cursor, kind)?;
+                // Some programs write four nodes in every row, and 0 as the fourth node of a triangle. Nodes count from 1.
+                let kind = if nodes[3] == 0 { CellKind::Triangle } else { kind };
+                Ok(Element { id, kind, region: [0; 2], nodes })
             },
             |cursor, visitor, _, element| visitor.element(cursor, &element),
         )?;

@@ -53,7 +53,7 @@ impl GhostNodes {
 impl MeshVisitor for GhostNodes {
     fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
 
-    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if self.ids.contains(&element.id) {
             self.nodes.extend_from_slice(&element.nodes[..element.kind.nodes()]);
         }

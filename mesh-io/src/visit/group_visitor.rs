@@ -86,7 +86,7 @@ impl MeshVisitor for GroupVisitor {
         self.ids.push(id);
     }
 
-    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { kind, region, nodes, .. } = element;
         if kind == CellKind::Triangle {
             self.triangles += 1;
@@ -177,7 +177,7 @@ impl MeshVisitor for VertexIdVisitor {
         self.ids.push(id);
     }
 
-    fn element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, _: &Cursor<'_>, _: &Element) -> Result<(), ReadError> {
         Ok(())
     }
 }

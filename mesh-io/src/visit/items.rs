@@ -71,6 +71,21 @@ pub(crate) struct Element {
     pub(crate) nodes: [u64; 4],
 }
 
+impl Element {
+    /// Returns the triangle that a quadrilateral stands for; `None` for any other element. Lists of four nodes in each
+    /// row, as programs for mixed meshes write them, repeat the third or the first node of a triangle as the fourth.
+    #[inline]
+    pub(crate) fn triangle_of_four(&self) -> Option<Element> {
+        let &Element { id, kind: CellKind::Quadrilateral, region, nodes } = self else {
+            return None;
+        };
+        let [a, b, c, d] = nodes;
+        let is_triangle = (d == c || d == a) && a != b && b != c && c != a;
+        let nodes = [a, b, c, 0];
+        is_triangle.then_some(Element { id, kind: CellKind::Triangle, region, nodes })
+    }
+}
+
 /// Maps one of the two integers of [`Element::region`] to a group.
 pub(crate) struct RegionAttribute {
     /// Kind of the groups: `physical`, `reference`, or the name of an array.

@@ -92,7 +92,7 @@ impl MeshVisitor for LocationVisitor<'_> {
         self.end_if_found(cursor)
     }
 
-    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if self.list == ItemList::Triangles && element.kind == CellKind::Triangle {
             self.pass(cursor, element.id);
             return self.end_if_found(cursor);

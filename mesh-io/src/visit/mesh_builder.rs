@@ -396,7 +396,7 @@ impl MeshVisitor for MeshBuilder {
     }
 
     #[inline]
-    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { id, kind, region, nodes } = element;
         let nodes = &nodes[..kind.nodes()];
         let mut vertices = [0; 4];

@@ -82,7 +82,7 @@ impl MeshVisitor for ValueVisitor<'_> {
 
     fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
 
-    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if element.kind == CellKind::Triangle {
             self.ids.push(element.id);
             for (column, region) in self.columns.iter_mut().zip(element.region) {

@@ -37,8 +37,18 @@ pub(crate) trait MeshVisitor {
     }
     /// Announces the approximate number of elements, for reserving memory.
     fn expect_elements(&mut self, _count: usize) {}
-    /// Visits an element. By default, elements are ignored.
-    fn element(&mut self, _cursor: &Cursor<'_>, _element: &Element) -> Result<(), ReadError> {
+    /// Visits an element of a file. A quadrilateral that repeats a corner in place of the fourth becomes a triangle (see
+    /// [`Element::triangle_of_four`]). Readers call this method, and visitors implement
+    /// [`visit_element`](Self::visit_element).
+    #[inline]
+    fn element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+        match element.triangle_of_four() {
+            None => self.visit_element(cursor, element),
+            Some(triangle) => self.visit_element(cursor, &triangle),
+        }
+    }
+    /// Visits an element after [`element`](Self::element) has found its shape. By default, elements are ignored.
+    fn visit_element(&mut self, _cursor: &Cursor<'_>, _element: &Element) -> Result<(), ReadError> {
         Ok(())
     }
     /// Visits a further region of the last element, for files that list an element once for each of its groups. By

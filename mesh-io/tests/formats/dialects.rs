@@ -113,3 +113,68 @@ fn damaged_files_of_gmsh_1_are_errors_with_a_line() {
     let swapped = format!("$Comments\n$EndComments\n{elements}{nodes}");
     assert_error(&[("a.msh", &swapped)], &["a.msh:3: $ELM stands before the nodes"]);
 }
+
+/// Squares of two triangles, of which the second is a quadrilateral that repeats a corner in place of the fourth.
+#[test]
+fn quadrilaterals_that_repeat_a_corner_as_the_fourth_are_triangles() {
+    let gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\
+                $Elements\n3\n1 2 2 1 2 1 2 3\n2 3 2 1 2 1 3 4 4\n3 3 2 3 2 1 3 4 4\n$EndElements\n";
+    let vtk = "# vtk DataFile Version 3.0\nm\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 1 1 0 0 1 0\n\
+               CELLS 2 9\n3 0 1 2\n4 0 2 3 3\nCELL_TYPES 2\n5\n9\n";
+    for (name, text, repeated) in [
+        ("a.msh", gmsh, "1 3 4 4"),
+        ("a.vtk", vtk, "0 2 3 3"),
+        ("a.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 2 3 3\n", "0 2 3 3"),
+        (
+            "a.su2",
+            "NDIME= 2\nNELEM= 2\n5 0 1 2\n9 0 2 3 3\nNPOIN= 4\n0 0\n1 0\n1 1\n0 1\n",
+            "0 2 3 3",
+        ),
+        (
+            "a.2dm",
+            "MESH2D\nE3T 1 1 2 3 1\nE4Q 2 1 3 4 4 1\nND 1 0 0 0\nND 2 1 0 0\nND 3 1 1 0\nND 4 0 1 0\n",
+            "1 3 4 4",
+        ),
+        (
+            "a.inp",
+            "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n\
+                   *ELEMENT, TYPE=CPS4\n2, 1, 3, 4, 4\n",
+            "1, 3, 4, 4",
+        ),
+    ] {
+        assert!(text.contains(repeated), "{name}");
+        let first = if repeated.contains(',') { "1, 3, 4, 1" } else { "1 3 4 1" };
+        let first = if repeated.starts_with('0') { "0 2 3 0" } else { first };
+        for text in [text.to_owned(), text.replace(repeated, first)] {
+            let file = read(name, &text);
+            assert_eq!(file.triangles(), [[0, 1, 2], [0, 2, 3]], "{text}");
+            assert_eq!(remarks(&file), <[String; 0]>::default(), "{text}");
+            let id = 2 - u64::from(first.starts_with('0'));
+            assert_eq!(file.triangle_location(1).id, id, "{name}");
+        }
+        // A quadrilateral whose second corner repeats the first stays a quadrilateral.
+        let other = match first {
+            "0 2 3 0" => "0 0 2 3",
+            "1 3 4 1" => "1 1 3 4",
+            _ => "1, 1, 3, 4",
+        };
+        let file = read(name, &text.replace(repeated, other));
+        assert_eq!(
+            (file.triangles().len(), remarks(&file)),
+            (1, vec!["1 quadrilateral".to_owned()]),
+            "{other}"
+        );
+    }
+    let folder = Folder::new(&[("a.msh", gmsh)]);
+    let groups = folder.read("a.msh").groups().unwrap();
+    let sizes: Vec<_> =
+        groups.iter().map(|group| (group.to_string(), group.triangles().len())).collect();
+    assert_eq!(
+        sizes,
+        [
+            ("physical surface 1".to_owned(), 2),
+            ("physical surface 3".to_owned(), 1),
+            ("entity surface 2".to_owned(), 2)
+        ]
+    );
+}

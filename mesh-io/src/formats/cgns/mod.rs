@@ -192,7 +192,7 @@ struct FaceIds(Vec<u64>);
 impl MeshVisitor for FaceIds {
     fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
 
-    fn element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
+    fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         if matches!(element.kind, CellKind::Triangle | CellKind::Quadrilateral) {
             self.0.push(element.id);
         }

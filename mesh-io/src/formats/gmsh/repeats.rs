@@ -30,7 +30,11 @@ impl ElementSender {
         // Most elements differ in their first nodes, and need no further comparison.
         match element.nodes[0] == self.nodes[0] && self.is_repeated(element) {
             // The element is in the group of its entity already.
-            true => visitor.further_region(element.kind, [element.region[0], 0]),
+            true => {
+                let kind =
+                    element.triangle_of_four().map_or(element.kind, |triangle| triangle.kind);
+                visitor.further_region(kind, [element.region[0], 0]);
+            }
             false => visitor.element(cursor, element)?,
         }
         (self.kind, self.nodes, self.region) = (Some(element.kind), element.nodes, element.region);

@@ -16,6 +16,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
     vec![
         fort_14(mesh),
         gr3(mesh),
+        gr3_of_four(mesh),
         sms(mesh),
         sms_in_order(mesh),
         mike(mesh),
@@ -72,6 +73,28 @@ fn gr3(mesh: &Mesh) -> Made {
     let triangles = text.rows(rows.map(|(i, t)| format!("{} 3 {}", i + 1, joined(t, 1))));
     let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (18, triangles[TRIANGLE])];
     text.made("without boundaries", "in.gr3", Format::Adcirc, mesh.clone(), probes)
+}
+
+/// Makes a grid whose rows all have four nodes. The fourth node of a triangle is 0, its third or its first node.
+fn gr3_of_four(mesh: &Mesh) -> Made {
+    let mut text = Text::new("mixed\n");
+    let cells = cells(mesh);
+    text.count(cells.len());
+    text.put(" ");
+    text.count(mesh.points.len());
+    text.put("\n");
+    let vertices = text.rows(points(mesh).map(|(i, point)| format!("{} {point} {}", i + 1, z(i))));
+    let triangles = text.rows(cells.iter().enumerate().map(|(i, cell)| {
+        let fourth = match cell.len() {
+            4 => String::new(),
+            _ => [" 0".to_owned(), format!(" {}", cell[2] + 1), format!(" {}", cell[0] + 1)][i % 3]
+                .clone(),
+        };
+        format!("{} 4 {}{fourth}", i + 1, joined(cell, 1))
+    }));
+    let probes = [(VERTEX as u64 + 1, vertices[VERTEX]), (CELL as u64 + 1, triangles[CELL])];
+    let mesh = fixing(mesh, QUADRILATERAL);
+    text.made("of four nodes", "in.gr3", Format::Adcirc, mesh, probes)
 }
 
 /// Makes a 2dm file with elements before nodes, gaps in the numbers, materials and node strings.
