@@ -176,12 +176,12 @@ const ROWS: &[Row] = &[
     ),
     row(
         &[Format::Mfem],
-        "versions 1.0 to 1.3 of conforming meshes with straight edges, items anywhere on lines",
+        "versions 1.0 to 1.3 of conforming meshes with straight edges, items anywhere on lines; vertices or `nodes` of order 1",
         [
             "points, segments, quadrilaterals",
             "attribute",
             "attributes of elements and of the boundary",
-            "no points in a finite element space, as curved and periodic meshes have them",
+            "no `nodes` of other finite element spaces than `H1_2D_P1`, as curved and periodic meshes have them; coordinates of a vertex next to each other (`Ordering: 1`)",
         ],
     ),
     row(

@@ -1,8 +1,9 @@
 //! MFEM's `.mesh`, versions 1.0 to 1.3.
 //!
 //! The format: <https://mfem.org/mesh-format-v1.0/>. MFEM reads a file word by word. Elements precede the vertices,
-//! which are counted from zero. Curved meshes store the points of a finite element space instead of vertices, and are
-//! refused.
+//! which are counted from zero. Instead of vertices, a mesh may store the points of a finite element space, its `nodes`.
+//! The points of a continuous space of order 1 are the vertices in their order. Other spaces belong to curved and periodic
+//! meshes, and are refused.
 
 use crate::disk::source::Source;
 use crate::edit::numbers::CoordinateEncoding;
@@ -96,16 +97,67 @@ fn vertices(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<()
     cursor.next_word();
     let count = cursor.vertex_count()?;
     cursor.next_word();
-    if cursor.is_at_letter() {
-        let problem = "the points are those of a finite element space (nodes), as of a curved mesh";
-        return Err(cursor.error(problem, "Save it as VTK: Mesh::PrintVTK of MFEM"));
-    }
-    let dimensions = cursor.integer("the number of coordinates")?;
+    let dimensions = match cursor.is_at_letter() {
+        true => node_space(cursor)?,
+        false => cursor.integer("the number of coordinates")?,
+    };
     let names = NodeNames { one: "a vertex", all: "vertices" };
     let z_values = counted_nodes(cursor, count, dimensions, names, visitor)?;
     visitor.end_nodes(cursor)?;
     z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
     Ok(())
+}
+
+/// Reads the finite element space of `nodes`, up to the first point. Returns the number of coordinates of each point.
+///
+/// # Errors
+/// If the points are not the vertices, or if the x of all points precede the y of all points.
+fn node_space(cursor: &mut Cursor<'_>) -> Result<u64, ReadError> {
+    for keyword in [&b"nodes"[..], b"FiniteElementSpace", b"FiniteElementCollection:"] {
+        match word(cursor) {
+            found if found == keyword => {}
+            found => {
+                let problem = format!("`{}` stands in place of coordinates", quoted(found));
+                return Err(cursor.error(problem, "Save it as VTK: Mesh::PrintVTK of MFEM"));
+            }
+        }
+    }
+    match word(cursor) {
+        b"H1_2D_P1" | b"H1Pos_2D_P1" | b"Linear" => {}
+        other => {
+            let problem = format!(
+                "the points are those of the finite element space {}, as of a curved or periodic mesh",
+                quoted(other)
+            );
+            let remedy =
+                "Straighten it in MFEM: mesh.SetCurvature(1), or save it as VTK: Mesh::PrintVTK";
+            return Err(cursor.error(problem, remedy));
+        }
+    }
+    let mut number = |keyword: &[u8]| {
+        let found = word(cursor);
+        if found != keyword {
+            let problem = format!("`{}` stands in place of {}", quoted(found), quoted(keyword));
+            return Err(cursor.error(problem, CORRECT));
+        }
+        cursor.next_word();
+        cursor.integer(quoted(keyword))
+    };
+    let dimensions = number(b"VDim:")?;
+    match number(b"Ordering:")? {
+        1 => Ok(dimensions),
+        _ => {
+            let problem = "the x of all points precede the y of all points (Ordering: 0)";
+            let remedy = "Save the nodes with Ordering::byVDIM: mesh.SetCurvature(1) in MFEM";
+            Err(cursor.error(problem, remedy))
+        }
+    }
+}
+
+/// Takes the next word; empty at the end of the file.
+fn word<'a>(cursor: &mut Cursor<'a>) -> &'a [u8] {
+    cursor.next_word();
+    cursor.token().unwrap_or_default()
 }
 
 /// Reads an element. Returns its kind, attribute and vertices.

@@ -151,7 +151,16 @@ fn damaged_meshes_of_coasts_are_refused_with_place_and_reason() {
     mfem("2\nelements\n1\n1 9 0 1 2\n", &["a.mesh:6: 9 is no geometry"]);
     mfem("2\nelements\n1\n1 4 0 1 2 3\n", &["a.mesh:6: elements of a volume make this"]);
     mfem("2\nelements\n0\nknots\n", &["a.mesh:6: a section `knots` is not read. "]);
-    mfem("2\nvertices\n3\n\nnodes\nFiniteElementSpace\n", &["a.mesh:7: the points are those of a"]);
+    let space = "2\nvertices\n3\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: ";
+    let nodes = |rest: &str, parts: &[&str]| mfem(&format!("{space}{rest}"), parts);
+    mfem("2\nvertices\n3\nknots\n", &["a.mesh:6: `knots` stands in place of coordinates"]);
+    nodes("H1_2D_P2\nVDim: 2\n", &["a.mesh:9: the points", "space H1_2D_P2", "SetCurvature(1)"]);
+    nodes("L2_T1_2D_P1\n", &["a.mesh:9: the points are those of the finite element space L2_T1_"]);
+    nodes("Linear\nOrdering: 1\n", &["a.mesh:10: `Ordering:` stands in place of VDim:. "]);
+    nodes("Linear\nVDim: 4\nOrdering: 1\n", &["a.mesh:11: the vertices have 4 coordinates"]);
+    nodes("Linear\nVDim: 2\nOrdering: 0\n", &["a.mesh:11: the x of all points", "byVDIM"]);
+    nodes("Linear\nVDim: 2\nOrdering: 1\n0 0\n", &["a.mesh:12: the file ends after 1 of 3 v"]);
+    nodes("", &["a.mesh:9: the points are those of the finite element space ,"]);
     mfem("2\nelements\n0\n", &["a.mesh: it has no vertices. Save the mesh again"]);
     let jigsaw = |text: &str, parts: &[&str]| assert_refused("a.msh", text, parts);
     jigsaw(

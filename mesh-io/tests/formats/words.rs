@@ -156,6 +156,11 @@ fn a_mesh_of_mfem_is_read_word_by_word_wherever_lines_end() {
     {
         assert_same("a.mesh", MFEM, &format!("{head}\n{}", body.replace(from, to)));
     }
+    // The points of a space of order 1 are the vertices.
+    let space = "vertices\n4\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: H1_2D_P1\nVDim: 2\nOrdering: 1\n\n";
+    let nodes = MFEM.replace("vertices\n4\n2\n", space);
+    assert_same("a.mesh", MFEM, &nodes);
+    assert_same("a.mesh", MFEM, &nodes.replace("H1_2D_P1", "Linear").replace("\n", "  \n"));
     let broken = MFEM.replace("5 2 0 2 3\n", "5 2 0 2\n");
     assert_refused("a.mesh", &broken, &["a.mesh:7: a vertex of a triangle is `boundary`"]);
 }

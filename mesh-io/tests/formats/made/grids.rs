@@ -25,6 +25,7 @@ pub(super) fn all(mesh: &Mesh) -> Vec<Made> {
         fvcom_of_fortran(mesh),
         mfem(mesh),
         mfem_of_words(mesh),
+        mfem_of_nodes(mesh),
         jigsaw(mesh),
         jigsaw_in_space(mesh),
         freefem(mesh),
@@ -239,6 +240,22 @@ fn mfem_of_words(mesh: &Mesh) -> Made {
     let probes = [(u64::from(PROBED.0), vertices[VERTEX]), (17, triangles[TRIANGLE])];
     let regions = regions(mesh);
     Made { regions, ..text.made("of words", "in.mesh", Format::Mfem, mesh.clone(), probes) }
+}
+
+/// Makes an MFEM mesh whose points are those of a finite element space of order 1.
+fn mfem_of_nodes(mesh: &Mesh) -> Made {
+    let mut text = Text::new("MFEM mesh v1.0\n\ndimension\n2\n\nelements\n");
+    text.count(mesh.triangles.len());
+    text.put("\n");
+    let rows = mesh.triangles.iter().enumerate();
+    let triangles = text.rows(rows.map(|(t, c)| format!("{} 2 {}", region(t), joined(c, 0))));
+    text.put("\nboundary\n0\n\nvertices\n");
+    text.count(mesh.points.len());
+    text.put("\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: H1_2D_P1\nVDim: 3\nOrdering: 1\n\n");
+    let vertices = text.rows(points(mesh).map(|(i, at)| format!("{at} {}", z(i))));
+    let probes = [(u64::from(PROBED.0), vertices[VERTEX]), (17, triangles[TRIANGLE])];
+    let regions = regions(mesh);
+    Made { regions, ..text.made("of nodes", "in.mesh", Format::Mfem, mesh.clone(), probes) }
 }
 
 /// Makes a JIGSAW mesh with an edge, a quadrilateral, tags and values of points, and with element lists before the
