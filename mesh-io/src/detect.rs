@@ -11,7 +11,7 @@ use crate::formats::triangle::names::Names;
 use crate::registry::{ADCIRC, FREEFEM, FormatEntry, MIKE, NASTRAN, REGISTRY, STL, TRIANGLE, XDMF};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
-use crate::text::token::integer;
+use crate::text::token::{float, integer};
 use crate::visit::reader::ReaderFunctions;
 use std::path::{Path, PathBuf};
 
@@ -28,8 +28,10 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     if let Some((problem, remedy)) = other_content(&source.bytes) {
         return Err(source.error(problem, remedy));
     }
-    // The title of an ADCIRC grid may start like any other format.
-    if ADCIRC.matches_extension(&source.path) {
+    // The title of an ADCIRC grid may start like any other format. Other programs, such as SHYFEM and Surfer, name other
+    // files `.grd` too.
+    let is_of_many = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("grd"));
+    if ADCIRC.matches_extension(&source.path) && (!is_of_many || has_adcirc_counts(source)) {
         return reader_of(source, &ADCIRC);
     }
     let promised = |family: &&&FormatEntry| family.matches_extension(&source.path);
@@ -54,7 +56,8 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
     // must start with the magic bytes, so its extension alone does not count.
     let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
     let by_ending = |family: &&&FormatEntry| {
-        let is_told_otherwise = is_text && std::ptr::eq(**family, &STL);
+        let is_told_otherwise =
+            (is_text && std::ptr::eq(**family, &STL)) || std::ptr::eq(**family, &ADCIRC);
         promised(family) && family.extensions != FREEFEM.extensions && !is_told_otherwise
     };
     match REGISTRY.iter().filter(|family| family.reader.is_some()).find(by_ending) {
@@ -142,10 +145,17 @@ fn freefem_or_adcirc(source: &Source) -> Option<&'static FormatEntry> {
     if integers(&first).is_some_and(|counts| counts.len() == 3) && second.len() == 3 {
         return Some(&FREEFEM);
     }
-    let [_, second, third] = first_rows(source, Syntax::FORTRAN);
-    let counts = second.get(..2).and_then(integers);
-    let is_adcirc = counts.is_some() && third.len() >= 4 && integer(third[0]).is_some();
+    let [_, _, third] = first_rows(source, Syntax::FORTRAN);
+    let is_adcirc = has_adcirc_counts(source) && third.len() >= 4 && integer(third[0]).is_some();
     is_adcirc.then_some(&ADCIRC)
+}
+
+/// Returns whether the second row of a file starts with two whole numbers, which no third number follows, as the counts of
+/// an ADCIRC grid. Rows of SHYFEM's `.grd`, of TELEMAC's `.cli` and of other lists have more numbers.
+fn has_adcirc_counts(source: &Source) -> bool {
+    let [_, second, _] = first_rows(source, Syntax::FORTRAN);
+    let counts = second.get(..2).and_then(integers);
+    counts.is_some() && second.get(2).is_none_or(|word| float(word).is_none())
 }
 
 /// Returns the integers of a row; `None` if a word of the row is no integer.
@@ -373,10 +383,41 @@ mod tests {
             assert_eq!(problem("mesh.dat", bytes), name);
         }
         assert_eq!(problem("mesh.dat", b"hello\n"), "the format is not recognized");
+        assert_eq!(
+            problem("a.cgns", b"@(#)ADF Database Version A02011>\0"),
+            "CGNS in ADF is not read"
+        );
+        assert_eq!(problem("a.grd", b"Begin bay\n 1 3\n"), "ADCIRC or SCHISM grid");
+        assert_eq!(problem("a.grd", b"1 islands\n 1 3 elements, nodes\n"), "ADCIRC or SCHISM grid");
         assert_eq!(problem("mesh.bdf", b"$ made by hand\n"), "Nastran");
         assert_eq!(problem("mesh.unv", b"    -1\n  2411\n"), "I-DEAS universal is not read");
         assert_eq!(problem("mesh.avs", b"# by hand\n4 2 0 0 0\n"), "AVS-UCD is not read");
         assert_eq!(problem("mesh.dat", b" \n\t"), "the file is empty");
+    }
+
+    /// SHYFEM's grid, a binary grid of Surfer, the model of Kratos and boundary conditions of TELEMAC, which start with rows of
+    /// numbers or with words.
+    #[test]
+    fn files_of_other_programs_are_not_damaged_grids_of_adcirc() {
+        const SHYFEM: &[u8] =
+            b"0 (a lagoon)\n\n1 1 0 0. 0. 5.\n1 2 0 1. 0. 5.\n1 3 0 1. 1. 5.\n2 1 0 3 1 2 3\n";
+        const CLI: &[u8] = b"2 2 2 0.000 0.000 0.000 0.000 2 0.000 0.000 0.000 1 1\n\
+            2 2 2 0.000 0.000 0.000 0.000 2 0.000 0.000 0.000 2 2\n2 2 2 0.0 0.0 0.0 0.0 2 0.0 0.0 0.0 3 3\n";
+        const KRATOS: &[u8] = b"Begin Nodes\n1 0 0 0\n2 1 0 0\n3 1 1 0\nEnd Nodes\n";
+        let unknown = "the format is not recognized";
+        for (name, content, expected) in [
+            ("a.grd", SHYFEM, unknown),
+            ("a.grd", &SHYFEM[14..], unknown),
+            ("a.dat", SHYFEM, unknown),
+            ("a.grd", b"DSBB\x0a\0\x14\0", unknown),
+            ("a.bas", b"\x08\0\0\0\x1b\0\0\0", "SHYFEM is not read"),
+            ("a.cli", CLI, "a list of boundary conditions (TELEMAC) is not read"),
+            ("a.dat", CLI, unknown),
+            ("a.mdpa", KRATOS, "Kratos is not read"),
+            ("a.dat", KRATOS, "Kratos is not read"),
+        ] {
+            assert_eq!(problem(name, content), expected, "{name}");
+        }
     }
 
     #[test]

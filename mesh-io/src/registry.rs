@@ -245,6 +245,25 @@ families! {
         &[b"MFEM NC mesh", b"MFEM NURBS", b"MFEM INLINE"],
         "Save it as VTK: Mesh::PrintVTK of MFEM",
     );
+    CGNS_ADF [] = unsupported(
+        "CGNS in ADF",
+        &[],
+        &[b"@(#)ADF Database"],
+        "Convert it to HDF5, with the tool of CGNS: adf2hdf IN OUT",
+    );
+    KRATOS [] = unsupported(
+        "Kratos",
+        &[".mdpa"],
+        &[b"Begin ModelPartData", b"Begin Properties", b"Begin Nodes", b"Begin Table"],
+        BY_MESHIO,
+    );
+    SHYFEM [] = unsupported("SHYFEM", &[".bas"], &[], BY_OTHERS);
+    TELEMAC_BOUNDARY [] = unsupported(
+        "a list of boundary conditions (TELEMAC)",
+        &[".cli"],
+        &[],
+        "Name the mesh that the list belongs to, its .slf",
+    );
     DOLFIN [] = unsupported("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
     COMSOL [] = unsupported(
         "COMSOL",
