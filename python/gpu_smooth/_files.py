@@ -40,7 +40,7 @@ class MeshFile:
     path : str, bytes or path-like
         File to read. The format is detected from its content. Files compressed by gzip or zstd are decompressed.
     weld : bool, default False
-        Join corners of triangles at the same place to one vertex, for STL.
+        Join corners of triangles at the same place to one vertex, in STL and VTK XML.
     allow_outside : bool, default False
         Let the file name files outside of its directory.
     regions : str, optional

@@ -6,7 +6,7 @@ use clap::Args;
 #[derive(Args, Clone)]
 pub(crate) struct ReadArgs {
     /// Join corners of triangles at the same place to one vertex, as an STL lists the corners of each triangle by
-    /// themselves. No effect on other formats
+    /// themselves, and VTK XML (.vtu, .vtp) may do. No effect on other formats
     #[arg(long)]
     pub(crate) weld: bool,
     /// Let a mesh name files outside of its directory: an XDMF its files of numbers, which a run in place replaces, and an Abaqus

@@ -52,8 +52,8 @@ fn check_overwrite(
     written: &[PathBuf],
     reading: ReadRequest,
 ) -> Result<(), CliError> {
-    // An existing mesh may be an STL, independent of the format of IN.
-    let reading = ReadRequest { weld: true, ..reading };
+    // Conversions write joined vertices. Other vertices at one place, such as those of a crack, stay apart.
+    let reading = ReadRequest { weld: false, ..reading };
     let found = overwrite::check(file, written, reading.options_of_output(), Likeness::Triangles);
     let Err(error) = found else { return Ok(()) };
     // A format may renumber vertices. Equal bytes then identify an earlier result of this conversion.

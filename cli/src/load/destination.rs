@@ -30,8 +30,8 @@ pub(crate) fn check(
     }
     let (reading, likeness) = match conversion {
         None => (reading.clone(), Likeness::Mesh),
-        // An existing mesh may be an STL, independent of the format of IN.
-        Some(_) => (ReadRequest { weld: true, ..reading.clone() }, Likeness::Triangles),
+        // Conversions write joined vertices. Other vertices at one place, such as those of a crack, stay apart.
+        Some(_) => (ReadRequest { weld: false, ..reading.clone() }, Likeness::Triangles),
     };
     overwrite::check(file, &written, reading.options_of_output(), likeness)
         .map_err(|error| error.with_remedy(remedy))

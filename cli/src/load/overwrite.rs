@@ -2,9 +2,9 @@
 //! file.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use mesh_io::{MeshFile, ReadOptions, atomic};
+use mesh_io::{MeshFile, ReadError, ReadOptions, atomic};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -49,7 +49,7 @@ pub(crate) fn check(
     // A read from a pipe would block until a writer appears.
     let is_readable = written.iter().all(|path| !path.exists() || path.is_file());
     let old = match is_readable {
-        true => options.read(main).map_err(|error| error.to_string()),
+        true => read(main, options).map_err(|error| error.to_string()),
         false => Err("one of its files is no regular file".to_owned()),
     };
     let (path, read) = (first.display(), file.source.path().display());
@@ -59,6 +59,14 @@ pub(crate) fn check(
         Err(problem) => format!("{path}: exists, and cannot be read as a mesh: {problem}"),
     };
     Err(CliError::output(text))
+}
+
+/// Reads an existing mesh. An STL is joined to vertices, independent of the format of the input.
+fn read(path: &Path, options: ReadOptions) -> Result<MeshFile, ReadError> {
+    match options.clone().read(path) {
+        Err(ReadError::Unwelded { .. }) => options.weld(true).read(path),
+        read => read,
+    }
 }
 
 /// Describes the first difference between two meshes; `None` if `new` may replace `old`.

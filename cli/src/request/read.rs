@@ -8,7 +8,7 @@ use crate::args::ReadArgs;
 #[derive(Clone)]
 pub(crate) struct ReadRequest {
     /// Whether corners of triangles at equal positions are joined to one vertex. STL requires
-    /// joining; other formats ignore the option.
+    /// joining, VTK XML allows joining, and other formats ignore the option.
     pub(crate) weld: bool,
     /// Whether a mesh may name files outside of its directory.
     pub(crate) allow_outside: bool,

@@ -81,7 +81,7 @@ const ROWS: &[Row] = &[
             "as legacy VTK",
             "the same, of whole numbers",
             "the same",
-            "pieces are not joined: each keeps its own boundary; compressed arrays of points are compressed again, with the same values where nothing moved; strips, `.pvtu`, `.pvd` and LZMA are refused",
+            "without `--weld`, pieces are not joined: each keeps its own boundary; compressed arrays of points are compressed again, with the same values where nothing moved; strips, `.pvtu`, `.pvd` and LZMA are refused",
         ],
     ),
     row(

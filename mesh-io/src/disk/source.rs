@@ -32,9 +32,11 @@ impl ReadOptions {
         ReadOptions::default()
     }
 
-    /// Sets whether corners of triangles with equal coordinates become one vertex, for STL, which has no vertices. The
-    /// corners must have one common third coordinate. Vertices are numbered in the order of their first corners in the
-    /// file, and a moved vertex is written at each of its corners. Off by default.
+    /// Sets whether corners of triangles with equal coordinates become one vertex: in STL, which has no vertices, and in
+    /// VTK XML, where programs with discontinuous elements write a point for each corner of each triangle. All three
+    /// coordinates must be equal. Vertices are numbered in the order of their first corners in the file, and a moved vertex
+    /// is written at each of its corners. Data that differ between the corners of a vertex stay as they are. Other formats
+    /// ignore the option. Off by default.
     #[must_use]
     pub fn weld(self, welds: bool) -> ReadOptions {
         ReadOptions { welds, ..self }

@@ -17,4 +17,5 @@ pub(crate) mod send;
 pub(crate) mod storage;
 pub(crate) mod triangle_values;
 pub(crate) mod visitor;
+pub(crate) mod weld;
 pub(crate) mod z_values;

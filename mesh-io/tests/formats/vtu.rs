@@ -1,13 +1,13 @@
 //! VTK's XML format of unstructured grids and polygons in all its encodings.
 
-use super::facts::{between_regions, fixed, mesh_of};
+use super::facts::{between_regions, fixed, freed, mesh_of, remarks};
 use super::made::base;
 pub(crate) use super::made::vtu::{Place, styles, write, write_pieces};
 use super::{Folder, damage};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use mesh_io::Precision;
-use mesh_io::{Conversion, Format, Location, MeshFile, PointField};
+use mesh_io::{Conversion, Encoding, Format, Location, MeshFile, PointField, ReadOptions};
 use std::fs;
 use support::Mesh;
 use support::{SplitMix64, check};
@@ -296,4 +296,131 @@ fn hostile_xml_takes_no_memory_and_no_time() {
     let text = opening.replacen('\n', &format!("\n{entities}"), 1);
     let entity = refused(format!("{text}<Piece NumberOfPoints=\"&b;\" NumberOfCells=\"1\">"));
     assert!(entity.contains("a.vtu:4: NumberOfPoints is `&b;`"), "{entity}");
+}
+
+/// Returns the mesh with three points of its own for each triangle, in order, and the vertex of each point.
+fn torn(mesh: &Mesh) -> (Mesh, Vec<u32>) {
+    let vertices: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
+    let points = vertices.iter().map(|&v| mesh.points[v as usize]).collect();
+    let triangles =
+        (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    (Mesh { points, triangles, fixed: Vec::new() }, vertices)
+}
+
+/// Returns a file with the points of a mesh in text, a continuous and a discontinuous array, and points of z `height`.
+fn discontinuous(mesh: &Mesh, height: f64) -> String {
+    let joined = |numbers: Vec<String>| numbers.join(" ");
+    let (cells, count) = (mesh.triangles.len(), mesh.points.len());
+    let array = |of: &str, numbers: String| {
+        format!("<DataArray {of} format='ascii'>{numbers}</DataArray>\n")
+    };
+    let points = mesh.points.iter().map(|[x, y]| format!("{x:?} {y:?} {height}")).collect();
+    let corners = mesh.triangles.iter().flatten().map(ToString::to_string).collect();
+    [
+        format!("<VTKFile type='UnstructuredGrid'>\n<UnstructuredGrid>\n<Piece NumberOfPoints='{count}' NumberOfCells='{cells}'>\n"),
+        "<PointData>\n".into(),
+        array("type='Float64' Name='sum'", joined(mesh.points.iter().map(|[x, y]| format!("{:?}", x + y)).collect())),
+        array("type='Float64' Name='jump'", joined((0..count).map(|i| format!("{i}.5")).collect())),
+        "</PointData>\n<Points>\n".into(),
+        array("type='Float64' NumberOfComponents='3'", joined(points)),
+        "</Points>\n<Cells>\n".into(),
+        array("type='Int32' Name='connectivity'", joined(corners)),
+        array("type='Int32' Name='offsets'", joined((1..=cells).map(|t| (3 * t).to_string()).collect())),
+        array("type='UInt8' Name='types'", joined(vec!["5".to_owned(); cells])),
+        "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n".into(),
+    ]
+    .concat()
+}
+
+/// The vertices of the mesh in the order in which triangles name them first.
+fn first_uses(vertices: &[u32]) -> Vec<u32> {
+    let mut seen = Vec::new();
+    vertices.iter().for_each(|v| {
+        if !seen.contains(v) {
+            seen.push(*v);
+        }
+    });
+    seen
+}
+
+#[test]
+fn points_of_discontinuous_triangles_are_joined_and_each_copy_is_written() {
+    let mesh = base();
+    let (torn, vertices) = torn(&mesh);
+    let order = first_uses(&vertices);
+    let index = |v: u32| order.iter().position(|&own| own == v).unwrap() as u32;
+    let welded = ReadOptions::new().weld(true);
+    let text = discontinuous(&torn, 0.0);
+    let folder = Folder::new(&[("in.vtu", &text)]);
+    assert_eq!(folder.read("in.vtu").points().len(), vertices.len());
+    let file = welded.clone().read(&folder.path("in.vtu")).unwrap();
+    let points: Vec<[f64; 2]> = order.iter().map(|&v| mesh.points[v as usize]).collect();
+    assert_eq!(file.points(), points);
+    assert_eq!(file.triangles(), mesh.triangles.iter().map(|t| t.map(index)).collect::<Vec<_>>());
+    let joined = format!("{} points are joined to {} vertices", vertices.len(), order.len());
+    assert_eq!(remarks(&file), [joined]);
+    assert!(check::mover_count(&freed(&file)) >= 12);
+    file.write(&folder.path("same.vtu"), &points).unwrap();
+    assert_eq!(folder.text("same.vtu"), text);
+    // Every copy of a moved vertex moves, and with it a continuous field. A discontinuous field stays.
+    let to = |[x, y]: [f64; 2]| [x + 0.25, y * 0.5];
+    let moved: Vec<[f64; 2]> = points.iter().map(|&at| to(at)).collect();
+    let mut fields = file.point_fields(None).unwrap();
+    fields.retain(|field| field.name() != "z");
+    let told: Vec<_> = fields.iter().map(|field| (field.name(), field.is_replaceable())).collect();
+    assert_eq!(told, [("sum", true), ("jump", false)]);
+    for field in &mut fields {
+        field.set(moved.iter().map(|[x, y]| x + y).collect()).unwrap();
+    }
+    file.write_with_fields(&folder.path("out.vtu"), &moved, &fields).unwrap();
+    let new = Mesh { points: torn.points.iter().map(|&at| to(at)).collect(), ..torn };
+    assert_eq!(folder.text("out.vtu"), discontinuous(&new, 0.0));
+    let again = welded.read(&folder.path("out.vtu")).unwrap();
+    assert_eq!(again.points(), moved);
+}
+
+/// Arrays of points are in base64, in raw bytes, and compressed.
+#[test]
+fn points_are_joined_in_every_encoding() {
+    let (torn, vertices) = torn(&base());
+    let order = first_uses(&vertices);
+    let folder = Folder::new(&[("in.vtu", &discontinuous(&torn, 0.5))]);
+    let welded = ReadOptions::new().weld(true);
+    for encoding in [Encoding::Text, Encoding::Binary, Encoding::Compressed] {
+        let mut conversion = Conversion::new(&folder.read("in.vtu"), Format::Vtu).unwrap().unwrap();
+        assert!(conversion.set_encoding(encoding));
+        conversion.write(&folder.path("torn.vtu")).unwrap();
+        let file = welded.clone().read(&folder.path("torn.vtu")).unwrap();
+        assert_eq!(file.points().len(), order.len(), "{encoding:?}");
+        let moved: Vec<[f64; 2]> = file.points().iter().map(|[x, y]| [x + 0.25, *y]).collect();
+        file.write(&folder.path("out.vtu"), &moved).unwrap();
+        let place = |v: &u32| moved[order.iter().position(|own| own == v).unwrap()];
+        let expected: Vec<[f64; 2]> = vertices.iter().map(place).collect();
+        assert_eq!(folder.read("out.vtu").points(), expected, "{encoding:?}");
+    }
+}
+
+/// Points of the same x and y in two planes, and points of a mesh without copies.
+#[test]
+fn points_apart_are_not_joined() {
+    let mesh = base();
+    let text = discontinuous(&mesh, 0.0);
+    let folder = Folder::new(&[("a.vtu", &text)]);
+    let file = ReadOptions::new().weld(true).read(&folder.path("a.vtu")).unwrap();
+    assert_eq!((file.points(), remarks(&file).len()), (&mesh.points[..], 0));
+    let (torn, vertices) = torn(&mesh);
+    let text = discontinuous(&torn, 0.0);
+    // One of several copies of a vertex, in another plane.
+    let is_copied = |v: &u32| vertices.iter().filter(|own| *own == v).count() > 1;
+    let copied = vertices.iter().position(is_copied).unwrap();
+    let [x, y] = torn.points[copied];
+    let (before, after) = text.split_once("<Points>").unwrap();
+    let lifted = after.replacen(&format!(" {x:?} {y:?} 0 "), &format!(" {x:?} {y:?} 1 "), 1);
+    let lifted = format!("{before}<Points>{lifted}");
+    assert_ne!(text, lifted);
+    let [flat, lifted] = [text, lifted].map(|text| {
+        folder.put("b.vtu", text.as_bytes());
+        ReadOptions::new().weld(true).read(&folder.path("b.vtu")).unwrap().points().len()
+    });
+    assert_eq!((flat, lifted), (mesh.points.len(), mesh.points.len() + 1));
 }

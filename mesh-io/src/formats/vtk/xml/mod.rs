@@ -19,6 +19,7 @@ use crate::format::Format;
 use crate::visit::reader::FormatReader;
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
+use crate::visit::weld::{NodePositions, Welder};
 use arrays::File;
 use document::{Content, Document};
 
@@ -34,13 +35,31 @@ impl FormatReader for Vtu {
         let document = Document::read(source)?;
         let offsets = document.offsets().into();
         let file = File { source, document, offsets };
-        let points::PointStorage { numbers, encoded } = points::read(&file, visitor)?;
-        file.cells(visitor)?;
-        if visitor.asks_for_ghosts() {
-            file.ghosts(visitor)?;
+        if !source.options.welds {
+            return file.visit(visitor);
         }
-        file.point_arrays(visitor);
-        let format = match file.document.content {
+        let mut positions = NodePositions::default();
+        points::read(&file, &mut positions)?;
+        match Welder::new(visitor, positions) {
+            Ok(mut welder) => {
+                let storage = file.visit(&mut welder)?;
+                Ok(CoordinateStorage { repeated_vertices: Some(welder.finish()), ..storage })
+            }
+            Err(visitor) => file.visit(visitor),
+        }
+    }
+}
+
+impl File<'_> {
+    /// Visits all items of the mesh. Returns the encoding and location of the coordinates.
+    fn visit(&self, visitor: &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError> {
+        let points::PointStorage { numbers, encoded } = points::read(self, visitor)?;
+        self.cells(visitor)?;
+        if visitor.asks_for_ghosts() {
+            self.ghosts(visitor)?;
+        }
+        self.point_arrays(visitor);
+        let format = match self.document.content {
             Content::Grid => Format::Vtu,
             Content::Polygons => Format::Vtp,
         };
