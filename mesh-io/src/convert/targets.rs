@@ -294,6 +294,18 @@ pub(crate) static TARGETS: &[Target] = &[
         write: WriteFunction::One(write_grids::write_adcirc),
     },
     Target {
+        format: Format::Mike,
+        name: "mike",
+        capabilities: Capabilities {
+            quadrilaterals: true,
+            z: true,
+            keeps_vertex_ids: true,
+            vertex_groups: true,
+            ..Capabilities::TRIANGLES
+        },
+        write: WriteFunction::One(write_grids::write_mike),
+    },
+    Target {
         format: Format::Selafin,
         name: "selafin",
         capabilities: Capabilities {

@@ -1,10 +1,11 @@
-//! Writes grids of coastal models: SMS's `.2dm`, and the grids of ADCIRC and SCHISM.
+//! Writes grids of coastal models: SMS's `.2dm`, the grids of ADCIRC and SCHISM, and MIKE's `.mesh`.
 
-use crate::export::content::{Content, DataArray};
+use crate::export::content::{Content, ContentGroup, DataArray};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::selafin;
+use crate::registry::FormatEntry;
 use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
@@ -12,7 +13,8 @@ use std::fmt::Write;
 /// Converts heights of the bed between formats with different conventions. Depths of ADCIRC and FVCOM are positive
 /// downwards, z of SMS, MIKE and UGRID and the bed of SELAFIN upwards. SMS, too, opens a grid of ADCIRC with minus its
 /// depths as z. In UGRID, z is a node variable named `z` or ending in `node_z`, and a depth is a node variable whose
-/// name ends in `depth`.
+/// name ends in `depth`. In gmsh's formats, heights are z, unless data of vertices have the name that a conversion from ADCIRC
+/// or SELAFIN gives them.
 pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     // The subtraction gives no negative zero.
     let minus = |number: f64| 0.0 - number;
@@ -22,7 +24,8 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
         content.point_data.push(of_vertices("z", values));
     }
     let has_depths = |format| matches!(format, Format::Adcirc | Format::Fvcom);
-    if !matches!(to, Format::Sms2dm | Format::Adcirc | Format::Selafin)
+    let has_z = |format| matches!(format, Format::Sms2dm | Format::Mike);
+    if !(has_z(to) || matches!(to, Format::Adcirc | Format::Selafin))
         || from == to
         || (has_depths(from) && has_depths(to))
     {
@@ -30,7 +33,7 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
     }
     let heights = match from {
         Format::Adcirc | Format::Fvcom => take(content, "depth").map(turned),
-        Format::Sms2dm | Format::Mike if to == Format::Sms2dm => None,
+        Format::Sms2dm | Format::Mike if has_z(to) => None,
         Format::Sms2dm | Format::Mike => {
             let values = (0..content.points.len()).map(|vertex| content.z(vertex)).collect();
             (content.z_values, content.common_z) = (Vec::new(), 0.0);
@@ -39,11 +42,22 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
         Format::Ugrid => take_heights(content)
             .map(|(values, is_depth)| if is_depth { turned(values) } else { values }),
         Format::Selafin => take(content, selafin::write::BED),
+        _ if FormatEntry::of(from).name == FormatEntry::of(Format::Gmsh41).name => {
+            let depths = take(content, "depth").map(turned);
+            let heights = depths.or_else(|| take(content, selafin::write::BED));
+            match to {
+                Format::Sms2dm | Format::Mike => heights,
+                _ => heights.or_else(|| {
+                    let is_any = !content.z_values.is_empty();
+                    is_any.then(|| std::mem::take(&mut content.z_values))
+                }),
+            }
+        }
         _ => None,
     };
     let Some(heights) = heights else { return };
     match to {
-        Format::Sms2dm => content.z_values = heights,
+        Format::Sms2dm | Format::Mike => content.z_values = heights,
         Format::Adcirc => content.point_data.push(of_vertices("depth", turned(heights))),
         _ => content.point_data.push(of_vertices(selafin::write::BED, heights)),
     }
@@ -51,7 +65,8 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
 
 /// Removes data of vertices, and returns their values.
 fn take(content: &mut Content, name: &str) -> Option<Vec<f64>> {
-    let at = content.point_data.iter().position(|data| data.name == name)?;
+    let is_own = |data: &DataArray| data.name == name && data.components == 1;
+    let at = content.point_data.iter().position(is_own)?;
     Some(content.point_data.remove(at).values)
 }
 
@@ -181,6 +196,64 @@ pub(crate) fn write_adcirc(input: &WriterInput<'_>) -> String {
         }
     }
     out
+}
+
+/// Writes the layout since 2012, as bathymetry in meters (kind of data 100079, unit 1000) in local coordinates.
+pub(crate) fn write_mike(input: &WriterInput<'_>) -> String {
+    let content = input.content;
+    let codes = node_codes(input);
+    let mut out = format!("100079  1000  {}  NON-UTM\n", content.points.len());
+    for (vertex, code) in codes.into_iter().enumerate() {
+        put!(out, "{} {} {code}\n", input.vertex_id(vertex), input.xyz(vertex));
+    }
+    let has_four = input.count(CellKind::Quadrilateral) > 0;
+    // The last number is the type of the elements: 21 for triangles, 25 for both kinds.
+    let (most, kind) = if has_four { (4, 25) } else { (3, 21) };
+    put!(out, "{}  {most}  {kind}\n", input.cells().count());
+    for (cell, element) in input.cells().zip(1..) {
+        let is_triangle = content.cells.kinds[cell] == CellKind::Triangle;
+        let fourth = if has_four && is_triangle { " 0" } else { "" };
+        put!(out, "{element} {}{fourth}\n", input.vertex_ids(cell));
+    }
+    out
+}
+
+/// Returns the code of each vertex. If the mesh has numbered groups of vertices, codes are their numbers. Otherwise
+/// vertices have code 1 (land) on the boundary of the mesh and 0 inside, and the groups of lines whose names start with `open`
+/// have the codes from 2 on. The ends of an open boundary have its code, as a side of MIKE is open if both of its ends are.
+fn node_codes(input: &WriterInput<'_>) -> Vec<i64> {
+    let content = input.content;
+    let mut codes = input.vertex_group_numbers();
+    if codes.iter().any(|&code| code != 0) {
+        return codes;
+    }
+    boundary_vertices(content).for_each(|vertex| codes[vertex as usize] = 1);
+    let is_open = |&group: &usize| {
+        let ContentGroup { dimension, .. } = content.groups[group];
+        dimension == 1 && content.groups[group].name().is_some_and(|name| name.starts_with("open"))
+    };
+    let open = (0..content.groups.len()).filter(is_open).map(|group| group as u32);
+    let code_of: HashMap<u32, i64> = open.zip(2..).collect();
+    for cell in content.cells.all(CellKind::Line) {
+        let groups = &content.sets[content.cells.sets[cell] as usize];
+        if let Some(&code) = groups.iter().find_map(|group| code_of.get(group)) {
+            content.cells.of(cell).iter().for_each(|&vertex| codes[vertex as usize] = code);
+        }
+    }
+    codes
+}
+
+/// Lists the vertices of edges of a single face. Vertices may repeat.
+fn boundary_vertices(content: &Content) -> impl Iterator<Item = u32> {
+    let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
+    let faces = (0..content.cells.len()).filter(|&cell| content.cells.kinds[cell].dimension() == 2);
+    for cell in faces {
+        let own = content.cells.of(cell);
+        for (&a, &b) in own.iter().zip(own.iter().cycle().skip(1)) {
+            *edges.entry([a.min(b), a.max(b)]).or_default() += 1;
+        }
+    }
+    edges.into_iter().filter(|(_, uses)| *uses == 1).flat_map(|(edge, _)| edge)
 }
 
 /// Returns whether a line belongs to a node string, and not to a material.

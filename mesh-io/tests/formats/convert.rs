@@ -62,7 +62,9 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
             // OBJ puts lines into the groups of faces, and chains of nodes count as points.
             let is_points =
                 is_points || (matches!(name, "obj" | "2dm" | "adcirc") && group.dimension < 2);
-            group.tag != Some(0) && !group.kind.contains("entity") && !is_points
+            // MIKE has no groups of triangles, so a group of all triangles loses its number.
+            let is_whole = name == "mike" && group.triangles().len() == file.triangles().len();
+            group.tag != Some(0) && !group.kind.contains("entity") && !is_points && !is_whole
         };
         for group in before.iter().filter(is_kept) {
             let own = held(group);
@@ -89,9 +91,14 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         }
         // Depth and height have opposite signs.
         let turned = match (file.format(), format) {
-            (Format::Adcirc | Format::Fvcom, Format::Sms2dm) => Some(("depth", "z")),
+            (Format::Adcirc | Format::Fvcom, Format::Sms2dm | Format::Mike) => Some(("depth", "z")),
             (Format::Sms2dm | Format::Mike, Format::Adcirc) => Some(("z", "depth")),
             (Format::Adcirc | Format::Fvcom, Format::Selafin) => Some(("depth", "BOTTOM")),
+            (from, Format::Adcirc) if from.family() == "gmsh" => Some(("z", "depth")),
+            (from, Format::Selafin) if from.family() == "gmsh" => {
+                before.remove("z");
+                None
+            }
             _ => None,
         };
         if let Some((from, to)) = turned
@@ -233,7 +240,7 @@ fn content_that_a_format_cannot_hold_is_listed() {
     let (text, lost) = converted("in.msh", &sparse, Format::Gmsh41);
     assert!(lost.is_empty() && text.contains("\n60\n"), "{lost}");
     assert!(
-        Conversion::new(&Folder::new(&[("in.msh", GMSH)]).read("in.msh"), Format::Mike)
+        Conversion::new(&Folder::new(&[("in.msh", GMSH)]).read("in.msh"), Format::Fvcom)
             .unwrap()
             .is_none()
     );
@@ -340,6 +347,67 @@ fn depths_of_grids_are_heights_of_sms() {
     assert_eq!(convert("e.2dm", Format::Selafin, "e.slf"), [""; 0]);
     assert_eq!(convert("e.slf", Format::Adcirc, "e.14"), [""; 0]);
     assert!(folder.text("e.14").contains(&grid[2..]), "{}", folder.text("e.14"));
+}
+
+/// The codes of nodes are those of boundaries, and come back.
+#[test]
+fn grids_are_meshes_of_mike_with_codes_of_boundaries() {
+    // A square with a node inside, and a quadrilateral beside it. The left side is open.
+    let nodes = "1 0.0 0.0 1.5\n2 1.0 0.0 2.5\n3 1.0 1.0 -3.5\n4 0.0 1.0 0.5\n5 0.5 0.5 1.0\n6 2.0 0.0 1.0\n7 2.0 1.0 1.0\n";
+    let elements = "1 3 1 2 5\n2 3 2 3 5\n3 3 3 4 5\n4 3 4 1 5\n5 4 2 6 7 3\n";
+    let open = "1 = open\n2 = nodes\n2\n1\n4\n1 = land\n6 = nodes\n6 0\n4\n3\n7\n6\n2\n1\n";
+    let (mike, lost) = converted("a.14", &format!("t\n5 7\n{nodes}{elements}{open}"), Format::Mike);
+    assert_eq!(lost, "groups of lines (boundary): open1, land1");
+    let expected = "100079  1000  7  NON-UTM\n1 0.0 0.0 -1.5 2\n2 1.0 0.0 -2.5 1\n3 1.0 1.0 3.5 1\n4 0.0 1.0 -0.5 2\n\
+        5 0.5 0.5 -1.0 0\n6 2.0 0.0 -1.0 1\n7 2.0 1.0 -1.0 1\n5  4  25\n1 1 2 5 0\n2 2 3 5 0\n3 3 4 5 0\n\
+        4 4 1 5 0\n5 2 6 7 3\n";
+    assert_eq!(mike, expected);
+    let codes = mike.replace("-2.5 1", "-2.5 7").replace("-1.0 1", "-1.0 0");
+    assert_eq!(converted("a.mesh", &codes, Format::Mike), (codes.clone(), String::new()));
+    // Without a quadrilateral, rows have three nodes.
+    let triangles = "t\n1 3\n1 0.0 0.0 1.0\n2 1.0 0.0 1.0\n3 0.0 1.0 1.0\n1 3 1 2 3\n";
+    let (mike, lost) = converted("a.14", triangles, Format::Mike);
+    assert!(lost.is_empty() && mike.ends_with(" 1\n1  3  21\n1 1 2 3\n"), "{lost} {mike}");
+}
+
+/// gmsh has heights as z, and data of vertices from other grids under their names.
+#[test]
+fn depths_of_grids_are_heights_of_gmsh() {
+    let gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 -1.5\n2 1 0 0\n3 1 1 3.5\n4 0 1 -2\n$EndNodes\n\
+                $Elements\n2\n1 2 2 0 1 1 2 3\n2 2 2 0 1 1 3 4\n$EndElements\n";
+    let folder = Folder::new(&[("a.msh", gmsh)]);
+    let convert = |from: &str, format, to: &str| {
+        let conversion = Conversion::new(&folder.read(from), format).unwrap().unwrap();
+        conversion.write(&folder.path(to)).unwrap();
+        conversion.losses().to_vec()
+    };
+    let values = |name: &str| {
+        let fields = folder.read(name).point_fields(None).unwrap();
+        let told = fields.iter().map(|field| (field.name().to_owned(), field.values().to_vec()));
+        // gmsh writes a third coordinate for every vertex.
+        told.filter(|(name, values)| name != "z" || values.iter().any(|z| *z != 0.0))
+            .collect::<Vec<_>>()
+    };
+    let heights = vec![-1.5, 0.0, 3.5, -2.0];
+    let depths = vec![1.5, 0.0, -3.5, 2.0];
+    assert_eq!(convert("a.msh", Format::Adcirc, "a.14"), [""; 0]);
+    assert_eq!(values("a.14"), [("depth".to_owned(), depths.clone())]);
+    assert_eq!(convert("a.msh", Format::Selafin, "a.slf"), [""; 0]);
+    assert_eq!(values("a.slf"), [("BOTTOM".to_owned(), heights.clone())]);
+    assert_eq!(convert("a.msh", Format::Sms2dm, "a.2dm"), [""; 0]);
+    assert_eq!(values("a.2dm"), [("z".to_owned(), heights.clone())]);
+    for (from, name, own) in [("a.14", "depth", depths), ("a.slf", "BOTTOM", heights.clone())] {
+        for format in [Format::Gmsh22, Format::Gmsh41] {
+            assert_eq!(convert(from, format, "b.msh"), [""; 0]);
+            assert_eq!(values("b.msh"), [(name.to_owned(), own.clone())]);
+            assert_eq!(convert("b.msh", Format::Sms2dm, "b.2dm"), [""; 0]);
+            assert_eq!(values("b.2dm"), [("z".to_owned(), heights.clone())]);
+            assert_eq!(convert("b.msh", Format::Adcirc, "b.14"), [""; 0]);
+            assert_eq!(folder.text("b.14"), folder.text("a.14"));
+            assert_eq!(convert("b.msh", Format::Selafin, "b.slf"), [""; 0]);
+            assert_eq!(values("b.slf"), values("a.slf"));
+        }
+    }
 }
 
 #[test]
