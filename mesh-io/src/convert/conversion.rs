@@ -11,7 +11,7 @@ use crate::export::content::{Content, DataArray};
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::triangle::names::Names;
-use crate::formats::write_grids;
+use crate::formats::{boundary_codes, write_grids};
 use crate::mesh_file::mesh::MeshFile;
 use crate::precision::Precision;
 use crate::registry::FormatEntry;
@@ -118,6 +118,9 @@ impl Conversion {
         content.points = points.to_vec();
         set_fields(&mut content, fields);
         write_grids::match_depths(&mut content, file.format(), to);
+        if file.format() == Format::Mike && matches!(to, Format::Adcirc | Format::Sms2dm) {
+            boundary_codes::to_lines(&mut content);
+        }
         let lost = target.capabilities.losses(&content);
         let omissions =
             target.capabilities.lost_names_of_empty_groups(&content).into_iter().collect();

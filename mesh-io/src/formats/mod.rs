@@ -3,6 +3,7 @@
 pub(crate) mod abaqus;
 pub(crate) mod adcirc;
 pub(crate) mod axes;
+pub(crate) mod boundary_codes;
 pub(crate) mod cgns;
 pub(crate) mod exodus;
 pub(crate) mod freefem;

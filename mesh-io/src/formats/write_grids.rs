@@ -4,7 +4,7 @@ use crate::export::content::{Content, ContentGroup, DataArray};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
-use crate::formats::selafin;
+use crate::formats::{boundary_codes, selafin};
 use crate::registry::FormatEntry;
 use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -128,7 +128,7 @@ pub(crate) fn write_sms(input: &WriterInput<'_>) -> String {
 
 /// Joins lines to chains, as long as possible and in either direction. Chains are sorted by the index of their first
 /// line in `lines`.
-fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
+pub(super) fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
     let mut at: HashMap<u32, Vec<usize>> = HashMap::new();
     // Lines are popped from the end of these lists, so the first line comes first.
     for (index, &[a, b]) in lines.iter().enumerate().rev() {
@@ -227,7 +227,8 @@ fn node_codes(input: &WriterInput<'_>) -> Vec<i64> {
     if codes.iter().any(|&code| code != 0) {
         return codes;
     }
-    boundary_vertices(content).for_each(|vertex| codes[vertex as usize] = 1);
+    let boundary = boundary_codes::boundary_edges(content);
+    boundary.iter().flatten().for_each(|&vertex| codes[vertex as usize] = 1);
     let is_open = |&group: &usize| {
         let ContentGroup { dimension, .. } = content.groups[group];
         dimension == 1 && content.groups[group].name().is_some_and(|name| name.starts_with("open"))
@@ -241,19 +242,6 @@ fn node_codes(input: &WriterInput<'_>) -> Vec<i64> {
         }
     }
     codes
-}
-
-/// Lists the vertices of edges of a single face. Vertices may repeat.
-fn boundary_vertices(content: &Content) -> impl Iterator<Item = u32> {
-    let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
-    let faces = (0..content.cells.len()).filter(|&cell| content.cells.kinds[cell].dimension() == 2);
-    for cell in faces {
-        let own = content.cells.of(cell);
-        for (&a, &b) in own.iter().zip(own.iter().cycle().skip(1)) {
-            *edges.entry([a.min(b), a.max(b)]).or_default() += 1;
-        }
-    }
-    edges.into_iter().filter(|(_, uses)| *uses == 1).flat_map(|(edge, _)| edge)
 }
 
 /// Returns whether a line belongs to a node string, and not to a material.

@@ -364,10 +364,49 @@ fn grids_are_meshes_of_mike_with_codes_of_boundaries() {
     assert_eq!(mike, expected);
     let codes = mike.replace("-2.5 1", "-2.5 7").replace("-1.0 1", "-1.0 0");
     assert_eq!(converted("a.mesh", &codes, Format::Mike), (codes.clone(), String::new()));
+    // Codes become boundaries of a grid and node strings. A mesh with a code inside keeps its codes, which grids cannot hold.
+    let (grid, lost) = converted("a.mesh", &mike, Format::Adcirc);
+    assert_eq!(lost, "");
+    let folder = Folder::new(&[("a.14", &grid)]);
+    let groups = folder.read("a.14").groups().unwrap();
+    let told: Vec<_> = groups.iter().map(|group| (group.to_string(), group.vertices())).collect();
+    let [open, land]: [&[u32]; 2] = [&[0, 3], &[0, 1, 2, 3, 5, 6]];
+    let names = ["boundary line open1".to_owned(), "boundary line land1".to_owned()];
+    assert_eq!(told, names.into_iter().zip([open, land]).collect::<Vec<_>>());
+    assert_eq!(converted("a.14", &grid, Format::Mike).0, mike);
+    let (sms, lost) = converted("a.mesh", &mike, Format::Sms2dm);
+    assert!(lost.is_empty() && sms.contains("NS 4 -1 \"open1\"\n"), "{lost} {sms}");
+    assert_eq!(converted("a.2dm", &sms, Format::Mike).0, mike);
+    let (_, lost) = converted("a.mesh", &mike.replace("-1.0 0", "-1.0 3"), Format::Adcirc);
+    assert_eq!(lost, "groups of vertices: 2, 1, 3");
     // Without a quadrilateral, rows have three nodes.
     let triangles = "t\n1 3\n1 0.0 0.0 1.0\n2 1.0 0.0 1.0\n3 0.0 1.0 1.0\n1 3 1 2 3\n";
     let (mike, lost) = converted("a.14", triangles, Format::Mike);
     assert!(lost.is_empty() && mike.ends_with(" 1\n1  3  21\n1 1 2 3\n"), "{lost} {mike}");
+}
+
+/// A ring of triangles around a square island: all codes are 1.
+#[test]
+fn closed_land_inside_of_a_mesh_of_mike_is_an_island_of_adcirc() {
+    let points = [[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2]];
+    let mut text = "100079  1000  8  NON-UTM\n".to_owned();
+    for (i, [x, y]) in points.iter().enumerate() {
+        text += &format!("{} {x} {y} -1 1\n", i + 1);
+    }
+    text += "8 3 21\n";
+    for side in 0..4 {
+        let next = (side + 1) % 4;
+        let [a, b, c, d] = [side, next, 4 + next, 4 + side].map(|v| v + 1);
+        text += &format!("{} {a} {b} {c}\n{} {a} {c} {d}\n", 2 * side + 1, 2 * side + 2);
+    }
+    let (grid, lost) = converted("a.mesh", &text, Format::Adcirc);
+    assert_eq!(lost, "");
+    let folder = Folder::new(&[("a.14", &grid)]);
+    let groups = folder.read("a.14").groups().unwrap();
+    let told: Vec<_> = groups.iter().map(|group| (group.to_string(), group.vertices())).collect();
+    let [outer, inner]: [&[u32]; 2] = [&[0, 1, 2, 3], &[4, 5, 6, 7]];
+    let names = ["boundary line land1".to_owned(), "boundary line island2".to_owned()];
+    assert_eq!(told, names.into_iter().zip([outer, inner]).collect::<Vec<_>>());
 }
 
 /// gmsh has heights as z, and data of vertices from other grids under their names.
