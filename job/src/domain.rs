@@ -18,12 +18,16 @@ pub struct Domain {
     mesh: Mesh,
     /// Vertices fixed only because they lie between regions, ascending.
     interfaces: Vec<u32>,
+    /// Vertices between regions, also those fixed for another reason, ascending. Empty after
+    /// [`free_interfaces`](Self::free_interfaces).
+    between_regions: Vec<u32>,
     /// Edges between regions. Empty after [`free_interfaces`](Self::free_interfaces).
     interface_edges: Vec<[u32; 2]>,
     has_free_interfaces: bool,
+    has_free_lines: bool,
     /// Vertices that neither move nor slide. In any order, with repeats.
     anchored: Vec<u32>,
-    /// Edges of lines, between which vertices slide.
+    /// Edges of lines, between which vertices slide. Empty after [`free_lines`](Self::free_lines).
     lines: Vec<[u32; 2]>,
     periodic: Vec<Periodic>,
     /// Motions of periodic models without pairs.
@@ -135,9 +139,11 @@ impl Domain {
     ) -> Self {
         fixed.sort_unstable();
         fixed.dedup();
+        let between_regions = interfaces.clone();
         interfaces.retain(|v| fixed.binary_search(v).is_err());
         fixed.extend_from_slice(&interfaces);
-        Self { mesh: Mesh { points, triangles, fixed }, interfaces, ..Self::default() }
+        let mesh = Mesh { points, triangles, fixed };
+        Self { mesh, interfaces, between_regions, ..Self::default() }
     }
 
     /// Adds pairs of vertices that slide together.
@@ -188,7 +194,7 @@ impl Domain {
     }
 
     /// Returns the edges along which vertices inside the mesh may slide: lines, and edges between regions. Edges between
-    /// regions are omitted after [`free_interfaces`](Self::free_interfaces).
+    /// regions are omitted after [`free_interfaces`](Self::free_interfaces), lines after [`free_lines`](Self::free_lines).
     pub fn lines(&self) -> Vec<[u32; 2]> {
         [&self.lines[..], &self.interface_edges].concat()
     }
@@ -197,6 +203,7 @@ impl Domain {
     pub fn free_interfaces(&mut self) {
         self.has_free_interfaces = true;
         self.interface_edges = Vec::new();
+        self.between_regions = Vec::new();
         let held = std::mem::take(&mut self.interfaces);
         self.mesh.fixed.truncate(self.mesh.fixed.len() - held.len());
     }
@@ -204,6 +211,26 @@ impl Domain {
     /// Returns whether vertices between regions are fixed because they lie there.
     pub fn holds_interfaces(&self) -> bool {
         !self.has_free_interfaces
+    }
+
+    /// Lets vertices on lines inside of the mesh move, and on curves of the model of a file, unless they are fixed for another
+    /// reason. Vertices then slide along the boundary and between regions alone.
+    pub fn free_lines(&mut self) {
+        self.has_free_lines = true;
+        self.lines = Vec::new();
+        let mut stays = vec![false; self.mesh.points.len()];
+        self.anchored.iter().for_each(|&vertex| stays[vertex as usize] = true);
+        let fixed = &mut self.mesh.fixed;
+        fixed.truncate(fixed.len() - self.interfaces.len());
+        fixed.retain(|&vertex| stays[vertex as usize]);
+        self.interfaces.clone_from(&self.between_regions);
+        self.interfaces.retain(|&vertex| !stays[vertex as usize]);
+        fixed.extend_from_slice(&self.interfaces);
+    }
+
+    /// Returns whether vertices on lines are fixed because they lie there.
+    pub fn holds_lines(&self) -> bool {
+        !self.has_free_lines
     }
 
     /// Lays the mesh out in a plane of space: its points are positions in the plane.
@@ -415,6 +442,29 @@ mod tests {
         assert_eq!(domain.mesh().fixed, [1, 2, 3]);
         assert!(domain.fix(&[0, 5]).is_err() && domain.fix_all_but(&[5]).is_err());
         assert_eq!(domain.mesh().fixed, [1, 2, 3]);
+    }
+
+    #[test]
+    fn freed_lines_leave_vertices_fixed_that_are_fixed_for_another_reason() {
+        // The line from 1 to 2 is on the boundary, that from 4 to 2 also between the regions.
+        let points = square().mesh().points.clone();
+        let triangles = square().mesh().triangles.clone();
+        let domain = Domain::of_mesh(points, triangles, vec![[1, 2], [4, 2]], &[1, 1, 2, 2]);
+        assert!(domain.interface_vertices().is_empty() && domain.holds_lines());
+        for interfaces_first in [false, true] {
+            let mut domain = domain.clone();
+            domain.fix(&[2]).unwrap();
+            if interfaces_first {
+                domain.free_interfaces();
+            }
+            domain.free_lines();
+            let between: &[u32] = if interfaces_first { &[] } else { &[4] };
+            assert_eq!(domain.interface_vertices(), between);
+            assert_eq!(domain.mesh().fixed, [&[2], between].concat());
+            domain.free_interfaces();
+            assert_eq!(domain.mesh().fixed, [2]);
+            assert!(domain.lines().is_empty() && !domain.holds_lines());
+        }
     }
 
     #[test]

@@ -87,6 +87,9 @@ impl<'f> Job<'f> {
     /// # Errors
     /// [`JobError::Smooth`] with `only-bad` if the mesh cannot be smoothed.
     pub fn settings(mut self, settings: &Settings) -> Result<Self, JobError> {
+        if settings.frees_lines {
+            self.domain.free_lines();
+        }
         if let Some(limit) = settings.only_bad {
             let fixed = self.domain.fix_far_from_bad(limit, settings.rings_of_bad());
             fixed.map_err(|error| self.error(error))?;

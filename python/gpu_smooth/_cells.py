@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gpu_smooth import _native
+from gpu_smooth._ends import between_regions, boundary_of
 from gpu_smooth._errors import MeshError
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ class Cells(NamedTuple):
     """Vertices at which groups of lines or vertices end, of shape (k,). They stay where others slide."""
     periodic: Integers = np.empty((0, 2), np.int64)
     """Pairs of vertices that slide together, of shape (k, 2)."""
+    of_model: Integers = np.empty(0, np.int64)
+    """Vertices inside the mesh on curves of a model that have no lines, of shape (k,). They stay unless lines are free."""
 
     def options(self, given: dict[str, Any], vertices: int) -> dict[str, Any]:
         """Return options with the constraints of the cells, beside those that were given."""
@@ -48,8 +51,10 @@ class Cells(NamedTuple):
             )
         fixed = np.zeros(vertices, dtype=bool)
         fixed[self.anchored] = True
+        if not given.get("free_lines"):
+            fixed[self.of_model] = True
         if given.get("slide"):
-            fixed[self.ends] = True
+            fixed[self._ends_that_slide(vertices) if given.get("free_lines") else self.ends] = True
         if "fixed" in given:
             fixed[_native.vertex_set("fixed", given["fixed"], vertices)] = True
         lines = self.lines
@@ -61,6 +66,13 @@ class Cells(NamedTuple):
         if given.get("slide") and len(self.periodic):
             found["periodic"] = self.periodic
         return {**found, **{name: value for name, value in given.items() if name not in ("fixed", "lines")}}
+
+    def _ends_that_slide(self, vertices: int) -> Integers:
+        """Return the ends of groups along which vertices slide if lines are free: on the boundary and between regions."""
+        curves = boundary_of(self.triangles).ravel()
+        if self.regions is not None:
+            curves = np.union1d(curves, between_regions(self.regions, self.triangles, vertices))
+        return np.intersect1d(self.ends, curves)
 
 
 def with_groups(options: dict[str, Any], groups: Callable[[], dict[str, Callable[[], Any]]]) -> dict[str, Any]:

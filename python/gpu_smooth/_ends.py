@@ -49,6 +49,15 @@ def ends_of_vertices(vertices: Integers, triangles: Integers, lines: Integers) -
     return np.unique(np.concatenate([curves[first & ~second, 0], curves[second & ~first, 1]]))
 
 
+def between_regions(regions: npt.NDArray[Any], triangles: Integers, vertices: int) -> Integers:
+    """Return the vertices of triangles of several regions. `regions` has shape (m,), `triangles` (m, 3)."""
+    number = np.unique(regions, return_inverse=True)[1].ravel()
+    low, high = np.full(vertices, number.max(initial=0)), np.zeros(vertices, np.int64)
+    np.minimum.at(low, triangles.ravel(), np.repeat(number, 3))
+    np.maximum.at(high, triangles.ravel(), np.repeat(number, 3))
+    return np.flatnonzero(low < high)
+
+
 def boundary_of(triangles: Integers) -> Integers:
     """Return the edges of exactly one triangle, of shape (k, 2)."""
     sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)

@@ -136,7 +136,13 @@ class MeshFile:
         return self._native.data(name)
 
     def write(
-        self, path: Path, points: Array | Result, *, slide: bool = False, moved_fixed: bool = False
+        self,
+        path: Path,
+        points: Array | Result,
+        *,
+        slide: bool = False,
+        free_lines: bool = False,
+        moved_fixed: bool = False,
     ) -> None:
         """Write the file with its vertices at other points, and no other change.
 
@@ -152,6 +158,9 @@ class MeshFile:
         slide : bool, default False
             Whether vertices may have slid along the boundary, lines and edges between regions, as by `smooth` with
             `slide=True`. A `Result` knows. Vertices of points and other elements, and ends of groups, are still compared.
+        free_lines : bool, default False
+            Whether vertices on lines inside of the mesh may have moved, as by `smooth` with `free_lines=True`. A `Result`
+            knows.
         moved_fixed : bool, default False
             Write any points, such as those of an application that has moved the boundary.
 
@@ -166,9 +175,9 @@ class MeshFile:
         from gpu_smooth._result import Result
 
         if isinstance(points, Result):
-            slide = points._outcome.slides
+            slide, free_lines = points._outcome.slides, points._outcome.frees_lines
             points = points.points
-        self._native.write(os.fsdecode(path), points, slide=slide, moved_fixed=moved_fixed)
+        self._native.write(os.fsdecode(path), points, slide=slide, free_lines=free_lines, moved_fixed=moved_fixed)
 
     def difference(self, other: MeshFile) -> str | None:
         """Return the first difference to another file apart from coordinates, None without one."""

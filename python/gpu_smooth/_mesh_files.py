@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gpu_smooth._cells import Cells
-from gpu_smooth._ends import boundary_of
+from gpu_smooth._ends import between_regions, boundary_of
 
 if TYPE_CHECKING:
     from gpu_smooth._files import MeshFile
@@ -25,13 +25,10 @@ def cells_of(file: MeshFile) -> Cells:
     triangles, lines, regions = file.triangles, file.lines, file.regions
     on_curves = np.union1d(boundary_of(triangles), lines)
     if regions is not None:
-        low, high = np.full(len(file.points), regions.max(initial=0)), np.zeros(len(file.points), np.int64)
-        np.minimum.at(low, triangles.ravel(), np.repeat(regions, 3))
-        np.maximum.at(high, triangles.ravel(), np.repeat(regions, 3))
-        on_curves = np.union1d(on_curves, np.flatnonzero(low < high))
-    constrained = np.setdiff1d(file._native.constrained, on_curves)
-    anchored = np.union1d(file._native.anchored_alone, constrained)
-    return Cells(triangles, lines, anchored, regions, periodic=file.periodic)
+        on_curves = np.union1d(on_curves, between_regions(regions, triangles, len(file.points)))
+    anchored = file._native.anchored_alone
+    of_model = np.setdiff1d(np.setdiff1d(file._native.constrained, on_curves), anchored)
+    return Cells(triangles, lines, anchored, regions, periodic=file.periodic, of_model=of_model)
 
 
 def groups_of(file: MeshFile) -> dict[str, Callable[[], Any]]:

@@ -42,6 +42,7 @@ class MeshOptions(TypedDict, total=False):
     hausdorff: float | None
     periodic: Array | None
     keep_layers: str | tuple[str, Array] | None
+    free_lines: bool | None
     only_bad: float | None
     rings: int | None
     target: Target | None

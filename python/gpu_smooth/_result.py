@@ -22,7 +22,8 @@ _METHODS = (
 )
 _PROPERTIES = (
     "axes", "metric", "has_target", "engine", "stop", "fault", "remarks", "sweeps", "corrections", "newton_steps",
-    "newton_iterations", "best_sweep", "movable_f", "remaining", "held_back", "slides", "slid", "floored", "prepare_seconds", "seconds",
+    "newton_iterations", "best_sweep", "movable_f", "remaining", "held_back", "slides", "frees_lines", "slid",
+    "floored", "prepare_seconds", "seconds",
 )
 
 

@@ -35,7 +35,7 @@ class Smoother:
         Vertices of each triangle, numbered from 0.
     **options
         Options that belong to the mesh: `fixed`, `lines`, `regions`, `slide`, `corner_angle`, `hausdorff`, `periodic`,
-        `keep_layers`, `only_bad`, `rings`, `target`, `target_rings`, `target_of`, `surface`, `z` and `untangle`.
+        `free_lines`, `keep_layers`, `only_bad`, `rings`, `target`, `target_rings`, `target_of`, `surface`, `z` and `untangle`.
         `smooth` describes each.
 
     Raises
@@ -188,6 +188,10 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         Walls are the boundary, `lines` and lines between regions; a tuple such as `("rows=3", walls)` has the vertices of
         the only walls that count, as `fixed` takes vertices. For a mesh with named groups, `"rows=3,GROUP"` names groups of walls.
         If no other vertex is free, the points do not move, and a warning says so.
+    free_lines : bool, default False
+        Let vertices on lines inside of the mesh move, and not slide along these lines: for files that list all edges of
+        the mesh as lines, as some converters write them. Vertices on the boundary, between regions, on points and on
+        elements other than lines stay.
     only_bad : float, optional
         Let only vertices move that are near a triangle with an inverse mean ratio above this number.
     rings : int, default 2

@@ -151,12 +151,13 @@ pub(crate) fn moved_fixed(py: Python<'_>, vertex: usize, slides: bool) -> PyErr 
     let text = match slides {
         false => format!(
             "points[{vertex}]: the vertex has moved, but is on the boundary, on a line, between regions or on other elements of \
-             the file. Pass slide=True if the mesh was smoothed with slide=True, or the Result in place of points, or \
+             the file. Pass slide=True or free_lines=True if the mesh was smoothed so, or the Result in place of points, or \
              moved_fixed=True to write any points"
         ),
         true => format!(
             "points[{vertex}]: the vertex has moved, but is an end of a group or on other elements of the file, and does not \
-             slide. Pass fixed=MeshFile.anchored to the run, or moved_fixed=True to write any points"
+             slide. Pass fixed=MeshFile.anchored to the run, or free_lines=True if the mesh was smoothed so, or moved_fixed=True \
+             to write any points"
         ),
     };
     with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
@@ -237,8 +238,8 @@ fn explained(error: &MeshError) -> String {
             format!("target: vertex {vertex} has no target: {problem}. Sizes are positive, tensors (xx, xy, yy) positive definite")
         }
         MeshError::NothingFree { .. } => format!(
-            "{error}: all are on the boundary, fixed, on lines or between regions. Pass slide=True, fix fewer vertices, or \
-             refine the mesh"
+            "{error}: all are on the boundary, fixed, on lines or between regions. Pass free_lines=True if lines hold them, \
+             pass slide=True, fix fewer vertices, or refine the mesh"
         ),
         MeshError::PointCount { .. } => format!("points: {error}. Pass one row per vertex"),
         MeshError::ValueCount { .. } => format!("{error}. Pass one row per vertex"),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use gpu_smooth_job::options::Settings;
 use mesh_io::{
     Conversion, Encoding, FieldError, MeshFile as File, ReadError, ReadOptions, WriteError,
 };
@@ -174,24 +175,27 @@ impl MeshFile {
     }
 
     /// Writes the file with its vertices at other points. Third coordinates are written if those of the file differ.
-    #[pyo3(signature = (path, points, *, slide, moved_fixed))]
+    #[pyo3(signature = (path, points, *, slide, free_lines, moved_fixed))]
     fn write(
         &self,
         py: Python<'_>,
         path: PathBuf,
         points: &Bound<'_, PyAny>,
         slide: &Bound<'_, PyAny>,
+        free_lines: &Bound<'_, PyAny>,
         moved_fixed: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         let points = arrays::points("points", points)?;
-        let slides = Given { name: "slide", value: slide }.flag()?;
+        let mut settings = Settings::default();
+        settings.slides = Given { name: "slide", value: slide }.flag()?;
+        settings.frees_lines = Given { name: "free_lines", value: free_lines }.flag()?;
         if !(Given { name: "moved_fixed", value: moved_fixed }.flag()?) {
             let stored = points.form.stored();
             let moved = threads::detached(py, || {
-                gpu_smooth_job::moved_fixed_vertex(&self.0, &points.xy, stored, slides)
+                gpu_smooth_job::moved_fixed_vertex(&self.0, &points.xy, stored, &settings)
             })?;
             if let Some(vertex) = moved.map_err(|error| error::of_reading(py, &error))? {
-                return Err(error::moved_fixed(py, vertex as usize, slides));
+                return Err(error::moved_fixed(py, vertex as usize, settings.slides));
             }
         }
         let z = points.form.kept_z().filter(|_| self.0.has_third_coordinates());

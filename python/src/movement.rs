@@ -11,6 +11,9 @@ use crate::remarks::Remarks;
 pub(crate) fn domain(mesh: Mesh, options: &MeshOptions) -> Result<Domain, MeshError> {
     let Mesh { points, triangles, .. } = mesh;
     let mut domain = Domain::of_mesh(points, triangles, options.lines.clone(), &options.regions);
+    if options.settings().frees_lines {
+        domain.free_lines();
+    }
     domain.fix(&options.fixed)?;
     if !options.periodic.is_empty() {
         domain.pair(options.periodic.clone());

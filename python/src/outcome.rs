@@ -224,6 +224,12 @@ impl Outcome {
         self.prepared.options.settings().slides
     }
 
+    /// Whether vertices on lines inside of the mesh may move freely.
+    #[getter]
+    fn frees_lines(&self) -> bool {
+        self.prepared.options.settings().frees_lines
+    }
+
     /// Number of vertices that slid along lines.
     #[getter]
     fn slid(&self) -> usize {

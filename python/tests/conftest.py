@@ -40,14 +40,20 @@ def alternating(side: int) -> tuple[Points, Triangles]:
     return points, np.concatenate([triangles[~odd], lower, upper])
 
 
-def written(path: Path, points: npt.NDArray[Any], triangles: Triangles) -> Path:
-    """Write a mesh as a VTK file of the type of the points, with all digits. Points of two coordinates get z = 0."""
+def written(
+    path: Path, points: npt.NDArray[Any], triangles: Triangles, edges: npt.NDArray[np.int64] | tuple[()] = ()
+) -> Path:
+    """Write a mesh as a VTK file of the type of the points, with all digits. Points of two coordinates get z = 0.
+
+    `edges` are written as lines, of shape (k, 2).
+    """
     kind = {"float64": "double", "float32": "float"}[points.dtype.name]
     rows = [" ".join(map(str, row)) + " 0" * (3 - len(row)) for row in points.tolist()]
-    cells = ["3 " + " ".join(map(str, row)) for row in triangles.tolist()]
+    cells = [f"{len(row)} " + " ".join(map(str, row)) for row in [*triangles.tolist(), *np.asarray(edges).tolist()]]
+    types = [*["5"] * len(triangles), *["3"] * len(edges)]
     head = "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n"
-    lines = [f"POINTS {len(rows)} {kind}", *rows, f"CELLS {len(cells)} {4 * len(cells)}", *cells]
-    lines += [f"CELL_TYPES {len(cells)}", *["5"] * len(cells)]
+    lines = [f"POINTS {len(rows)} {kind}", *rows, f"CELLS {len(cells)} {4 * len(triangles) + 3 * len(edges)}", *cells]
+    lines += [f"CELL_TYPES {len(cells)}", *types]
     path.write_text(head + "\n".join(lines) + "\n")
     return path
 

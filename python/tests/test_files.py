@@ -15,7 +15,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from conftest import MESHES, command_line
+from conftest import MESHES, command_line, lattice
 
 import gpu_smooth
 from gpu_smooth import FileError, GpuSmoothError, MeshError, OptionError
@@ -246,3 +246,32 @@ def test_a_result_is_written_as_its_points_whether_vertices_slid_or_not(tmp_path
         with pytest.raises(MeshError, match="moved_fixed"):
             file.write(tmp_path / "out.node", result.points)
     file.write(tmp_path / "out.node", result.points, slide=slide)
+
+
+def test_freed_lines_move_as_by_the_command_line_and_are_written(tmp_path: Path) -> None:
+    points, triangles = lattice(6)
+    # The lower side is uneven and ends as a group at its middle. A line ends twice inside of the square.
+    points[:7, 0] = [0.0, 0.7, 1.6, 3.0, 4.2, 5.3, 6.0]
+    markers = {"side": [[a, a + 1] for a in range(3)], "line": [[a, a + 1] for a in range(22, 26)]}
+    path, out = tmp_path / "in.su2", tmp_path / "out.su2"
+    path.write_text("\n".join([
+        "NDIME= 2", f"NELEM= {len(triangles)}", *(f"5 {a} {b} {c}" for a, b, c in triangles),
+        f"NPOIN= {len(points)}", *(f"{x!r} {y!r}" for x, y in points.tolist()), f"NMARK= {len(markers)}",
+        *(f"MARKER_TAG= {name}\nMARKER_ELEMS= {len(edges)}\n" + "\n".join(f"3 {a} {b}" for a, b in edges)
+          for name, edges in markers.items()), "",
+    ]))
+    file = gpu_smooth.MeshFile(path)
+    line = np.arange(22, 27)
+    assert {22, 26} < set(file.anchored.tolist())
+    assert np.array_equal(gpu_smooth.smooth(file)[line], points[line])
+    for slide in False, True:
+        result = gpu_smooth.run(file, free_lines=True, slide=slide, engine="cpu")
+        done = command_line(path, out, "--free-lines", "--engine", "cpu", *["--slide"] * slide)
+        assert done.returncode == 0, done.stderr
+        assert np.array_equal(gpu_smooth.MeshFile(out).points, result.points)
+        assert (result.points[line] != points[line]).any(axis=1).all()
+        assert (result.slid > 0) == slide and np.array_equal(result.points[3], points[3])
+        with pytest.raises(MeshError, match="free_lines=True.*moved_fixed"):
+            file.write(out, result.points, slide=slide)
+        file.write(out, result.points, slide=slide, free_lines=True)
+        file.write(out, pickle.loads(pickle.dumps(result)))

@@ -48,6 +48,7 @@ SAMPLES: list[tuple[dict[str, Any], list[str]]] = [
     ({"keep_altitude": True}, ["--keep-altitude"]),
     ({"improve_worst": "min-angle"}, ["--improve-worst=min-angle"]),
     ({"improve_worst": True}, ["--improve-worst"]),
+    ({"free_lines": True, "slide": True}, ["--free-lines", "--slide"]),
     ({"only_bad": 1.6, "rings": 0}, ["--only-bad", "1.6", "--rings", "0"]),
     ({"slide": True, "corner_angle": 20}, ["--slide", "--corner-angle", "20"]),
     ({"surface": "sphere"}, ["--surface", "sphere"]),
@@ -80,7 +81,13 @@ def test_options_act_as_those_of_the_command_line(
         points[:, 1] = 12.0 * (1.4 ** points[:, 1] - 1.0) / (1.4**12 - 1.0)
     # The boundary is uneven, so that vertices have somewhere to slide to.
     points[:, 0] += 0.2 * np.sin(points[:, 0]) * (points[:, 0] % 12 > 0)
-    source, destination = written(tmp_path / "in.vtk", points, triangles), tmp_path / "out.vtk"
+    lines = np.empty((0, 2), np.int64)
+    if "free_lines" in options:
+        lines = np.concatenate([triangles[:, :2], triangles[:, 1:], triangles[:, ::2]])
+        with pytest.raises(MeshError, match="free_lines=True if lines hold them"):
+            gpu_smooth.smooth(points, triangles, lines=lines)
+        options = {**options, "lines": lines}
+    source, destination = written(tmp_path / "in.vtk", points, triangles, lines), tmp_path / "out.vtk"
     done = command_line(source, destination, *words)
     assert done.returncode == 0, done.stderr
     smoothed = gpu_smooth.smooth(points, triangles, **options)

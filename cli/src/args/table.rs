@@ -44,13 +44,13 @@ impl Selection for OfRun {
 selection! {
     /// Options of each run of `gpu-smooth try`.
     OfTrial: [
-        "engine", "surface", "z", "slide", "corner-angle", "hausdorff", "only-bad", "rings", "max-move", "keep-altitude",
+        "engine", "surface", "z", "slide", "corner-angle", "hausdorff", "free-lines", "only-bad", "rings", "max-move", "keep-altitude",
         "untangle",
     ]
 }
 selection! {
     /// Options of `gpu-smooth compare`.
-    OfComparison: ["surface", "z", "slide", "corner-angle", "hausdorff", "only-bad", "rings"]
+    OfComparison: ["surface", "z", "slide", "corner-angle", "hausdorff", "free-lines", "only-bad", "rings"]
 }
 selection! {
     /// Options of `gpu-smooth bench`.
@@ -188,8 +188,8 @@ mod tests {
     #[test]
     fn each_name_of_a_command_is_an_option_of_the_table() {
         let count = |has: fn(&str) -> bool| OPTIONS.iter().filter(|row| has(row.name)).count();
-        assert_eq!(count(OfTrial::has), 11);
-        assert_eq!(count(OfComparison::has), 7);
+        assert_eq!(count(OfTrial::has), 12);
+        assert_eq!(count(OfComparison::has), 8);
         assert_eq!(count(OfBench::has), 5);
         assert_eq!(count(OfCoordinates::has), 2);
     }

@@ -22,6 +22,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     let (reading, settings) = (ReadRequest::from(&args.reading), args.options.settings());
     let (surface, z) = (settings.surface, ThirdCoordinate::of(settings, &args.fields.interpolate));
     let movable = MovableRequest::of(args.moving, settings);
+    let holds_lines = !movable.free_lines;
     let slide = SlideRequest::of(args.sides, settings);
     let fields = FieldsRequest::from(args.fields);
     let mut before = read(&args.before, &reading)?;
@@ -81,6 +82,12 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
             }
         };
         list.push(hint.to_owned());
+        let of_lines = &before.source.constraints().vertices;
+        if holds_lines && of_lines.iter().any(|vertex| held.binary_search(vertex).is_ok()) {
+            list.push(
+                "if they moved in a run with --free-lines, give --free-lines here too".to_owned(),
+            );
+        }
     }
     if explain::are_across(&after, bad) {
         list.push("--surface sphere continues longitudes across the meridian at which longitudes wrap, such as 180 degrees".to_owned());

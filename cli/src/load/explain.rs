@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::load::fixed::nothing_free;
 use gpu_smooth::{
     MeshError, Topology,
     topology::{BadTriangle, Crossing, HangingNode},
@@ -151,12 +152,6 @@ fn has_twins(file: &LoadedMesh, triangles: &[usize]) -> bool {
     triangles.iter().filter_map(corners).any(|corners| !seen.insert(corners))
 }
 
-/// Returns the error for a mesh without free vertices. Counts the vertices of the file: on the sphere, the mesh may
-/// have further copies.
-pub(crate) fn nothing_free(file: &LoadedMesh) -> MeshError {
-    MeshError::NothingFree { vertices: file.source.points().len() }
-}
-
 /// Returns an error in the terms of a file: path, location, problem and remedy, on one line unless several triangles
 /// are listed.
 pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
@@ -186,9 +181,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             let count = triangles.len();
             let (text, details) = match &bad_triangles(file, &triangles[..count.min(TOLD)])[..] {
                 [] => (format!("{path}: {error}"), Vec::new()),
-                [one] if count == 1 => {
-                    (format!("{}: {}", one.place, one.statement()), Vec::new())
-                }
+                [one] if count == 1 => (format!("{}: {}", one.place, one.statement()), Vec::new()),
                 first => (
                     format!("{}: {count} triangles are inverted or flat", first[0].file),
                     list(first, count, "--report FILE"),
@@ -226,16 +219,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             CliError::input(format!("{}: {error}", file.vertex_place(vertex)))
                 .with_remedy("Correct it")
         }
-        MeshError::NothingFree { .. } => CliError::input(format!(
-            "{path}: {}: all are on the boundary, on constraint lines, between regions or of other elements",
-            nothing_free(file)
-        ))
-        .with_remedy(match file.domain.interface_vertices() {
-            [] => {
-                "There is nothing to smooth, unless --slide lets some of them move along the boundary"
-            }
-            _ => "Let those between regions move: --free-interfaces",
-        }),
+        MeshError::NothingFree { .. } => nothing_free(file, false, false),
         MeshError::OverlappingStar { vertex, turns } => CliError::input(format!(
             "{}: the triangles around vertex {} overlap: they wind {turns} times around it",
             file.vertex_place(vertex),
@@ -274,9 +258,8 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             ))
             .with_remedy("Smooth the mesh in a projection around that pole, or with a vertex at the pole itself")
         }
-        MeshError::OutOfRange { .. } => {
-            CliError::input(format!("{path}: {error}")).with_remedy("Write the mesh in another unit")
-        }
+        MeshError::OutOfRange { .. } => CliError::input(format!("{path}: {error}"))
+            .with_remedy("Write the mesh in another unit"),
         // Readers refuse meshes with the other errors, or the command never requests the runs that cause them.
         _ => CliError::input(format!("{path}: {error}")),
     }

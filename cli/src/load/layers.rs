@@ -18,6 +18,8 @@ const NAMED: usize = 4;
 #[derive(Default)]
 pub(super) struct KeptLayersEffect {
     pub(super) notes: Vec<String>,
+    /// Vertices that the layers fix and that were free before, ascending.
+    pub(super) fixed: Vec<u32>,
     /// The reason if no vertex outside of the layers is free. The mesh is then unchanged.
     pub(super) nothing_to_do: Option<String>,
 }
@@ -44,6 +46,8 @@ pub(super) fn keep_layers(
         effect.nothing_to_do = Some(text.to_owned());
         return Ok(effect);
     }
+    let is_free = |&vertex: &u32| topology.free()[vertex as usize];
+    effect.fixed = layers.vertices.iter().copied().filter(is_free).collect();
     drop(topology);
     file.domain.fix(&layers.vertices)?;
     Ok(effect)

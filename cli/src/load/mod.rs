@@ -19,7 +19,7 @@ mod targets;
 mod walls;
 
 pub(crate) use fields::InterpolatedFields;
-pub(crate) use fixed::FixedBy;
+pub(crate) use fixed::{FixedBy, nothing_free};
 pub(crate) use mesh::LoadedMesh;
 pub(crate) use movable::MovableSelection;
 pub(crate) use plane::axes_legend;

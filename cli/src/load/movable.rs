@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{MeshError, Topology, front_ends::select};
+use gpu_smooth::{Topology, front_ends::select};
 use mesh_io::Groups;
 
 use crate::load::explain;
@@ -18,6 +18,8 @@ pub(crate) struct MovableSelection {
     pub(crate) notes: Vec<String>,
     /// Number of vertices that could move without `--fix…` and `--only…`; 0 if the command line has neither.
     free_without: usize,
+    /// Vertices that boundary layers alone fix, ascending.
+    pub(crate) layers: Vec<u32>,
     /// The reason if there is nothing to smooth: no triangle is as bad as `--only-bad` requires. The mesh is then
     /// unchanged.
     pub(crate) nothing_to_do: Option<String>,
@@ -44,6 +46,9 @@ impl MovableRequest {
         if self.free_interfaces {
             file.domain.free_interfaces();
         }
+        if self.free_lines {
+            file.domain.free_lines();
+        }
         let mut choice = MovableSelection::default();
         choice.notes.extend(self.free_interfaces.then(|| held_interfaces(file)).flatten());
         if self.restricts() {
@@ -53,6 +58,7 @@ impl MovableRequest {
             let layers = keep_layers(file, kept)?;
             choice.notes.extend(layers.notes);
             choice.nothing_to_do = layers.nothing_to_do;
+            choice.layers = layers.fixed;
         }
         Ok(choice)
     }
@@ -77,15 +83,9 @@ impl MovableRequest {
 }
 
 impl MovableSelection {
-    /// Returns the error for options that leave no free vertex; `None` if another cause or another error is at hand.
-    pub(crate) fn nothing_free(&self, file: &LoadedMesh, error: &MeshError) -> Option<CliError> {
-        let is_it = self.free_without > 0 && matches!(error, MeshError::NothingFree { .. });
-        let path = file.source.path().display();
-        is_it.then(|| {
-            let error = explain::nothing_free(file);
-            CliError::input(format!("{path}: {error}"))
-                .with_remedy("--fix, --only and the like leave nothing to smooth: let more move")
-        })
+    /// Returns whether `--fix…` and `--only…` exclude vertices of a mesh that has free vertices without these options.
+    pub(crate) fn excludes_free(&self) -> bool {
+        self.free_without > 0
     }
 }
 

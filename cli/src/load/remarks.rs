@@ -9,7 +9,12 @@ use crate::load::LoadedMesh;
 /// fixed.
 pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
     // The effect of degrees depends on `--surface`.
-    let told = file.source.remarks().iter().filter(|remark| **remark != Remark::Degrees);
+    let is_told = |remark: &&Remark| match remark {
+        Remark::Degrees => false,
+        Remark::AllOnModelCurves => file.domain.holds_lines(),
+        _ => true,
+    };
+    let told = file.source.remarks().iter().filter(is_told);
     let mut remarks: Vec<String> = told.map(with_effect).collect();
     match file.domain.interface_vertices().len() {
         0 => {}
@@ -31,7 +36,9 @@ fn with_effect(remark: &Remark) -> String {
             let their = if *count == 1 { "its" } else { "their" };
             format!("{remark}: {their} vertices stay fixed")
         }
-        Remark::AllOnModelCurves => format!("{remark}: all of them stay fixed"),
+        Remark::AllOnModelCurves => {
+            format!("{remark}: all of them stay fixed (--free-lines lets those on curves move)")
+        }
         Remark::UnlistedPairs { count, list } => format!(
             "periodic pairs that name a node which {list} does not list do not slide: {count}"
         ),

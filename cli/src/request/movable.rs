@@ -13,6 +13,8 @@ use crate::kept_layers::KeptLayers;
 pub(crate) struct MovableRequest {
     /// Whether vertices between regions may move.
     pub(crate) free_interfaces: bool,
+    /// Whether vertices on lines inside of the mesh may move.
+    pub(crate) free_lines: bool,
     /// Names or tags of groups whose vertices stay, several with commas between them.
     pub(crate) fix: Vec<String>,
     /// Files that list vertices which stay.
@@ -42,10 +44,21 @@ impl MovableRequest {
     /// Returns the request of the options.
     pub(crate) fn of(args: MoveArgs, settings: &Settings) -> Self {
         let rings = settings.rings_of_bad();
+        let free_lines = settings.frees_lines;
         let near_bad = settings.only_bad.map(|above| NearBad { above, rings });
         let MoveArgs { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, keep_layers } =
             args;
-        Self { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, near_bad, keep_layers }
+        Self {
+            free_interfaces,
+            free_lines,
+            fix,
+            fix_vertices,
+            fix_array,
+            fix_box,
+            only,
+            near_bad,
+            keep_layers,
+        }
     }
 
     /// Keeps boundary layers that are found, unless an option says otherwise.

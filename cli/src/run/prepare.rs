@@ -10,7 +10,7 @@ use gpu_smooth_job::{Adapted, TargetFacts};
 
 use crate::error::CliError;
 use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, SlidingVertices};
-use crate::load::{explain, remarks};
+use crate::load::{explain, nothing_free, remarks};
 use crate::report::Failure;
 use crate::request::SmoothRequest;
 use crate::run::engine::{self, OpenEngine};
@@ -179,18 +179,9 @@ pub(super) fn refusal(
     file: &LoadedMesh,
     error: &MeshError,
 ) -> Failure {
-    if let Some(error) = choice.nothing_free(file, error) {
-        return error.into();
-    }
     let refused = match error {
-        MeshError::NothingFree { .. }
-            if request.slide.is_some() && file.domain.interface_vertices().is_empty() =>
-        {
-            let (path, error) = (file.source.path().display(), explain::nothing_free(file));
-            CliError::input(format!(
-                "{path}: {error}, and no vertex can slide, as all are corners or held"
-            ))
-            .with_remedy("Refine the mesh to get vertices between")
+        MeshError::NothingFree { .. } => {
+            nothing_free(file, request.slide.is_some(), choice.excludes_free())
         }
         _ => explain::mesh_error(file, error),
     };

@@ -76,7 +76,7 @@ fn of_topology(input: &Input<'_>, topology: &Topology<'_>, taken: &OpenEngine) -
         triangles: file.mesh().triangles.len(),
         free: topology.free_count(),
         sliding: None,
-        fixed: FixedBy::counts(file, topology),
+        fixed: FixedBy::counts(file, topology, &input.choice.layers),
         bad: 0,
         nothing_to_do: input.choice.nothing_to_do.clone(),
         adapter: match &*taken.backend {

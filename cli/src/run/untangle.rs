@@ -155,8 +155,9 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
         }
         count => {
             let why = "cannot be mended by moving vertices, as none of their vertices is free, or two fixed vertices \
-                       are at the same point. Vertices are fixed on the boundary, on constraint lines, between regions \
-                       and of other elements. Mend the file, or let those between regions move: --free-interfaces"
+                       are at the same point. Vertices are fixed on the boundary, on lines, between regions and of other \
+                       elements. Mend the file, or let vertices on lines move: --free-lines, or vertices between \
+                       regions: --free-interfaces"
                 .to_owned();
             (hopeless, count, why)
         }

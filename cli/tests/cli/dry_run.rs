@@ -7,7 +7,7 @@ use std::fs;
 
 /// Returns the count at the start of the line that contains `words`.
 #[track_caller]
-fn count(text: &str, words: &str) -> usize {
+pub(super) fn count(text: &str, words: &str) -> usize {
     let line = text.lines().find(|line| line.contains(words));
     let line = line.unwrap_or_else(|| panic!("no {words:?} in:\n{text}"));
     line.split_whitespace().next().unwrap().parse().unwrap()

@@ -6,6 +6,7 @@ use gpu_smooth_job::options::{GivenOptions, Kind, OPTIONS, OptionRow};
 use gpu_smooth_job::{Job, RunRequest, TargetKind, TargetRequest};
 use mesh_io::MeshFile;
 
+use super::free_lines::msh;
 use super::regions::{folder, halves};
 use super::{Folder, disturbed};
 
@@ -31,6 +32,7 @@ fn sample(row: &OptionRow) -> Option<&'static [(&'static str, &'static str)]> {
         "slide" => &[("slide", "true")],
         "corner-angle" => &[("slide", "true"), ("corner-angle", "10")],
         "hausdorff" => &[("slide", "true"), ("hausdorff", "0.01")],
+        "free-lines" => &[("free-lines", "true")],
         "only-bad" => &[("only-bad", "1.2")],
         "rings" => &[("only-bad", "1.2"), ("rings", "0")],
         "max-move" => &[("max-move", "0.2")],
@@ -77,7 +79,10 @@ fn a_job_and_the_command_line_write_equal_files_by_each_option_of_the_table() {
         let Some(options) = sample(row) else { continue };
         assert!(options.iter().any(|(name, _)| *name == row.name), "{}", row.name);
         // The formats take turns.
-        let files = &of_regions[i % 2];
+        let files = match row.name {
+            "free-lines" => &vec![("in.msh", msh(&mesh, true).into_bytes())],
+            _ => &of_regions[i % 2],
+        };
         let (folder, input) = (folder(files), files[0].0);
         let file = MeshFile::read(&folder.path(input)).unwrap();
         let given = GivenOptions::of(options).unwrap();

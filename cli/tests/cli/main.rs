@@ -16,6 +16,7 @@ mod dry_run;
 mod ends;
 mod files;
 mod formats;
+mod free_lines;
 mod groups;
 mod html;
 mod interpolate;

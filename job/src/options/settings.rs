@@ -26,6 +26,8 @@ pub struct Settings {
     pub corner_angle: Option<f64>,
     /// Largest distance of the lines from the given lines, in the unit of the mesh.
     pub hausdorff: Option<f64>,
+    /// Whether vertices on lines inside of the mesh move freely.
+    pub frees_lines: bool,
     /// Inverse mean ratio of bad triangles. Only vertices near bad triangles move.
     pub only_bad: Option<f64>,
     /// Number of rings of triangles around a bad triangle that count as near.

@@ -271,6 +271,15 @@ pub const OPTIONS: &[OptionRow] = &[
     .usually("a tenth of the local edge length")
     .needs(&["slide"]),
     row(
+        "free-lines",
+        ToMesh,
+        MOVABLE,
+        Flag(|to| to.frees_lines = true),
+        "Let vertices on lines inside of the mesh move, and not slide along these lines: for files that list all edges of the \
+         mesh as lines, as some converters write them. Vertices on the boundary, between regions, on points and on elements \
+         other than lines stay",
+    ),
+    row(
         "only-bad",
         ToMesh,
         MOVABLE,
