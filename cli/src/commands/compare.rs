@@ -44,12 +44,18 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
         CliError::from(error).within(&args.before.display().to_string())
     };
     let slide = slide.map(|slide| slide.slide(&before)).transpose()?;
-    let proof = Proof::of(
-        MeshVersion { file: &before, fields: &mine },
-        MeshVersion { file: &after, fields: &theirs },
-        slide.as_ref(),
-    )
-    .map_err(told)?;
+    let formats = [&before, &after].map(|file| file.source.format());
+    let is_converted = formats[0] != formats[1];
+    let proof = if is_converted {
+        Proof::of_conversion(&before, &after, slide.as_ref())
+    } else {
+        Proof::of(
+            MeshVersion { file: &before, fields: &mine },
+            MeshVersion { file: &after, fields: &theirs },
+            slide.as_ref(),
+        )
+    };
+    let proof = proof.map_err(told)?;
     if proof.difference.is_some() {
         let error = CliError::run(proof.problem().unwrap_or_default());
         let missing = fields.missing(&before, &after);
@@ -97,7 +103,13 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
         return Err(CliError::run(text).with_details(list));
     }
     if !show.quiet {
-        tell::say(&summary(&before, &after, &proof));
+        if is_converted {
+            let [mine, theirs] = formats;
+            tell::say(&format!(
+                "{mine} and {theirs}: positions and triangles were compared, and neither groups nor other data"
+            ));
+        }
+        tell::say(&summary(&before, &after, &proof, is_converted));
         for FileHash { path, sha256 } in proof::hashes(&before).iter().chain(&proof::hashes(&after))
         {
             tell::say(&format!("{sha256}  {path}"));
@@ -109,8 +121,8 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     Ok(())
 }
 
-/// Returns two or three lines on the moved vertices.
-fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
+/// Returns two or three lines on the moved vertices. `is_converted` is true for files of different formats.
+fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof, is_converted: bool) -> String {
     let Proof { moved, slid, pairs, coincident, .. } = proof;
     let (old, new) = (&before.mesh().points, &after.mesh().points);
     let distance = |&vertex: &u32| {
@@ -139,10 +151,12 @@ fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof) -> String {
     let farthest = moved.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     let triangles = after.mesh().triangles.len();
     let mut text = format!(
-        "only coordinates differ: {} of {} vertices have moved\n\
-         {slides}every vertex that must stay has the same bits; none of {triangles} triangles is inverted or flat",
+        "{}: {} of {} vertices have moved\n\
+         {slides}every vertex that must stay has the same {}; none of {triangles} triangles is inverted or flat",
+        if is_converted { "the triangles are the same" } else { "only coordinates differ" },
         moved.len(),
-        after.source.points().len()
+        after.source.points().len(),
+        if is_converted { "position, rounded as the second file stores it" } else { "bits" },
     );
     if let Some(vertex) = farthest {
         let place = after.vertex_place(vertex);

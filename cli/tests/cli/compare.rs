@@ -139,3 +139,36 @@ fn control_characters_of_names_in_a_table_for_programs_are_escaped_on_a_terminal
         assert!(!text.contains('\u{1b}') && text.contains("a\\u{1b}[31mb"), "{text:?}");
     }
 }
+
+#[test]
+fn files_of_two_formats_are_compared_by_positions_and_triangles() {
+    let folder = small();
+    for name in ["same.msh", "same.vtk"] {
+        folder.line(&format!("convert in.node {name} --lossy -q")).clean();
+        let told = folder.line(&format!("compare in.node {name}")).clean().out;
+        assert_holds(&told, &["neither groups nor other data", "0 of 99 vertices have moved"]);
+    }
+    folder.line("in.node out.vtk --engine cpu --quiet").clean();
+    for pair in ["in.node out.vtk", "same.msh out.vtk", "out.vtk in.node"] {
+        let told = folder.line(&format!("compare {pair}")).clean().out;
+        assert_holds(
+            &told,
+            &["the triangles are the same", "of 99 vertices have moved", "farthest"],
+        );
+    }
+    // A vertex of the boundary moves, and then a triangle is missing.
+    let text = folder.text("same.vtk");
+    let first = text.lines().position(|line| line.starts_with("POINTS")).unwrap() + 1;
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines[first] = "0.001 0.002 0";
+    fs::write(folder.path("other.vtk"), lines.join("\n")).unwrap();
+    let run = folder.line("compare in.node other.vtk");
+    assert_eq!(run.code, Some(1), "{}", run.err);
+    assert_holds(&run.err, &["1 vertex has moved that must not"]);
+    let mesh = folder.mesh("in.node");
+    let fewer = gpu_smooth::Mesh { triangles: mesh.triangles[1..].to_vec(), ..mesh };
+    fs::write(folder.path("fewer.msh"), support::write_msh22(&fewer)).unwrap();
+    let run = folder.line("compare in.node fewer.msh");
+    assert_eq!(run.code, Some(1), "{}", run.err);
+    assert_holds(&run.err, &["the triangles are not the same"]);
+}
