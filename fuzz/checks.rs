@@ -3,8 +3,7 @@
 use gpu_smooth::{
     Backend, Guard, Mesh, MeshError, Method, Metric, Options, Quality, Scheme, Slide, SmoothError,
     Smoother, Targets, Untangle,
-    options::{Derivatives, PNormExponent, Paper, WorstBy},
-    precision::{Precision, Rounding},
+    options::{Derivatives, PNormExponent, Paper, Precision, Rounding, WorstBy},
     targets::Surface,
     topology,
 };

@@ -82,7 +82,7 @@ pub mod outcome;
 mod parallel;
 mod patch;
 mod periodic;
-pub mod precision;
+mod precision;
 mod quality;
 mod resume;
 mod run;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use gpu_smooth::front_ends::{Chart, Plane, select};
 use gpu_smooth::layers::{Elements, KeepLayers, Layers};
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::Precision;
 use gpu_smooth::slide::Periodic;
 use gpu_smooth::{Mesh, MeshError, Slide, Topology};
 use mesh_io::{Affine, Constraints, MeshFile, edges_between_regions, interface_vertices};

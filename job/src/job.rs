@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gpu_smooth::front_ends::Plane;
 use gpu_smooth::layers::{KeepLayers, Layers};
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::untangle::{Untangle, Untangled};
 use gpu_smooth::{Backend, Mesh, MeshError, Options, Outcome, SmoothError, Smoother, Topology};

@@ -1,7 +1,7 @@
 //! Vertices that a file holds, and that are elsewhere in the points to write.
 
 use gpu_smooth::Topology;
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::Precision;
 use mesh_io::{MeshFile, ReadError};
 
 use crate::domain::{Domain, SlideBy};

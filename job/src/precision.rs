@@ -1,6 +1,6 @@
 //! The precision of a file in terms of the smoother.
 
-use gpu_smooth::precision::{Precision, Rounding};
+use gpu_smooth::options::{Precision, Rounding};
 
 /// Returns the precision of the smoother that rounds as a file of the given precision does.
 pub fn smoother_precision(stored: mesh_io::Precision) -> Precision {

@@ -1,7 +1,6 @@
 //! The options of a run as users give them, by the words of all front ends.
 
-use gpu_smooth::options::{Derivatives, PNormExponent, Paper, Relaxed};
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::{Derivatives, PNormExponent, Paper, Precision, Relaxed};
 use gpu_smooth::{Goal, Method, Metric, Options, Scheme, Stopping};
 
 /// The share of the way to the desired f at which a run with a goal ends, if the user gives none.

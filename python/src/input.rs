@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 use gpu_smooth::layers::Layers;
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::untangle::{Untangled, Untangling};
 use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, Untangle};

@@ -3,8 +3,7 @@
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, Options, Slide, Smoother, Stop, Stopping,
     gpu::{DeviceMesh, Sweeps},
-    options::Relaxed,
-    precision::Precision,
+    options::{Precision, Relaxed},
     slide::Periodic,
     topology, wgpu,
 };

@@ -12,7 +12,9 @@
 
 use gpu_smooth::{
     Backend, Goal, Guard, Mesh, Method, Metric, Options, Slide, Smoother, Stopping, TargetField,
-    Targets, Untangle, options::WorstBy, precision::Precision, targets::Surface,
+    Targets, Untangle,
+    options::{Precision, WorstBy},
+    targets::Surface,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

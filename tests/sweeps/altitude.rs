@@ -4,7 +4,10 @@ use crate::random::scattered;
 use crate::{backends, history, name, plate, run, with_free_layers};
 use gpu_smooth::{
     Backend, Guard, Mesh, Metric, OptionError, Options, Quality, Slide, SmoothError, Smoother,
-    Stop, TargetField, Targets, measure::Change, options::Feature, precision::Precision, topology,
+    Stop, TargetField, Targets,
+    measure::Change,
+    options::{Feature, Precision},
+    topology,
 };
 
 /// Makes a square of cells that are all cut along one diagonal. Rows become lower toward one side, against which

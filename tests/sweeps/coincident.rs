@@ -1,7 +1,7 @@
 //! Coincident vertices, on both sides of a crack or of two parts that touch, slide together.
 
 use crate::{backends, name, run};
-use gpu_smooth::{Mesh, Options, Slide, Smoother, Topology, precision::Precision};
+use gpu_smooth::{Mesh, Options, Slide, Smoother, Topology, options::Precision};
 use std::ops::Range;
 
 /// Position of a vertex of a lattice of six columns of cells. Interfaces are curved: rows and columns bend, and vertices

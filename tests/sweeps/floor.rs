@@ -5,7 +5,7 @@ use crate::worst::FIVE_DIGITS;
 use crate::{backends, name, plate, run, with_points};
 use gpu_smooth::{
     Backend, Goal, Guard, Mesh, Method, Metric, Options, Outcome, Phase, Progress, Quality, Slide,
-    Smoother, Stop, Stopping, Targets, measure::Change, precision::Precision, targets::Surface,
+    Smoother, Stop, Stopping, Targets, measure::Change, options::Precision, targets::Surface,
 };
 use std::ops::ControlFlow;
 use support::check;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::{backends, history, name, plate, run, with_points};
 use gpu_smooth::{
     Backend, Mesh, Method, Metric, OptionError, Options, Slide, SmoothError, Smoother, Stop,
-    Stopping, Targets, measure::Change, precision::Precision,
+    Stopping, Targets, measure::Change, options::Precision,
 };
 use support::check;
 

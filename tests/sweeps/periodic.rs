@@ -4,8 +4,7 @@ use crate::{backends, name, run};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Method, Metric, Options, Slide, SmoothError, Smoother, Stop,
     Stopping, Topology,
-    options::Relaxed,
-    precision::Precision,
+    options::{Precision, Relaxed},
     slide::{Motion, Periodic},
     topology,
 };

@@ -12,8 +12,7 @@ use crate::{all_schemes, backends, history, name, with_points};
 use gpu_smooth::{
     Backend, Goal, Mesh, MeshError, Method, Metric, Options, Outcome, Quality, SmoothError,
     Smoother, Stopping,
-    options::{Derivatives, PNormExponent, Paper, Relaxed},
-    precision::Precision,
+    options::{Derivatives, PNormExponent, Paper, Precision, Relaxed},
 };
 use mesh_io::MeshFile;
 use spade::{DelaunayTriangulation, Point2, Triangulation};

@@ -4,8 +4,7 @@ use crate::{backends, history, name, plate, run};
 use gpu_smooth::{
     Backend, Goal, Gpu, Mesh, MeshError, Method, Metric, OptionError, Options, Slide, SmoothError,
     Smoother, Stop, Stopping, Targets, Topology,
-    options::{Derivatives, Feature, Paper, Relaxed},
-    precision::Precision,
+    options::{Derivatives, Feature, Paper, Precision, Relaxed},
     topology,
 };
 use support::SplitMix64;

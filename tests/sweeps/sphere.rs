@@ -3,8 +3,11 @@
 
 use crate::{backends, name, run, with_points};
 use gpu_smooth::{
-    Backend, Mesh, Options, Slide, Smoother, Stop, Stopping, TargetField, Targets, gpu::Sweeps,
-    measure::Change, options::WorstBy, precision::Precision, targets::Surface,
+    Backend, Mesh, Options, Slide, Smoother, Stop, Stopping, TargetField, Targets,
+    gpu::Sweeps,
+    measure::Change,
+    options::{Precision, WorstBy},
+    targets::Surface,
 };
 use support::{SplitMix64, check};
 

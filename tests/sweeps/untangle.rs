@@ -3,7 +3,7 @@
 use crate::{plate, with_points};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Metric, Options, SmoothError, Smoother, Topology,
-    precision::Precision,
+    options::Precision,
     untangle::{Untangle, Untangled, Untangling},
 };
 use std::ops::ControlFlow;

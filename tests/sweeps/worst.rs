@@ -5,8 +5,7 @@ use gpu_smooth::{
     Backend, Guard, Mesh, Metric, Options, Outcome, Phase, Progress, Slide, Smoother, Stop,
     Stopping, Targets,
     measure::Change,
-    options::WorstBy,
-    precision::{Precision, Rounding},
+    options::{Precision, Rounding, WorstBy},
 };
 use std::ops::ControlFlow;
 use support::{SplitMix64, check};

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::Precision;
 use gpu_smooth_job::smoother_precision;
 use mesh_io::{Conversion, Encoding, Format, PointField};
 

@@ -5,7 +5,7 @@ use crate::load::plane::{likewise, of_file, remark};
 use gpu_smooth::{
     Mesh, MeshError, Topology,
     front_ends::{Chart, Plane},
-    precision::Precision,
+    options::Precision,
 };
 use gpu_smooth_job::{Domain, smoother_precision};
 use mesh_io::{MeshFile, PointField, SourceLocation, WriteError};

@@ -7,7 +7,7 @@ use std::path::Path;
 use gpu_smooth::{
     Mesh, MeshError, Metric, Smoother, TargetField,
     front_ends::Chart,
-    precision::Precision,
+    options::Precision,
     targets::{OutsideReport, Surface},
 };
 use gpu_smooth_job::{TargetFacts, TargetKind, TargetSource as Numbers};

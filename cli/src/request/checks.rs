@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 use clap::{Arg, Command, CommandFactory};
 use gpu_smooth::{
-    Backend, Mesh, Slide, Smoother, Stopping, TargetField, Targets, precision::Precision,
+    Backend, Mesh, Slide, Smoother, Stopping, TargetField, Targets, options::Precision,
     targets::Surface,
 };
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use gpu_smooth::{Guard, Options, Scheme, Stopping, precision::Precision, targets::Surface};
+use gpu_smooth::{Guard, Options, Scheme, Stopping, options::Precision, targets::Surface};
 use gpu_smooth_job::EngineRequest;
 use gpu_smooth_job::options::GivenOptions;
 

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use gpu_smooth::BackendReason;
 use gpu_smooth::front_ends::BackendChooser;
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::Precision;
 use gpu_smooth::{Backend, Checkpoint, Gpu, GpuError, MeshSize, SmoothError};
 use gpu_smooth_job::EngineRequest;
 

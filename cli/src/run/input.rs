@@ -4,7 +4,7 @@ use crate::load::conversion::NewForm;
 use crate::load::{LoadedMesh, MovableSelection};
 use crate::report::SmoothJob;
 use crate::request::SmoothRequest;
-use gpu_smooth::{front_ends::Plane, precision::Precision};
+use gpu_smooth::{front_ends::Plane, options::Precision};
 use std::time::Instant;
 
 /// A mesh with its task and the selection of movable vertices.

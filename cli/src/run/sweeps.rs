@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use gpu_smooth::{
-    Backend, Options, Outcome, Phase, Progress, SmoothError, Stop, Stopping, precision::Precision,
+    Backend, Options, Outcome, Phase, Progress, SmoothError, Stop, Stopping, options::Precision,
 };
 use gpu_smooth_job::EngineRequest;
 

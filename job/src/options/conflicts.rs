@@ -1,7 +1,6 @@
 //! The table of options that exclude each other, and the checks of options against the target of a mesh.
 
-use gpu_smooth::options::{Feature, OptionError};
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::{Feature, OptionError, Precision};
 use gpu_smooth::{Metric, Scheme};
 
 use crate::options::given::GivenOptions;

@@ -1,7 +1,7 @@
 //! Points of a mesh, and results in the form of the points.
 
 use gpu_smooth::front_ends::Plane;
-use gpu_smooth::precision::Precision;
+use gpu_smooth::options::Precision;
 use numpy::{Element, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
