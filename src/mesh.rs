@@ -16,7 +16,16 @@ pub struct Mesh {
     pub fixed: Vec<u32>,
 }
 
+impl Mesh {
+    /// Returns the numbers of vertices and triangles.
+    pub fn size(&self) -> MeshSize {
+        MeshSize { vertices: self.points.len(), triangles: self.triangles.len() }
+    }
+}
+
 /// Size of a mesh, for [`Backend::auto`](crate::Backend::auto), `Gpu::required_limits` and `Gpu::check_size`.
+/// [`Mesh::size`] returns the size of a mesh. An application that does not know its meshes yet passes the largest size
+/// that it expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshSize {
     /// Number of vertices.

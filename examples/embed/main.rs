@@ -13,7 +13,7 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
-    Gpu, Mesh, MeshSize, Metric, Options,
+    Gpu, Mesh, Metric, Options,
     gpu::{DeviceMesh, ObjectiveValues, Sweeps, VertexBuffer},
     wgpu,
 };
@@ -118,7 +118,7 @@ pub(crate) fn smooth_and_draw(mesh: &Mesh, sweeps: u32) -> Result<[Frame; 2]> {
 fn open_device(mesh: &Mesh) -> Result<(wgpu::Device, wgpu::Queue)> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
-    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let size = mesh.size();
     let application_needs = wgpu::Limits::default();
     let device = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("application"),

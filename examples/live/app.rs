@@ -1,7 +1,7 @@
 //! The application: reactions to the pointer and the keys, and the content of a frame. Draws into any texture, with or
 //! without a window.
 
-use gpu_smooth::{Gpu, Mesh, MeshSize, Metric, Scheme, wgpu};
+use gpu_smooth::{Gpu, Mesh, Metric, Scheme, wgpu};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -32,7 +32,7 @@ pub(crate) fn open(
     let adapter = adapter.map_err(|error| {
         format!("no GPU adapter: {error}. A software one, such as Mesa's lavapipe, is enough")
     })?;
-    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let size = mesh.size();
     let available = adapter.limits();
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
         // With timestamps, if available, the budget adapts the number of sweeps.

@@ -7,8 +7,8 @@ use crate::options::stopping::{Goal, Stopping};
 
 impl Options {
     /// Returns a line `name = value` for each option. Names and values do not change when a field is renamed, so old
-    /// checkpoints remain valid. A new option is a new line, and runs refuse checkpoints without the line. Equal options
-    /// have equal lines; numbers are written with all digits.
+    /// checkpoints remain valid. A new option is a new line; in a checkpoint without the line, the option had its default.
+    /// Equal options have equal lines; numbers are written with all digits.
     pub(crate) fn lines(&self) -> String {
         let Self {
             scheme,

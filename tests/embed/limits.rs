@@ -104,7 +104,7 @@ fn required_limits_and_features_are_what_this_adapter_has() {
 #[test]
 fn a_device_with_exactly_the_required_limits_smooths() {
     let mesh = bad_plate(1000);
-    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let size = mesh.size();
     let app = App::with_limits(least_limits(size)).unwrap();
     let device_mesh = app.mesh(&mesh);
     let options = Options::default().track_all(true);
@@ -121,7 +121,7 @@ fn a_device_with_exactly_the_required_limits_smooths() {
 #[test]
 fn a_device_with_exactly_the_required_limits_moves_all_vertices() {
     let mesh = bad_plate(3000);
-    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let size = mesh.size();
     let app = App::with_limits(least_limits(size)).unwrap();
     let device_mesh = app.mesh(&mesh);
     let all: Vec<u32> = (0..size.vertices as u32).collect();
@@ -135,7 +135,7 @@ fn a_device_with_exactly_the_required_limits_moves_all_vertices() {
 #[test]
 fn a_device_with_exactly_the_limits_of_a_vertex_buffer_binds_it() {
     let mesh = bad_plate(300);
-    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let size = mesh.size();
     for (offset, stride) in [(0, 96), (4, 96), (1020, 100), (1 << 16, 256)] {
         let needed = VertexBuffer::binding_size(size.vertices, stride, offset);
         let own = Limits {

@@ -72,7 +72,7 @@ pub(super) fn open<'a>(
     follow: &mut dyn PipelineObserver,
 ) -> Opened<'a> {
     let mesh = input.file.mesh();
-    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let size = mesh.size();
     follow.stage(Stage::Preparing { vertices: size.vertices });
     std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));

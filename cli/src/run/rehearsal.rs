@@ -50,7 +50,7 @@ pub(crate) fn rehearse(
     let ReadMesh { file, choice, fields, form, bytes, .. } = pipeline::read(task, follow)?;
     let input = Input { task, file: &file, choice: &choice, form, bytes, began };
     let (request, mesh) = (task.request, file.mesh());
-    let size = MeshSize { vertices: mesh.points.len(), triangles: mesh.triangles.len() };
+    let size = mesh.size();
     follow.stage(Stage::Preparing { vertices: size.vertices });
     let smoother = prepare::smoother(request, &file);
     if request.untangle.is_some() && untangle::can_mend(&smoother) {
