@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from gpu_smooth import _native
+from gpu_smooth._errors import MeshError
 from gpu_smooth._native import Quality
 
 if TYPE_CHECKING:
@@ -54,6 +55,10 @@ def quality(
     >>> gpu_smooth.quality([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]], "max-angle").tolist()
     [90.0]
     """
+    if isinstance(triangles, str):
+        raise MeshError(
+            f"triangles: an array is needed, not text. Name the measure: quality(mesh, measure={triangles!r})"
+        )
     if triangles is None:
         from gpu_smooth import _meshes
 

@@ -49,7 +49,8 @@ def test_exceptions_are_of_the_kinds_that_python_has_for_them() -> None:
         (POINTS, TRIANGLES.ravel(), r"triangles: .* \(54,\)"),
         (POINTS, TRIANGLES.astype(float), r"triangles: .* \.astype\(int\)"),
         (POINTS, TRIANGLES > 3, "triangles: "),
-        (POINTS, "abc", "triangles: "),
+        (POINTS, "abc", "triangles: .* not text. Pass numbers"),
+        (object(), TRIANGLES, "points: .* or a mesh alone"),
         (POINTS, TRIANGLES[:0], "triangles: the mesh has no triangles"),
         (POINTS, [], "triangles: "),
         (POINTS[:0], TRIANGLES[:0], "triangles: the mesh has no triangles"),
@@ -175,6 +176,11 @@ def test_unknown_options_are_refused_with_the_most_similar_name() -> None:
         gpu_smooth.smooth("part.msh")
     with pytest.raises(TypeError, match="points and triangles are needed"):
         gpu_smooth.smooth(3)
+
+
+def test_the_measure_of_a_mesh_is_not_taken_for_triangles() -> None:
+    with pytest.raises(MeshError, match="quality\\(mesh, measure='min-angle'\\)"):
+        gpu_smooth.quality(object(), "min-angle")
 
 
 def test_an_adapter_that_does_not_exist_is_a_device_error() -> None:

@@ -99,8 +99,16 @@ pub(super) fn converted<'py>(
     // NumPy makes an object that is no sequence an array without dimensions.
     if array.ndim() == 0 && kind(&array)? == "O" {
         let found = value.get_type().name()?;
+        // The functions that take a mesh convert it before, unless triangles were passed too.
+        let or = if name == "points" { ", or a mesh alone in place of both arrays" } else { "" };
         return Err(refused(format!(
-            "{name}: {wanted} are needed, not an object of type {found}. Pass an array or a list"
+            "{name}: {wanted} are needed, not an object of type {found}. Pass an array or a list{or}"
+        )));
+    }
+    if !kinds.contains(&"f") && ["U", "S"].contains(&kind(&array)?.as_str()) {
+        return Err(refused(format!(
+            "{name}: {wanted} are needed, not text. Pass numbers; names of groups need a mesh with groups in \
+             place of the arrays"
         )));
     }
     let found = array.dtype().str()?;
