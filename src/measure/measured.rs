@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::error::MeshError;
-use crate::measure::edges::{WorstEdges, worst_edges};
+use crate::measure::edges::{InnerEdge, WorstEdges, inner_edges, worst_edges};
 use crate::measure::sizes::{doubled_areas, size_ratios};
 use crate::measure::table::Measure;
 use crate::measure::triangle::Triangle;
@@ -124,5 +124,11 @@ impl<'a> Measured<'a> {
     pub fn values(&self, measure: Measure) -> Vec<f64> {
         self.prepare(&[measure]);
         collect(self.count(), |t| measure.value(&self.triangle(t)))
+    }
+
+    /// Returns the edges between two triangles with their measures, in the order of the triangle with the smaller index.
+    /// Where more than two triangles share an edge, each pair of them has an entry.
+    pub fn edges(&self) -> Vec<InnerEdge> {
+        inner_edges(self.surface, self.points, self.topology)
     }
 }

@@ -1,6 +1,5 @@
 //! Measures of the edges between two triangles, by which solvers with unknowns at circumcenters judge meshes.
 
-use crate::measure::measured::Measured;
 use crate::measure::neighbors::for_each_across;
 use crate::parallel::{collect, map_ranges};
 use crate::targets::Surface;
@@ -192,25 +191,25 @@ pub(crate) fn worst_edges(
     })
 }
 
-impl Measured<'_> {
-    /// Returns the edges between two triangles with their measures, in the order of the triangle with the smaller index.
-    /// Where more than two triangles share an edge, each pair of them has an entry.
-    pub fn edges(&self) -> Vec<InnerEdge> {
-        let (surface, points, topology) = (self.surface(), self.points(), self.topology());
-        let cells = &Cells::new(surface, points, topology);
-        map_ranges(self.count(), CHUNK, |range| {
-            let mut edges = Vec::new();
-            for t in range {
-                for_each_side(topology, t, |ends, other| {
-                    if t < other {
-                        edges.push(cells.edge(ends, [t, other]));
-                    }
-                });
-            }
-            edges
-        })
-        .concat()
-    }
+/// Returns the edges between two triangles, in the order of the triangle with the smaller index.
+pub(crate) fn inner_edges(
+    surface: Surface,
+    points: &[[f64; 2]],
+    topology: &Topology<'_>,
+) -> Vec<InnerEdge> {
+    let cells = &Cells::new(surface, points, topology);
+    map_ranges(topology.triangles().len(), CHUNK, |range| {
+        let mut edges = Vec::new();
+        for t in range {
+            for_each_side(topology, t, |ends, other| {
+                if t < other {
+                    edges.push(cells.edge(ends, [t, other]));
+                }
+            });
+        }
+        edges
+    })
+    .concat()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Mesh;
+use crate::measure::Measured;
 
 fn edges_of(surface: Surface, points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<InnerEdge> {
     let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: vec![] };
