@@ -79,7 +79,7 @@ fn ends_of_groups_of_lines_are_found_in_all_formats_that_are_written() {
             ref ends => assert_eq!(ends, ENDS, "{name}"),
         }
     }
-    assert_eq!(without, ["ugrid", "off", "ply", "selafin"]);
+    assert_eq!(without, ["ugrid", "off", "ply", "mike", "selafin"]);
 }
 
 /// Node sets of Exodus, boundary conditions of CGNS on points, groups of nodes in MED and others.
