@@ -19,6 +19,7 @@ pub(crate) use altitude::altitude;
 pub(crate) use change::mean_edges;
 pub use change::{Change, Distribution};
 pub use edges::InnerEdge;
+pub(crate) use edges::inner_edges;
 pub use large_angles::WhyLarge;
 pub use measured::Measured;
 pub use statistics::{QUANTILES, Statistics};

@@ -45,6 +45,10 @@ impl Aim for ToShapes {
         !WorstShapes::of(surface, points, triangle).is_within(self.penalties.limits())
     }
 
+    fn heavy(&self, _: &Movable<'_>, _: &[[f64; 2]]) -> Vec<[u32; 3]> {
+        Vec::new()
+    }
+
     fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
         !WorstShapes::of(surface, points, triangle).is_within(self.aim)
     }

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::error::MeshError;
 use crate::layout::Problem;
+use crate::measure::{InnerEdge, inner_edges};
 use crate::metric::Metric;
 use crate::options::Options;
 use crate::outcome::LargeAngles;
@@ -15,10 +16,15 @@ use crate::worst::{Penalties, WorstShapes};
 use super::prepared::Smoother;
 use super::rounds::{Aim, Movable, Present};
 
-/// Weight of the penalties in the first round. Each round triples the weight.
+/// Weight of the penalties in the first round. Each round doubles the weight.
 const FIRST_WEIGHT: f64 = 1000.0;
 /// Cotangent of 36 degrees, the largest angle below which angles have a penalty.
 const LARGEST_SMALL: f64 = 1.376_381_920_471_173_5;
+
+/// [`InnerEdge::flow_link`] below which, and [`InnerEdge::orthogonality`] above which, penalties on both triangles of an
+/// edge are larger. Solvers refuse edges beyond 0.1 and 0.5.
+const SHORT_LINK: f64 = 0.12;
+const FAR_FROM_ORTHOGONAL: f64 = 0.4;
 
 /// The rounds at the end of a run by ACUTE.
 struct ToAcute {
@@ -31,11 +37,24 @@ impl Aim for ToAcute {
     const RINGS: u32 = 3;
 
     fn penalties(&self, round: u32) -> Penalties {
-        Penalties::on_large_angles(self.small, FIRST_WEIGHT * 3f64.powi(round as i32))
+        Penalties::on_large_angles(self.small, FIRST_WEIGHT * 2f64.powi(round as i32))
     }
 
     fn is_beyond(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
         WorstShapes::least_cotangent(surface, points, triangle) < LargeAngles::COTANGENT
+    }
+
+    /// Returns the triangles on both sides of edges with a short flow link, or far from orthogonal to it. Both triangles
+    /// of such an edge have nearly right angles opposite the edge. If their penalties are larger, other triangles around
+    /// the vertices at these angles become less acute instead.
+    fn heavy(&self, movable: &Movable<'_>, points: &[[f64; 2]]) -> Vec<[u32; 3]> {
+        let topology = &movable.smoother.topology;
+        let is_bad = |edge: &InnerEdge| {
+            edge.flow_link < SHORT_LINK || edge.orthogonality > FAR_FROM_ORTHOGONAL
+        };
+        let edges = inner_edges(movable.surface, points, topology);
+        let bad = edges.iter().filter(|edge| is_bad(edge)).flat_map(|edge| edge.triangles);
+        bad.map(|t| topology.triangles()[t as usize]).collect()
     }
 
     fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {

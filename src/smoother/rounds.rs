@@ -12,7 +12,7 @@ use crate::run::Plan;
 use crate::slide::{OnCurves, Sliding};
 use crate::targets::Surface;
 use crate::whole::altitude;
-use crate::worst::{Badness, MoveConstraints, Penalties, around, rounds};
+use crate::worst::{Badness, MoveConstraints, Penalties, TriangleSet, around, rounds, sorted};
 
 use super::prepared::Smoother;
 
@@ -34,6 +34,9 @@ pub(super) trait Aim: Sync {
 
     /// Returns whether vertices around a triangle take steps in the rounds.
     fn is_beyond(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool;
+
+    /// Returns the triangles of the mesh on which penalties are larger from now on.
+    fn heavy(&self, movable: &Movable<'_>, points: &[[f64; 2]]) -> Vec<[u32; 3]>;
 
     /// Returns whether a triangle that is beyond the limits demands another round.
     fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool;
@@ -95,13 +98,9 @@ impl<'s> Movable<'s> {
         mut goes_on: impl FnMut() -> bool,
     ) {
         let Present { problem, mut curves, positions, points } = present;
-        let rules = MoveConstraints {
-            badness: Badness(WorstBy::Imr),
-            step: Plan::new(options).base_step(1.0),
-            shape: f64::INFINITY,
-            floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
-            bounds: problem.radii(),
-        };
+        let step = Plan::new(options).base_step(1.0);
+        let floor = if options.keep_altitude { altitude::least_of(problem) } else { 0.0 };
+        let mut heavy = TriangleSet::new();
         let topology = &self.smoother.topology;
         let corners = |t: u32| topology.triangles()[t as usize];
         let number = problem.numbers(points.len());
@@ -118,6 +117,16 @@ impl<'s> Movable<'s> {
             }
             visits -= in_round;
             let penalties = aim.penalties(round);
+            let found = aim.heavy(self, points).into_iter();
+            heavy.extend(found.map(|triangle| sorted(triangle.map(|v| number[v as usize]))));
+            let rules = MoveConstraints {
+                badness: Badness(WorstBy::Imr),
+                step,
+                shape: f64::INFINITY,
+                floor,
+                bounds: problem.radii(),
+                heavy: Some(&heavy).filter(|heavy| !heavy.is_empty()),
+            };
             let mut near = HashSet::new();
             if curves.is_some() {
                 near.extend(seeds());

@@ -51,6 +51,7 @@ impl Improvement {
             shape: worst_shape.sqrt() * (1.0 + ROUNDING),
             floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
             bounds: problem.radii(),
+            heavy: None,
         };
         let mut passes = Passes::new(problem, &rules, positions).await;
         let mut f = before;

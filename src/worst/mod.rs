@@ -11,7 +11,7 @@ mod stage;
 
 pub(crate) use badness::Badness;
 pub(crate) use penalties::Penalties;
-pub(crate) use region::MoveConstraints;
+pub(crate) use region::{MoveConstraints, TriangleSet, sorted};
 pub(crate) use regions::around;
 pub(crate) use shapes::WorstShapes;
 pub(crate) use stage::{Passes, stuck, worst_movable};

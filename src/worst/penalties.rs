@@ -21,6 +21,8 @@ const SLOW_ROUNDS: u32 = 8;
 const LAST_WEIGHT: f64 = 1e12;
 /// Width of the cubic part of the penalty on small angles beside the penalty on large angles.
 const SMALL_RAMP: f64 = 0.2;
+/// Factor of the penalties on heavy triangles.
+const HEAVY: f64 = 4.0;
 /// Weight of penalties on small angles beside those on large angles.
 const SMALL_SHARE: f64 = 0.3;
 
@@ -103,30 +105,38 @@ impl Penalties {
 pub(crate) struct PenaltyObjective<'a> {
     pub(crate) patch: &'a FanPatch,
     pub(crate) penalties: Penalties,
+    /// Whether the penalties on each triangle of the patch are multiplied by [`HEAVY`]. Empty if none are.
+    pub(crate) heavy: Vec<bool>,
 }
 
 impl PenaltyObjective<'_> {
-    fn corners(&self, at: [f64; 2]) -> impl Iterator<Item = Corner<f64>> {
-        let seen = move |triangle: &FanCorner| triangle.in_plane(at.into(), self.patch.ideal);
-        self.patch.corners.iter().map(seen)
+    /// Returns the triangles of the patch with their penalties.
+    fn corners(&self, at: [f64; 2]) -> impl Iterator<Item = (Corner<f64>, Penalties)> {
+        let Self { patch, penalties, ref heavy } = *self;
+        let of = move |(k, triangle): (usize, &FanCorner)| {
+            let is_heavy = heavy.get(k).copied().unwrap_or_default();
+            let weight = if is_heavy { HEAVY * penalties.weight } else { penalties.weight };
+            (triangle.in_plane(at.into(), patch.ideal), Penalties { weight, ..penalties })
+        };
+        patch.corners.iter().enumerate().map(of)
     }
 }
 
 impl Objective<f64> for PenaltyObjective<'_> {
     fn expansion(&self, at: [f64; 2]) -> Dual {
-        let add = |sum, corner| sum + self.penalties.expansion(&corner);
+        let add = |sum, (corner, penalties): (_, Penalties)| sum + penalties.expansion(&corner);
         self.corners(at).fold(Dual::default(), add)
     }
 
     fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
-        (self.corners(to).map(|corner| self.penalties.of(&corner)).sum(), true)
+        (self.corners(to).map(|(corner, penalties)| penalties.of(&corner)).sum(), true)
     }
 }
 
 /// The penalties for vertices that slide, whose trials keep triangles positive.
 impl OfPatch for Penalties {
     fn of<'p>(&'p self, patch: &'p FanPatch) -> Box<dyn Objective<f64> + 'p> {
-        Box::new(Feasible(PenaltyObjective { patch, penalties: *self }))
+        Box::new(Feasible(PenaltyObjective { patch, penalties: *self, heavy: Vec::new() }))
     }
 }
 

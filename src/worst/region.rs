@@ -1,6 +1,6 @@
 //! A region of a mesh whose worst triangle is improved independently of other regions.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec2;
 
@@ -34,12 +34,25 @@ pub(crate) struct MoveConstraints<'a> {
     pub(crate) floor: f64,
     /// Upper limits of the distances between free vertices and their start positions, normalized. `None` for no limit.
     pub(crate) bounds: Option<&'a [f64]>,
+    /// The triangles of the problem on which penalties are larger; `None` for none.
+    pub(crate) heavy: Option<&'a TriangleSet>,
+}
+
+/// Triangles of a problem, each by its vertices in ascending order.
+pub(crate) type TriangleSet = HashSet<[u32; 3]>;
+
+/// Returns the vertices of a triangle in ascending order.
+pub(crate) fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
+    triangle.sort_unstable();
+    triangle
 }
 
 /// A triangle at a vertex: the other two corners, counter-clockwise, and the target map of the triangle.
 struct PatchTriangle {
     ends: [u32; 2],
     map: Option<TargetMap<f64>>,
+    /// Whether penalties on the triangle are larger.
+    is_heavy: bool,
 }
 
 /// Free vertices that move together, with the triangles around each. Indices within the region begin with the moving
@@ -76,7 +89,8 @@ impl<'a> Region<'a> {
                         places.len() as u32 - 1
                     })
                 });
-                PatchTriangle { ends, map: problem.target_map(&[v, a, b]) }
+                let is_heavy = rules.heavy.is_some_and(|heavy| heavy.contains(&sorted([v, a, b])));
+                PatchTriangle { ends, map: problem.target_map(&[v, a, b]), is_heavy }
             };
             stars.push(ring.iter().zip(next).map(side).collect());
         }
@@ -138,7 +152,8 @@ impl<'a> Region<'a> {
             let mut most = 0.0_f64;
             for v in 0..count {
                 let patch = &self.patch(v);
-                let objective = PenaltyObjective { patch, penalties };
+                let heavy = self.stars[v].iter().map(|triangle| triangle.is_heavy).collect();
+                let objective = PenaltyObjective { patch, penalties, heavy };
                 most = most.max(self.step(v, patch, &objective, f64::INFINITY));
                 pause().await;
             }

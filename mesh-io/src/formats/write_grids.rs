@@ -5,7 +5,6 @@ use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::{boundary_codes, selafin};
-use crate::registry::FormatEntry;
 use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
@@ -42,7 +41,13 @@ pub(crate) fn match_depths(content: &mut Content, from: Format, to: Format) {
         Format::Ugrid => take_heights(content)
             .map(|(values, is_depth)| if is_depth { turned(values) } else { values }),
         Format::Selafin => take(content, selafin::write::BED),
-        _ if FormatEntry::of(from).name == FormatEntry::of(Format::Gmsh41).name => {
+        Format::Gmsh1
+        | Format::Gmsh22
+        | Format::Gmsh22Binary
+        | Format::Gmsh40
+        | Format::Gmsh40Binary
+        | Format::Gmsh41
+        | Format::Gmsh41Binary => {
             let depths = take(content, "depth").map(turned);
             let heights = depths.or_else(|| take(content, selafin::write::BED));
             match to {
