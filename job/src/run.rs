@@ -63,7 +63,9 @@ impl RunRequest {
         let stopping = match (self.has_goal(), self.tolerance) {
             (true, _) => Stopping::Goal(goal),
             (false, Some(tolerance)) => Stopping::Tolerance(tolerance),
-            (false, None) if scheme.base() == Metric::Acute => Stopping::Tolerance(ACUTE_TOLERANCE),
+            (false, None) if matches!(scheme.base(), Metric::Acute | Metric::AcuteSize) => {
+                Stopping::Tolerance(ACUTE_TOLERANCE)
+            }
             (false, None) => Stopping::default(),
         };
         let options = self

@@ -2,6 +2,8 @@
 //! of several metrics.
 
 mod acute;
+mod acute_size;
+mod angles;
 mod ar;
 mod area;
 mod corner;

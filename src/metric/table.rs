@@ -8,7 +8,9 @@ use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::{EdgeSlopes, Own};
 use crate::metric::properties::Properties;
 use crate::metric::smoothing::Smoothing;
-use crate::metric::{acute, ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94};
+use crate::metric::{
+    acute, acute_size, ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94,
+};
 
 /// Generates the enum, the table and the formulas from one row per metric. Metrics in braces are rare: they take less
 /// time to compile, and their sweeps take longer.
@@ -21,8 +23,7 @@ macro_rules! metrics {
             $($(#[$rare_doc:meta])* $rare:ident = $rare_file:ident of invariants;)*
         }
         => {
-            $(#[$angle_doc:meta])*
-            $angle:ident = $angle_file:ident of cotangents;
+            $($(#[$angle_doc:meta])* $angle:ident = $angle_file:ident of cotangents;)*
         }
     ) => {
         /// A quality metric q of a triangle. Smaller values are better. [`Metric::citation`] names the source of each
@@ -33,7 +34,30 @@ macro_rules! metrics {
             $(#[$edge_doc])* $edge,
             $($(#[$doc])* $variant,)*
             $($(#[$rare_doc])* $rare,)*
-            $(#[$angle_doc])* $angle,
+            $($(#[$angle_doc])* $angle,)*
+        }
+
+        /// A metric that is a function of the cotangents of a triangle's angles, and of its [`Invariants`].
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) enum OfCotangents { $($angle,)* }
+
+        impl OfCotangents {
+            #[inline(always)]
+            fn of(self) -> Metric {
+                match self { $(Self::$angle => Metric::$angle,)* }
+            }
+
+            /// Returns q² - ideal².
+            #[inline(always)]
+            fn value<T: Real>(self, corner: &Corner<T>) -> T {
+                match self { $(Self::$angle => $angle_file::excess(corner),)* }
+            }
+
+            /// Returns q² - ideal² with its derivatives by the visited vertex.
+            #[inline(always)]
+            fn derivatives<T: Real>(self, corner: &Corner<T>, edges: impl EdgeSlopes) -> Dual<T> {
+                match self { $(Self::$angle => $angle_file::expansion(corner, edges),)* }
+            }
         }
 
         /// A metric that is a function of a triangle's [`Invariants`].
@@ -42,7 +66,7 @@ macro_rules! metrics {
 
         impl Metric {
             /// Every metric: first Park & Shontz's metrics in the order of their Table 1, then further metrics.
-            pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)* Metric::$angle];
+            pub const ALL: &'static [Metric] = &[Metric::$edge, $(Metric::$variant,)* $(Metric::$rare,)* $(Metric::$angle,)*];
 
             /// Returns the metric's row of properties, for this project's own tests and benchmarks.
             #[doc(hidden)]
@@ -51,7 +75,7 @@ macro_rules! metrics {
                     Metric::$edge => &$edge_file::PROPERTIES,
                     $(Metric::$variant => &$file::PROPERTIES,)*
                     $(Metric::$rare => &$rare_file::PROPERTIES,)*
-                    Metric::$angle => &$angle_file::PROPERTIES,
+                    $(Metric::$angle => &$angle_file::PROPERTIES,)*
                 }
             }
 
@@ -64,7 +88,7 @@ macro_rules! metrics {
                     $edge_file::excess(corner),
                     $($file::value(&invariants),)*
                     $($rare_file::value(&invariants),)*
-                    $angle_file::excess(corner),
+                    $($angle_file::excess(corner),)*
                 ]
             }
 
@@ -75,7 +99,7 @@ macro_rules! metrics {
                     Metric::$edge => AnyFormulas::Edges(OfEdges),
                     $(Metric::$variant => AnyFormulas::Invariants(OfInvariants::$variant),)*
                     $(Metric::$rare => AnyFormulas::Invariants(OfInvariants::$rare),)*
-                    Metric::$angle => AnyFormulas::Cotangents(OfCotangents),
+                    $(Metric::$angle => AnyFormulas::Cotangents(OfCotangents::$angle),)*
                 }
             }
         }
@@ -96,7 +120,7 @@ macro_rules! metrics {
                         const $f: $crate::metric::OfInvariants = $crate::metric::OfInvariants::$variant;
                         $body
                     })*
-                    $($crate::metric::Metric::$rare)|* | $crate::metric::Metric::$angle => {}
+                    $($crate::metric::Metric::$rare)|* | $($crate::metric::Metric::$angle)|* => {}
                 }
             };
         }
@@ -161,16 +185,14 @@ metrics! {
     /// cot) + 30 Σ ψ(cot - 1.3)), with the sums over the three angles and ψ(x) = x³ / 0.6 for x from 0 to 0.2, and a
     /// quadratic beyond.
     Acute = acute of cotangents;
+    /// ACUTE-SIZE, SOFT-SIZE with the penalties on angles of ACUTE.
+    AcuteSize = acute_size of cotangents;
     }
 }
 
 /// The metric EDGE, a function of the edge lengths of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OfEdges;
-
-/// The metric ACUTE, a function of the cotangents of the angles of a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OfCotangents;
 
 /// The formulas of any metric. Hot loops are compiled for all variants together, and look up a metric of the
 /// invariants at run time. A compilation for every metric would take minutes.
@@ -282,7 +304,7 @@ impl Formulas for OfInvariants {
 impl Formulas for OfCotangents {
     #[inline(always)]
     fn metric(self) -> Metric {
-        Metric::Acute
+        self.of()
     }
 
     #[inline(always)]
@@ -292,12 +314,12 @@ impl Formulas for OfCotangents {
 
     #[inline(always)]
     fn excess<T: Real>(self, corner: &Corner<T>) -> T {
-        acute::excess(corner)
+        self.value(corner)
     }
 
     #[inline(always)]
     fn model<T: Real>(self, corner: &Corner<T>, _: Smoothing) -> T {
-        acute::excess(corner)
+        self.value(corner)
     }
 
     #[inline(always)]
@@ -307,7 +329,7 @@ impl Formulas for OfCotangents {
         edges: impl EdgeSlopes,
         _: Smoothing,
     ) -> Dual<T> {
-        acute::expansion(corner, edges)
+        self.derivatives(corner, edges)
     }
 }
 

@@ -64,8 +64,8 @@ impl Aim for ToAcute {
 
 impl Smoother<'_> {
     /// Lessens the large angles that a run by ACUTE has left at `points`, its result as stored, which are those of
-    /// `positions`. Returns the record of the rounds. `None` if the run has another base metric or targets, or if no
-    /// triangle that can move has a large angle.
+    /// `positions`. Returns the record of the rounds. `None` if the run has another base metric, if its targets
+    /// belong to places or are no concern of the metric, or if no triangle that can move has a large angle.
     pub(super) async fn lessen_large_angles(
         &self,
         options: &Options,
@@ -75,8 +75,13 @@ impl Smoother<'_> {
         points: &mut [[f64; 2]],
         goes_on: impl FnMut() -> bool,
     ) -> Result<Option<LargeAngles>, MeshError> {
-        let is_acute = options.scheme.base() == Metric::Acute;
-        if !is_acute || self.problem.targets().is_some() || self.field.is_some() {
+        let has_field = self.field.is_some();
+        let is_acute = match options.scheme.base() {
+            Metric::Acute => self.problem.targets().is_none(),
+            Metric::AcuteSize => true,
+            _ => false,
+        };
+        if !is_acute || has_field {
             return Ok(None);
         }
         let movable = Movable::new(self);

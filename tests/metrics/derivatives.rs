@@ -56,8 +56,11 @@ fn central_differences_converge_to_the_derivatives_in_second_order() {
     for &metric in Metric::ALL.iter().filter(|metric| !metric.properties().quadratic) {
         let all = if !metric.is_smooth() { vec![1, 2, 4, 6, 9] } else { vec![0] };
         for sharpness in all {
+            // The penalties of both metrics of angles have two continuous derivatives alone.
+            let is_of_angles = matches!(metric, Metric::Acute | Metric::AcuteSize);
+            let bound = if is_of_angles { 0.1 } else { 0.05 };
             for order in orders(metric, sharpness, |exact| exact) {
-                assert!((order - 2.0).abs() < 0.05, "{metric}, sharpness {sharpness}: {order}");
+                assert!((order - 2.0).abs() < bound, "{metric}, sharpness {sharpness}: {order}");
             }
         }
     }

@@ -40,6 +40,11 @@ pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, ideal: Ide
             };
             root([0, 1, 2].map(cotangent).into_iter().map(acute_share).sum::<f64>() + 2.0 / 3.0)
         }
+        Metric::AcuteSize => {
+            let acute = quality(Metric::Acute, [a, b, c], area, ideal);
+            let imr = quality(Metric::Imr, [a, b, c], area, ideal);
+            root(acute * acute - imr * imr + shape + 0.4 * linear)
+        }
         _ => panic!("{metric}: write the formula of q here, another way than src/metric does"),
     }
 }
@@ -57,7 +62,7 @@ fn acute_share(cotangent: f64) -> f64 {
 /// Returns whether q² of a large triangle is nearly linear in the area, so that second derivatives cancel.
 pub(crate) fn is_linear_in_size(metric: Metric) -> bool {
     match metric {
-        Metric::SoftSize | Metric::Tmop94 => true,
+        Metric::SoftSize | Metric::Tmop94 | Metric::AcuteSize => true,
         Metric::Edge
         | Metric::Area
         | Metric::Rms
@@ -112,7 +117,7 @@ pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
             ["t.size_weight - e)", "t.size_weight + e)"],
             ["2.0 * (e + weight", "2.0 * (1.01 * e + weight"],
         ],
-        Metric::Acute => [
+        Metric::Acute | Metric::AcuteSize => [
             ["penalties.y * unit * area_slope", "penalties.y * unit * 1.01 * area_slope"],
             ["dot(t.b, c), -c, 0.0", "dot(t.b, c), c, 0.0"],
         ],
@@ -162,16 +167,20 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
                 conditions: [1.0 + a * b / doubled; 3],
             }
         }
-        Metric::Acute => {
+        Metric::Acute | Metric::AcuteSize => {
             // A cotangent changes by 1 / sin² of its angle, which is at most the product of two edges squared over the
             // squared area. The penalties are at most 300 (x + 0.2)², and the second derivative at most 600.
             let most = (a.max(b).max(c).powi(2) / doubled).max(1.0);
             let per_length = (a + b + c) * most / doubled;
+            // ACUTE-SIZE has terms of size beside them.
+            let size =
+                if metric == Metric::Acute { None } else { Some(scales(Metric::SoftSize, t)) };
+            let [value, gradient, hessian] = size.map_or([0.0; 3], |scales| scales.sizes);
             Scales {
                 sizes: [
-                    300.0 * (most + 0.2) * (most + 0.2),
-                    600.0 * (most + 0.2) * per_length,
-                    600.0 * (most + 1.0) * per_length * per_length,
+                    300.0 * (most + 0.2) * (most + 0.2) + value,
+                    600.0 * (most + 0.2) * per_length + gradient,
+                    600.0 * (most + 1.0) * per_length * per_length + hessian,
                 ],
                 conditions: [1.0 + a * b / doubled; 3],
             }

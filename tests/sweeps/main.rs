@@ -1,5 +1,6 @@
 //! Sweeps and runs on both engines: convergence, invariance and safety.
 
+mod acute;
 mod adapted;
 mod agreement;
 mod altitude;

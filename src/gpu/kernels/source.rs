@@ -35,6 +35,7 @@ const MAPS: &str = include_str!("../../../shaders/maps.wgsl");
 const NO_BOUNDS: &str = include_str!("../../../shaders/no_bounds.wgsl");
 const BOUNDS: &str = include_str!("../../../shaders/bounds.wgsl");
 const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
+const ANGLES: &str = include_str!("../../../shaders/angles.wgsl");
 const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
 
@@ -186,13 +187,23 @@ fn constants() -> String {
     text
 }
 
+/// Returns the formulas of metrics, with the functions that they call.
+fn formulas(metrics: &[Metric]) -> String {
+    let mut text = INVARIANTS.to_owned();
+    if metrics.iter().any(|metric| metric.is_smooth() && !metric.is_of_invariants()) {
+        text.push_str(ANGLES);
+    }
+    text.extend(metrics.iter().map(|metric| metric.properties().wgsl));
+    text
+}
+
 /// Returns the functions of the metric that a sweep minimizes, under the names that newton.wgsl calls.
 fn active_metric(composition: &Composition) -> String {
     let Composition { metrics, derivatives } = composition;
     let Some(&metric) = metrics.first() else { return String::new() };
     let properties = metric.properties();
     let name = wgsl_name(metric);
-    let mut text = INVARIANTS.to_owned() + properties.wgsl;
+    let mut text = formulas(&[metric]);
     let (model, derivatives_of) = match (metric.is_of_invariants(), metric.is_smooth()) {
         (true, _) => (
             format!("{name}_value(invariants(t))"),
@@ -272,8 +283,7 @@ fn untangling_energy() -> String {
 /// Returns two functions of a triangle: `tracked_values`, which gives q² - ideal² of each metric and then 1 if the area
 /// is not positive, and `shape_excess`, which gives imr² - 1.
 fn tracked_metrics(metrics: &[Metric]) -> String {
-    let mut text = INVARIANTS.to_owned();
-    text.extend(metrics.iter().map(|m| m.properties().wgsl));
+    let mut text = formulas(metrics);
     let call = |&metric: &Metric| {
         let name = wgsl_name(metric);
         match metric.is_of_invariants() {

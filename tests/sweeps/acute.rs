@@ -1,0 +1,107 @@
+//! Runs by ACUTE, for solvers with unknowns at circumcenters.
+
+use crate::{backends, name, perturbed, run, with_points};
+use gpu_smooth::measure::{InnerEdge, Measured};
+use gpu_smooth::{
+    Mesh, Metric, Options, Quality, Slide, Smoother, Stopping, Targets, Topology, measure::Change,
+    targets::Surface,
+};
+use support::check;
+
+/// Returns the number of edges that D-Flow FM refuses, the number of edges with short flow links, and the number of
+/// triangles with an angle of 90 degrees or more.
+fn counts(mesh: &Mesh, points: &[[f64; 2]]) -> [usize; 3] {
+    let topology = Topology::new(mesh).unwrap();
+    let edges = Measured::new(points, &topology).unwrap().edges();
+    let count = |is: fn(&InnerEdge) -> bool| edges.iter().filter(|edge| is(edge)).count();
+    let is_obtuse = |t: &&[u32; 3]| {
+        let [p, q, r] = t.map(|v| points[v as usize]);
+        let dot = |at: [f64; 2], a: [f64; 2], b: [f64; 2]| {
+            (a[0] - at[0]) * (b[0] - at[0]) + (a[1] - at[1]) * (b[1] - at[1])
+        };
+        dot(p, q, r).min(dot(q, r, p)).min(dot(r, p, q)) <= 0.0
+    };
+    [
+        count(|edge| edge.orthogonality > 0.5),
+        count(|edge| edge.flow_link < 0.1),
+        mesh.triangles.iter().filter(is_obtuse).count(),
+    ]
+}
+
+fn acute() -> Options {
+    Options::default().scheme(Metric::Acute.into())
+}
+
+#[test]
+fn a_run_makes_nearly_all_triangles_acute_on_both_engines() {
+    let mesh = perturbed();
+    let smoother = Smoother::new(mesh).unwrap();
+    let [_, small, obtuse] = counts(mesh, &mesh.points);
+    assert!(small > 20 && obtuse > 100, "{small} {obtuse}");
+    for backend in backends() {
+        let outcome = run(&smoother, &acute(), &backend);
+        assert!(check::is_valid(&with_points(mesh, &outcome.points)));
+        let after = counts(mesh, &outcome.points);
+        assert!(
+            after[0] == 0 && after[1] == 0 && after[2] < obtuse / 10,
+            "{}: {after:?}",
+            name(&backend)
+        );
+        let by_imr = run(&smoother, &Options::default(), &backend);
+        assert!(counts(mesh, &by_imr.points)[1] > 0, "{}", name(&backend));
+        // Shapes stay near those of a run by imr.
+        let f =
+            |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(Metric::Imr);
+        assert!(f(&outcome.points) < 1.05 * f(&by_imr.points));
+    }
+}
+
+#[test]
+fn the_rounds_after_the_sweeps_lessen_large_angles_and_say_so() {
+    let mesh = perturbed();
+    let smoother = Smoother::new(mesh).unwrap();
+    for backend in backends() {
+        let outcome = run(&smoother, &acute(), &backend);
+        let large = outcome.large_angles.unwrap();
+        let [swept, left] = large.triangles;
+        assert!(large.moved > 0 && left < swept, "{large:?}");
+        assert!(large.f[0] < large.f[1], "{large:?}");
+        assert!(run(&smoother, &Options::default(), &backend).large_angles.is_none());
+    }
+}
+
+#[test]
+fn sliding_lessens_large_angles_at_the_boundary() {
+    let mesh = perturbed();
+    let fixed = Smoother::new(mesh).unwrap();
+    let mut sliding = Smoother::new(mesh).unwrap();
+    sliding.set_slide(Some(&Slide::default())).unwrap();
+    let backend = &backends()[0];
+    let [alone, slid] = [&fixed, &sliding].map(|smoother| {
+        let outcome = run(smoother, &acute().stopping(Stopping::Tolerance(1e-4)), backend);
+        counts(mesh, &outcome.points)
+    });
+    assert!(
+        slid[0] <= alone[0] && slid[1] <= alone[1] && slid[2] <= alone[2],
+        "{slid:?} {alone:?}"
+    );
+}
+
+#[test]
+fn acute_size_keeps_sizes_and_makes_triangles_acute() {
+    let mesh = perturbed();
+    let mut smoother = Smoother::new(mesh).unwrap();
+    let topology = Topology::new(mesh).unwrap();
+    let targets = Targets::keep_size(&topology, &mesh.points, Surface::Plane, 0).unwrap();
+    smoother.set_targets(&targets).unwrap();
+    let options = Options::default().scheme(Metric::AcuteSize.into());
+    let backend = &backends()[0];
+    let kept = run(&smoother, &options, backend);
+    let alone = run(&Smoother::new(mesh).unwrap(), &acute(), backend);
+    let of =
+        |points: &[[f64; 2]]| Change::between(&topology, &mesh.points, points).unwrap().size.p95;
+    assert!(of(&kept.points) < of(&alone.points));
+    let [_, small, obtuse] = counts(mesh, &kept.points);
+    let before = counts(mesh, &mesh.points);
+    assert!(small <= before[1] / 10 && obtuse < before[2] / 4, "{small} {obtuse} of {before:?}");
+}
