@@ -7,11 +7,12 @@ use crate::detect;
 use crate::disk::atomic;
 use crate::disk::atomic::FileWrite;
 use crate::error::{ReadError, WriteError};
-use crate::export::content::{Content, DataArray};
+use crate::export::content::{Content, ContentGroup, DataArray};
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
+use crate::formats::boundary_codes::{self, BoundaryCodes};
 use crate::formats::triangle::names::Names;
-use crate::formats::{boundary_codes, write_grids};
+use crate::formats::write_grids;
 use crate::mesh_file::mesh::MeshFile;
 use crate::precision::Precision;
 use crate::registry::FormatEntry;
@@ -121,7 +122,15 @@ impl Conversion {
         if file.format() == Format::Mike && matches!(to, Format::Adcirc | Format::Sms2dm) {
             boundary_codes::to_lines(&mut content);
         }
-        let lost = target.capabilities.losses(&content);
+        let is_code = |(group, _): &(ContentGroup, _)| group.tag().is_some_and(|tag| tag != 0);
+        let coded = match to {
+            // Numbered groups of vertices are the codes of MIKE, if there are any.
+            Format::Mike if !content.vertex_groups.iter().any(is_code) => {
+                BoundaryCodes::new(&content).groups
+            }
+            _ => Vec::new(),
+        };
+        let lost = target.capabilities.losses(&content, &coded);
         let omissions =
             target.capabilities.lost_names_of_empty_groups(&content).into_iter().collect();
         let mut renamed = names::fit(&target.capabilities, &mut content);

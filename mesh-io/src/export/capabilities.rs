@@ -137,8 +137,9 @@ impl Capabilities {
         cell_data: DataSupport::None,
     };
 
-    /// Lists the parts of a mesh that the format cannot store, one line each.
-    pub(crate) fn losses(&self, content: &Content) -> Vec<String> {
+    /// Lists the parts of a mesh that the format cannot store, one line each. `coded` has the indices of the groups that the
+    /// format stores as codes of vertices.
+    pub(crate) fn losses(&self, content: &Content, coded: &[u32]) -> Vec<String> {
         let mut lost = Vec::new();
         self.element_losses(content, &mut lost);
         if !self.z && !content.z_values.is_empty() {
@@ -152,7 +153,7 @@ impl Capabilities {
         if !self.keeps_vertex_ids && !starts {
             lost.push("the vertices' own numbers, which are not consecutive".into());
         }
-        self.group_losses(content, &mut lost);
+        self.group_losses(content, coded, &mut lost);
         if matches!(self.groups, GroupSupport::Blocks | GroupSupport::Sections) {
             sides::lost_in_blocks(content, &mut lost);
         }
@@ -290,7 +291,7 @@ impl Capabilities {
         }
     }
 
-    fn group_losses(&self, content: &Content, lost: &mut Vec<String>) {
+    fn group_losses(&self, content: &Content, coded: &[u32], lost: &mut Vec<String>) {
         let several = content.sets.iter().any(|set| {
             let kind = |group: &u32| &content.groups[*group as usize].kind;
             set.iter().enumerate().any(|(i, group)| set[..i].iter().any(|b| kind(b) == kind(group)))
@@ -325,8 +326,13 @@ impl Capabilities {
             };
             let lost_kinds = kinds.iter().copied().filter(dropped);
             for kind in lost_kinds.filter(|kind| !is_for_gmsh(kind)) {
-                let groups =
-                    || content.groups.iter().filter(|g| g.dimension == dimension && g.kind == kind);
+                let is_lost = |(index, group): &(u32, &ContentGroup)| {
+                    group.dimension == dimension && group.kind == kind && !coded.contains(index)
+                };
+                let groups = || (0..).zip(&content.groups).filter(is_lost).map(|(_, group)| group);
+                if groups().next().is_none() {
+                    continue;
+                }
                 // If there is one group without a name, only its number is lost.
                 let keeps_none = match self.groups {
                     GroupSupport::None => true,

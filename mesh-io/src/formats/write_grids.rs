@@ -1,10 +1,11 @@
 //! Writes grids of coastal models: SMS's `.2dm`, the grids of ADCIRC and SCHISM, and MIKE's `.mesh`.
 
-use crate::export::content::{Content, ContentGroup, DataArray};
+use crate::export::content::{Content, DataArray};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
-use crate::formats::{boundary_codes, selafin};
+use crate::formats::boundary_codes::BoundaryCodes;
+use crate::formats::selafin;
 use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fmt::Write;
@@ -223,30 +224,14 @@ pub(crate) fn write_mike(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Returns the code of each vertex. If the mesh has numbered groups of vertices, codes are their numbers. Otherwise
-/// vertices have code 1 (land) on the boundary of the mesh and 0 inside, and the groups of lines whose names start with `open`
-/// have the codes from 2 on. The ends of an open boundary have its code, as a side of MIKE is open if both of its ends are.
+/// Returns the code of each vertex. If the mesh has numbered groups of vertices, codes are their numbers. Otherwise codes are
+/// those of boundaries.
 fn node_codes(input: &WriterInput<'_>) -> Vec<i64> {
-    let content = input.content;
-    let mut codes = input.vertex_group_numbers();
-    if codes.iter().any(|&code| code != 0) {
-        return codes;
+    let codes = input.vertex_group_numbers();
+    match codes.iter().all(|&code| code == 0) {
+        true => BoundaryCodes::new(input.content).codes,
+        false => codes,
     }
-    let boundary = boundary_codes::boundary_edges(content);
-    boundary.iter().flatten().for_each(|&vertex| codes[vertex as usize] = 1);
-    let is_open = |&group: &usize| {
-        let ContentGroup { dimension, .. } = content.groups[group];
-        dimension == 1 && content.groups[group].name().is_some_and(|name| name.starts_with("open"))
-    };
-    let open = (0..content.groups.len()).filter(is_open).map(|group| group as u32);
-    let code_of: HashMap<u32, i64> = open.zip(2..).collect();
-    for cell in content.cells.all(CellKind::Line) {
-        let groups = &content.sets[content.cells.sets[cell] as usize];
-        if let Some(&code) = groups.iter().find_map(|group| code_of.get(group)) {
-            content.cells.of(cell).iter().for_each(|&vertex| codes[vertex as usize] = code);
-        }
-    }
-    codes
 }
 
 /// Returns whether a line belongs to a node string, and not to a material.

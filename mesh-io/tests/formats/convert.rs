@@ -357,7 +357,7 @@ fn grids_are_meshes_of_mike_with_codes_of_boundaries() {
     let elements = "1 3 1 2 5\n2 3 2 3 5\n3 3 3 4 5\n4 3 4 1 5\n5 4 2 6 7 3\n";
     let open = "1 = open\n2 = nodes\n2\n1\n4\n1 = land\n6 = nodes\n6 0\n4\n3\n7\n6\n2\n1\n";
     let (mike, lost) = converted("a.14", &format!("t\n5 7\n{nodes}{elements}{open}"), Format::Mike);
-    assert_eq!(lost, "groups of lines (boundary): open1, land1");
+    assert_eq!(lost, "");
     let expected = "100079  1000  7  NON-UTM\n1 0.0 0.0 -1.5 2\n2 1.0 0.0 -2.5 1\n3 1.0 1.0 3.5 1\n4 0.0 1.0 -0.5 2\n\
         5 0.5 0.5 -1.0 0\n6 2.0 0.0 -1.0 1\n7 2.0 1.0 -1.0 1\n5  4  25\n1 1 2 5 0\n2 2 3 5 0\n3 3 4 5 0\n\
         4 4 1 5 0\n5 2 6 7 3\n";
@@ -376,9 +376,18 @@ fn grids_are_meshes_of_mike_with_codes_of_boundaries() {
     assert_eq!(converted("a.14", &grid, Format::Mike).0, mike);
     let (sms, lost) = converted("a.mesh", &mike, Format::Sms2dm);
     assert!(lost.is_empty() && sms.contains("NS 4 -1 \"open1\"\n"), "{lost} {sms}");
-    assert_eq!(converted("a.2dm", &sms, Format::Mike).0, mike);
+    assert_eq!(converted("a.2dm", &sms, Format::Mike), (mike.clone(), String::new()));
     let (_, lost) = converted("a.mesh", &mike.replace("-1.0 0", "-1.0 3"), Format::Adcirc);
     assert_eq!(lost, "groups of vertices: 2, 1, 3");
+    // A node string inside of the mesh, one with another name, and two open boundaries with a common node.
+    for (string, expected) in [
+        ("NS 1 -5 \"open2\"\n", "7 lines; groups of lines (nodestring): open1, open2"),
+        ("NS 1 -2 \"weir\"\n", "groups of lines (nodestring): weir"),
+        ("NS 4 -3 \"open2\"\n", "groups of lines (nodestring): open1, land1"),
+    ] {
+        let (_, lost) = converted("a.2dm", &(sms.clone() + string), Format::Mike);
+        assert_eq!(lost, expected);
+    }
     // Without a quadrilateral, rows have three nodes.
     let triangles = "t\n1 3\n1 0.0 0.0 1.0\n2 1.0 0.0 1.0\n3 0.0 1.0 1.0\n1 3 1 2 3\n";
     let (mike, lost) = converted("a.14", triangles, Format::Mike);
