@@ -319,6 +319,7 @@ mod tests {
             options: ReadOptions::new(),
             known: KnownState::default(),
             companions: Vec::new(),
+            beside: None,
         };
         match reader(&source) {
             Ok(reader) => {

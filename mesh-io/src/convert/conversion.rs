@@ -11,6 +11,7 @@ use crate::export::content::{Content, ContentGroup, DataArray};
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::boundary_codes::{self, BoundaryCodes};
+use crate::formats::selafin::conditions;
 use crate::formats::triangle::names::Names;
 use crate::formats::write_grids;
 use crate::mesh_file::mesh::MeshFile;
@@ -19,6 +20,7 @@ use crate::registry::FormatEntry;
 use crate::visit::field::PointField;
 use crate::visit::items::CellKind;
 use std::collections::HashMap;
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -119,7 +121,8 @@ impl Conversion {
         content.points = points.to_vec();
         set_fields(&mut content, fields);
         write_grids::match_depths(&mut content, file.format(), to);
-        if file.format() == Format::Mike && matches!(to, Format::Adcirc | Format::Sms2dm) {
+        let has_lines = matches!(to, Format::Adcirc | Format::Sms2dm | Format::Selafin);
+        if file.format() == Format::Mike && has_lines {
             boundary_codes::to_lines(&mut content);
         }
         let is_code = |(group, _): &(ContentGroup, _)| group.tag().is_some_and(|tag| tag != 0);
@@ -128,6 +131,7 @@ impl Conversion {
             Format::Mike if !content.vertex_groups.iter().any(is_code) => {
                 BoundaryCodes::new(&content).groups
             }
+            Format::Selafin => BoundaryCodes::new(&content).groups,
             _ => Vec::new(),
         };
         let lost = target.capabilities.losses(&content, &coded);
@@ -195,7 +199,7 @@ impl Conversion {
     }
 
     /// Lists the files that [`write`](Self::write) to `path` may create. The `.poly` of a Triangle mesh is always
-    /// listed, but written only for a mesh with lines.
+    /// listed, but written only for a mesh with lines. The list of boundary conditions beside a SELAFIN is not listed.
     pub fn destinations(&self, path: &Path) -> Vec<PathBuf> {
         Self::destinations_in(self.target.format, path)
     }
@@ -255,15 +259,36 @@ impl Conversion {
             );
             return refused(problem, "Remove it, or take another name");
         }
+        if let Some((list, text)) = self.conditions(path) {
+            if fs::read(&list).is_ok_and(|old| old != text.as_bytes()) {
+                let problem = format!(
+                    "{} exists, with other boundary conditions than the mesh",
+                    list.display()
+                );
+                return refused(problem, "Remove it, or take another name");
+            }
+            atomic::ensure_writable(&list)?;
+        }
         destinations.iter().try_for_each(|path| atomic::ensure_writable(path))
     }
 
+    /// Returns the path and the text of the list of boundary conditions beside a SELAFIN at `path`. `None` without boundaries,
+    /// or if `path` is a device.
+    fn conditions(&self, path: &Path) -> Option<(PathBuf, String)> {
+        let is_file = !path.exists() || path.is_file();
+        if self.format() != Format::Selafin || !is_file {
+            return None;
+        }
+        Some((conditions::path_beside(path), conditions::write_conditions(&self.input())?))
+    }
+
     /// Writes the mesh, compressed if `path` ends in `.gz` or `.zst`. Existing files are replaced after all new content
-    /// is on the disk.
+    /// is on the disk. A SELAFIN with boundaries gets a list of boundary conditions beside it, `NAME.cli`.
     ///
     /// # Errors
     /// [`WriteError`] for errors of the operating system, if `path` has the ending of another format, if a Triangle
-    /// mesh gets a compressed name, or if an existing `.poly` would be read with a new Triangle mesh without lines.
+    /// mesh gets a compressed name, if an existing `.poly` would be read with a new Triangle mesh without lines, or if an
+    /// existing list of boundary conditions differs from the new list.
     pub fn write(&self, path: &Path) -> Result<(), WriteError> {
         self.check_destination(path)?;
         let (destinations, contents) = (self.destinations(path), self.contents());
@@ -271,6 +296,9 @@ impl Conversion {
         let mut writes: Vec<FileWrite<'_>> = Vec::new();
         for (path, content) in destinations.into_iter().zip(&contents) {
             writes.push((path, Box::new(move |out| put(content, packs, out))));
+        }
+        if let Some((list, text)) = self.conditions(path) {
+            writes.push((list, Box::new(move |out| out.write_all(text.as_bytes()))));
         }
         atomic::write_all(&writes)
     }

@@ -201,8 +201,13 @@ const ROWS: &[Row] = &[
     ),
     row(
         &[Format::Selafin],
-        "either byte order; single or double precision, by the length of the records and whatever the title; time steps are kept",
-        ["–", "–", "nothing", "triangles in one plane"],
+        "either byte order; single or double precision, by the length of the records and whatever the title; time steps are kept; the list of boundary conditions beside it (`.cli`) is copied to a new name",
+        [
+            "–",
+            "–",
+            "boundaries of the `.cli`: `open1`, `land1`, `island2` and so on",
+            "triangles in one plane",
+        ],
     ),
     row(
         &[Format::Stl, Format::StlBinary],

@@ -71,6 +71,8 @@ pub(crate) struct Source {
     pub(crate) known: KnownState,
     /// The other files of the mesh.
     pub(crate) companions: Vec<Companion>,
+    /// A file that adds groups to the mesh, which is complete without the file.
+    pub(crate) beside: Option<Box<Source>>,
 }
 
 /// Another file of a mesh.
@@ -116,6 +118,7 @@ impl Source {
             options: ReadOptions::new(),
             known: KnownState::default(),
             companions: Vec::new(),
+            beside: None,
         };
         match decompress(&source.bytes) {
             Ok(None) => Ok(source),

@@ -2,7 +2,7 @@
 
 use crate::content::group_label::GroupLabel;
 use crate::export::content::{Content, ContentGroup};
-use crate::formats::write_grids::chains;
+use crate::formats::chains::chains;
 use crate::visit::items::CellKind;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -31,6 +31,8 @@ fn faces(content: &Content) -> impl Iterator<Item = &[u32]> {
 pub(crate) struct BoundaryCodes {
     /// The code of each vertex: 0 inside of the mesh, 1 on land, and from 2 on at open boundaries.
     pub(crate) codes: Vec<i64>,
+    /// The group of each code from 2 on, as an index of [`Content::groups`].
+    pub(crate) open: Vec<u32>,
     /// The groups of lines that the codes determine: open boundaries, land and islands.
     pub(crate) groups: Vec<u32>,
 }
@@ -47,8 +49,8 @@ impl BoundaryCodes {
             let group = &content.groups[group as usize];
             group.dimension == 1 && group.name().is_some_and(|name| name.starts_with(word))
         };
-        let open = groups().filter(|&group| starts(group, "open"));
-        let mut code_of: HashMap<u32, i64> = open.zip(2..).collect();
+        let open: Vec<u32> = groups().filter(|&group| starts(group, "open")).collect();
+        let mut code_of: HashMap<u32, i64> = open.iter().copied().zip(2..).collect();
         let lines = || {
             let sets =
                 content.cells.all(CellKind::Line).map(|cell| (cell, content.cells.sets[cell]));
@@ -72,7 +74,7 @@ impl BoundaryCodes {
             lost.extend(groups.iter().filter(|group| !is_kept(group)));
         }
         let groups = groups().filter(|group| code_of.contains_key(group) && !lost.contains(group));
-        BoundaryCodes { groups: groups.collect(), codes }
+        BoundaryCodes { groups: groups.collect(), codes, open }
     }
 }
 

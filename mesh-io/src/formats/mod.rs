@@ -5,6 +5,7 @@ pub(crate) mod adcirc;
 pub(crate) mod axes;
 pub(crate) mod boundary_codes;
 pub(crate) mod cgns;
+mod chains;
 pub(crate) mod exodus;
 pub(crate) mod freefem;
 pub(crate) mod fvcom;

@@ -5,9 +5,10 @@ use crate::export::put;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
 use crate::formats::boundary_codes::BoundaryCodes;
+use crate::formats::chains::chains;
 use crate::formats::selafin;
 use crate::visit::items::CellKind;
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Converts heights of the bed between formats with different conventions. Depths of ADCIRC and FVCOM are positive
@@ -130,44 +131,6 @@ pub(crate) fn write_sms(input: &WriterInput<'_>) -> String {
     }
     materials.iter().for_each(|(tag, name)| put!(out, "MAT {tag} \"{name}\"\n"));
     out
-}
-
-/// Joins lines to chains, as long as possible and in either direction. Chains are sorted by the index of their first
-/// line in `lines`.
-pub(super) fn chains(lines: &[[u32; 2]]) -> Vec<Vec<u32>> {
-    let mut at: HashMap<u32, Vec<usize>> = HashMap::new();
-    // Lines are popped from the end of these lists, so the first line comes first.
-    for (index, &[a, b]) in lines.iter().enumerate().rev() {
-        at.entry(a).or_default().push(index);
-        at.entry(b).or_default().push(index);
-    }
-    let mut used = vec![false; lines.len()];
-    let mut chains = Vec::new();
-    for (index, &[a, b]) in lines.iter().enumerate() {
-        if std::mem::replace(&mut used[index], true) {
-            continue;
-        }
-        // Returns the other end of the next unused line at a vertex.
-        let mut next = |vertex: u32| {
-            let lines_at = at.get_mut(&vertex)?;
-            while let Some(line) = lines_at.pop() {
-                if !std::mem::replace(&mut used[line], true) {
-                    let [a, b] = lines[line];
-                    return Some(if a == vertex { b } else { a });
-                }
-            }
-            None
-        };
-        let mut chain = VecDeque::from([a, b]);
-        while let Some(vertex) = chain.back().and_then(|&end| next(end)) {
-            chain.push_back(vertex);
-        }
-        while let Some(vertex) = chain.front().and_then(|&end| next(end)) {
-            chain.push_front(vertex);
-        }
-        chains.push(chain.into());
-    }
-    chains
 }
 
 pub(crate) fn write_adcirc(input: &WriterInput<'_>) -> String {

@@ -15,7 +15,8 @@ impl MeshFile {
     /// name.
     ///
     /// A path to a Triangle mesh ends in `.node`, `.ele` or neither. Files of all other formats may be compressed by
-    /// gzip or zstd. The reader of an XDMF also loads the other files with its numbers.
+    /// gzip or zstd. The reader of an XDMF also loads the other files with its numbers, and the
+    /// reader of a SELAFIN the list of boundary conditions beside it.
     ///
     /// # Errors
     /// [`ReadError`] if a file is missing or cannot be read, is in none of the formats of [`Format`](crate::Format),

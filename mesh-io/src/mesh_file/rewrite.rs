@@ -11,6 +11,7 @@ use crate::edit::column::EditableColumn;
 use crate::edit::numbers::{ByteEdit, EncodedArrays};
 use crate::edit::rewrite::Rewrite;
 use crate::error::WriteError;
+use crate::formats::selafin::conditions;
 use crate::mesh_file::mesh::MeshFile;
 use crate::registry::FormatEntry;
 use crate::visit::field::PointField;
@@ -32,7 +33,8 @@ impl MeshFile {
     /// Coordinates with unchanged bits keep their text. Changed coordinates are written with the fewest digits that
     /// parse back to equal bits. All files of a Triangle mesh get the name in `path`, which may lack an ending. `path`
     /// may name the file that was read. Existing files are replaced after all new content is on the disk, and symbolic
-    /// links are followed.
+    /// links are followed. The list of boundary conditions beside a SELAFIN (`NAME.cli`) is copied beside `path`, unless such a
+    /// file exists.
     ///
     /// If `path` ends in `.gz` or `.zst`, the file is compressed by gzip or zstd. Without any change, a file of equal
     /// compression keeps its compressed bytes.
@@ -79,6 +81,9 @@ impl MeshFile {
             .map(|(part, _)| part)
             .collect();
         let mut writes: Vec<_> = destinations.iter().cloned().enumerate().map(file_write).collect();
+        if let Some((list, destination)) = self.copy_beside(path) {
+            writes.push((destination, Box::new(move |out| out.write_all(list.stored()))));
+        }
         // The first entry is the main file, which is renamed last: readers never see a mix of old and new files. If the
         // main file is unchanged, the file with the coordinates becomes the first entry, and the main file stays in
         // place.
@@ -94,6 +99,15 @@ impl MeshFile {
         })?;
         in_place.iter().for_each(|part| part.known.note_written(&part.path));
         Ok(())
+    }
+
+    /// Returns the list of boundary conditions beside a SELAFIN, with the path to which a write to `path` copies the list. `None`
+    /// if there is no list, if `path` is a device, or if a list exists beside `path`: users edit their lists.
+    fn copy_beside(&self, path: &Path) -> Option<(&Source, PathBuf)> {
+        let list = self.source().beside.as_deref()?;
+        let destination = conditions::path_beside(path);
+        let is_file = !path.exists() || path.is_file();
+        (is_file && !destination.exists()).then_some((list, destination))
     }
 
     /// Returns whether the destination of the main file already has exactly the bytes of the rewrite.

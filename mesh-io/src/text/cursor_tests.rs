@@ -10,6 +10,7 @@ pub(crate) fn source(text: &[u8]) -> Source {
         options: crate::ReadOptions::new(),
         known: crate::disk::stamp::KnownState::default(),
         companions: Vec::new(),
+        beside: None,
     }
 }
 

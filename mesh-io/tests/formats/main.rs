@@ -4,6 +4,7 @@ mod abaqus;
 mod beside;
 mod binary;
 mod changed;
+mod conditions;
 mod content;
 mod convert;
 mod damage;

@@ -5,6 +5,7 @@
 //! kept. Titles of double precision end in `SERAFIND` by the manual, but other programs write such files with any title.
 //! So the length of the record of x decides the precision, as in `parserSELAFIN.py` of TELEMAC.
 
+pub(crate) mod conditions;
 pub(crate) mod write;
 
 use crate::binary::byte_order::ByteOrder;
@@ -13,6 +14,7 @@ use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, NumberEncoding, Offsets};
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::formats::selafin::conditions::Faces;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::visit::items::{CellKind, PointNumbers};
@@ -27,6 +29,11 @@ pub(crate) struct Selafin;
 
 impl FormatReader for Selafin {
     const VERTICES: &'static str = "the list of points";
+
+    fn load_companions(given: Source) -> Result<Source, ReadError> {
+        let beside = conditions::load(&given.path);
+        Ok(Source { beside, ..given })
+    }
 
     fn visit(
         source: &Source,
@@ -109,6 +116,14 @@ impl FormatReader for Selafin {
         };
         elements
             .send(visitor, |index, _| Cursor::at_byte_offset(source, listed_at + index * stride))?;
+        if visitor.asks_for_groups()
+            && let Some(list) = &source.beside
+        {
+            let corners = NumberField::new(Some(connectivity), 4, 4, order);
+            let (count, corners_of_face) = (triangles as usize, kind.nodes());
+            let faces = Faces { corners, count, corners_of_face, x, points: points as usize };
+            conditions::visit(list, cursor, &faces, visitor);
+        }
         if visitor.asks_for_data() {
             if parameters[9] == 1 {
                 visitor.unsupported("the date of a SELAFIN");

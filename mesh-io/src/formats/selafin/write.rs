@@ -27,10 +27,7 @@ pub(crate) fn write_selafin(input: &WriterInput<'_>) -> Vec<u8> {
     }
     // The first parameter is always 1. All others are 0: no origin, no date, one plane.
     record(&mut out, &ints([1, 0, 0, 0, 0, 0, 0, 0, 0, 0]));
-    let triangles: Vec<[u32; 3]> = input
-        .all(CellKind::Triangle)
-        .map(|cell| content.cells.of(cell).try_into().expect("a triangle has three corners"))
-        .collect();
+    let triangles = triangles(input);
     let points = content.points.len() as i32;
     record(&mut out, &ints([triangles.len() as i32, points, 3, 1]));
     record(&mut out, &ints(triangles.iter().flatten().map(|&v| v as i32 + 1)));
@@ -45,9 +42,14 @@ pub(crate) fn write_selafin(input: &WriterInput<'_>) -> Vec<u8> {
     out
 }
 
+pub(super) fn triangles(input: &WriterInput<'_>) -> Vec<[u32; 3]> {
+    let of = |cell| input.content.cells.of(cell).try_into().expect("a triangle has three corners");
+    input.all(CellKind::Triangle).map(of).collect()
+}
+
 /// Returns the number of each vertex along the boundary, from 1, and 0 for other vertices. The mesh is on the left of the
 /// boundary. Outer boundaries come before islands, and each begins at its vertex of least x + y.
-fn boundary_numbers(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<i32> {
+pub(super) fn boundary_numbers(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<i32> {
     let at = |v: u32| points[v as usize];
     let cross =
         |[a, b, c]: [[f64; 2]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
