@@ -8,7 +8,9 @@ use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
-use crate::registry::{ADCIRC, FREEFEM, FormatEntry, MIKE, NASTRAN, REGISTRY, STL, TRIANGLE, XDMF};
+use crate::registry::{
+    ADCIRC, FREEFEM, FormatEntry, MIKE, NASTRAN, REGISTRY, STL, SURFER, TRIANGLE, XDMF,
+};
 use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::text::token::{float, integer};
@@ -29,9 +31,11 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
         return Err(source.error(problem, remedy));
     }
     // The title of an ADCIRC grid may start like any other format. Other programs, such as SHYFEM and Surfer, name other
-    // files `.grd` too.
+    // files `.grd` too. The second row of a grid of Surfer has two counts, as that of ADCIRC has.
     let is_of_many = source.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("grd"));
-    if ADCIRC.matches_extension(&source.path) && (!is_of_many || has_adcirc_counts(source)) {
+    let is_of_surfer = || SURFER.magic.iter().any(|magic| source.bytes.starts_with(magic));
+    let is_adcirc = !is_of_many || (has_adcirc_counts(source) && !is_of_surfer());
+    if ADCIRC.matches_extension(&source.path) && is_adcirc {
         return reader_of(source, &ADCIRC);
     }
     let promised = |family: &&&FormatEntry| family.matches_extension(&source.path);
@@ -396,7 +400,7 @@ mod tests {
         assert_eq!(problem("mesh.dat", b" \n\t"), "the file is empty");
     }
 
-    /// SHYFEM's grid, a binary grid of Surfer, the model of Kratos and boundary conditions of TELEMAC, which start with rows of
+    /// SHYFEM's grid, grids of Surfer, the model of Kratos and boundary conditions of TELEMAC, which start with rows of
     /// numbers or with words.
     #[test]
     fn files_of_other_programs_are_not_damaged_grids_of_adcirc() {
@@ -404,13 +408,16 @@ mod tests {
             b"0 (a lagoon)\n\n1 1 0 0. 0. 5.\n1 2 0 1. 0. 5.\n1 3 0 1. 1. 5.\n2 1 0 3 1 2 3\n";
         const CLI: &[u8] = b"2 2 2 0.000 0.000 0.000 0.000 2 0.000 0.000 0.000 1 1\n\
             2 2 2 0.000 0.000 0.000 0.000 2 0.000 0.000 0.000 2 2\n2 2 2 0.0 0.0 0.0 0.0 2 0.0 0.0 0.0 3 3\n";
+        const SURFER: &str = "a grid of heights without a mesh (Surfer) is not read";
         const KRATOS: &[u8] = b"Begin Nodes\n1 0 0 0\n2 1 0 0\n3 1 1 0\nEnd Nodes\n";
         let unknown = "the format is not recognized";
         for (name, content, expected) in [
             ("a.grd", SHYFEM, unknown),
             ("a.grd", &SHYFEM[14..], unknown),
             ("a.dat", SHYFEM, unknown),
-            ("a.grd", b"DSBB\x0a\0\x14\0", unknown),
+            ("a.grd", b"DSBB\x0a\0\x14\0", SURFER),
+            ("a.grd", b"DSAA\n3 2\n0.0 1.0\n0.0 2.0\n-5.0 5.0\n1 2 3\n4 5 6\n", SURFER),
+            ("a.dat", b"DSRB\x04\0\0\0", SURFER),
             ("a.bas", b"\x08\0\0\0\x1b\0\0\0", "SHYFEM is not read"),
             ("a.cli", CLI, "a list of boundary conditions (TELEMAC) is not read"),
             ("a.dat", CLI, unknown),

@@ -264,6 +264,12 @@ families! {
         &[],
         "Name the mesh that the list belongs to, its .slf",
     );
+    SURFER [] = unsupported(
+        "a grid of heights without a mesh (Surfer)",
+        &[],
+        &[b"DSAA", b"DSBB", b"DSRB"],
+        "Name the mesh whose vertices have the heights",
+    );
     DOLFIN [] = unsupported("DOLFIN XML", &[], &[b"<dolfin"], BY_MESHIO);
     COMSOL [] = unsupported(
         "COMSOL",
