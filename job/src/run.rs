@@ -5,8 +5,9 @@ use gpu_smooth::{Goal, Method, Metric, Options, Scheme, Stopping};
 
 /// The share of the way to the desired f at which a run with a goal ends, if the user gives none.
 const FRACTION: f64 = 0.95;
-/// The tolerance of a run by ACUTE, if the user gives none. By a smaller tolerance, no triangle more becomes acute.
-const ACUTE_TOLERANCE: f64 = 1e-4;
+/// The tolerances of a run by ACUTE without and with sliding vertices, if the user gives none. By a smaller tolerance, no
+/// triangle more becomes acute.
+const ACUTE_TOLERANCES: [f64; 2] = [1e-4, 1e-3];
 
 /// The name of a method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,6 +43,8 @@ pub struct RunRequest {
     pub tolerance: Option<f64>,
     /// Share of the way to the desired f at which a run with a goal ends.
     pub fraction: Option<f64>,
+    /// Whether vertices slide, which sets the tolerance of a run by ACUTE.
+    pub slides: bool,
     /// The desired f of a goal; `Some(None)` to search for it.
     pub desired: Option<Option<f64>>,
     /// The options that stand as they are: all but the scheme, the method, the end of the run, the precision and EDGE's norm.
@@ -64,7 +67,7 @@ impl RunRequest {
             (true, _) => Stopping::Goal(goal),
             (false, Some(tolerance)) => Stopping::Tolerance(tolerance),
             (false, None) if matches!(scheme.base(), Metric::Acute | Metric::AcuteSize) => {
-                Stopping::Tolerance(ACUTE_TOLERANCE)
+                Stopping::Tolerance(ACUTE_TOLERANCES[usize::from(self.slides)])
             }
             (false, None) => Stopping::default(),
         };
@@ -149,12 +152,13 @@ mod tests {
 
     #[test]
     fn acute_has_a_tolerance_of_its_own() {
-        let stopping = |tolerance| {
-            let request = RunRequest { tolerance, ..RunRequest::default() };
+        let stopping = |tolerance, slides| {
+            let request = RunRequest { tolerance, slides, ..RunRequest::default() };
             request.options(Metric::Acute, Precision::Double).stopping
         };
-        assert_eq!(stopping(None), Stopping::Tolerance(1e-4));
-        assert_eq!(stopping(Some(1e-6)), Stopping::Tolerance(1e-6));
+        assert_eq!(stopping(None, false), Stopping::Tolerance(1e-4));
+        assert_eq!(stopping(None, true), Stopping::Tolerance(1e-3));
+        assert_eq!(stopping(Some(1e-6), true), Stopping::Tolerance(1e-6));
     }
 
     #[test]

@@ -71,7 +71,7 @@ pub const OPTIONS: &[OptionRow] = &[
         "Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep",
     )
     .takes("T")
-    .usually("1e-6, 1e-4 by acute")
+    .usually("1e-6, 1e-4 by acute, and 1e-3 by acute with {slide}")
     .excludes(&["fraction", "desired"]),
     row(
         "fraction",
@@ -245,7 +245,7 @@ pub const OPTIONS: &[OptionRow] = &[
         "slide",
         ToMesh,
         MOVABLE,
-        Flag(|to| to.slides = true),
+        Flag(|to| (to.slides, to.run.slides) = (true, true)),
         "Let vertices of the boundary, between regions and on lines slide along them, from corner to corner. Straight lines \
          stay straight; on other lines, vertices follow a cubic through the vertices of {IN}",
     )
