@@ -167,13 +167,21 @@ class MeshFile:
         Raises
         ------
         FileError
-            The file cannot be written.
+            The file cannot be written, or the files of a Triangle mesh would get another ending than that of `path`.
+        TypeError
+            `path` is no path, such as if the points come first.
         MeshError
             The points are not finite, or not one per vertex; or a vertex has moved that is on the boundary, on a line, between
             regions or on other elements of the file, such as if points of another mesh were passed (`MeshError.vertex`).
         """
         from gpu_smooth._result import Result
 
+        if not isinstance(path, (str, bytes, os.PathLike)):
+            found = type(path).__name__
+            raise TypeError(
+                f"path: the name of a file is needed, not an object of type {found}. The path comes first: "
+                "write(path, points)"
+            )
         if isinstance(points, Result):
             slide, free_lines = points._outcome.slides, points._outcome.frees_lines
             points = points.points

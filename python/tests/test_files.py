@@ -234,6 +234,27 @@ def test_points_whose_fixed_vertices_moved_are_written_only_if_told(tmp_path: Pa
     file.write(out, file.points.astype(np.float32))
 
 
+def test_a_triangle_mesh_is_not_written_under_another_ending_than_the_given_one(tmp_path: Path) -> None:
+    file = gpu_smooth.MeshFile(MESHES / "plate.node")
+    for name in "out.zzz", "out.v2", "out.smooth":
+        with pytest.raises(FileError, match=rf"{name}: the ending belongs to no format.*End the name in \.node"):
+            file.write(tmp_path / name, file.points)
+    assert not list(tmp_path.iterdir())
+    # Triangle numbers its meshes.
+    for name in "out", "out.1", "other.ele":
+        file.write(tmp_path / name, file.points)
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".ele"] * 3 + [".node"] * 3
+
+
+def test_points_in_place_of_the_path_are_told_from_the_path(tmp_path: Path) -> None:
+    file = gpu_smooth.MeshFile(gmsh_file(tmp_path / "in.msh"))
+    out = tmp_path / "out.msh"
+    result = gpu_smooth.run(file, engine="cpu")
+    for points in file.points, file.points.tolist(), result:
+        with pytest.raises(TypeError, match=rf"path: .*type {type(points).__name__}\. .*write\(path, points\)"):
+            file.write(points, out)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("slide", [False, True])
 def test_a_result_is_written_as_its_points_whether_vertices_slid_or_not(tmp_path: Path, slide: bool) -> None:
     file = gpu_smooth.MeshFile(MESHES / "plate.node")
