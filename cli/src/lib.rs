@@ -11,6 +11,7 @@ mod color_scale;
 mod commands;
 mod error;
 mod kept_layers;
+mod limits;
 mod load;
 mod render;
 mod report;

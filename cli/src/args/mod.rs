@@ -25,7 +25,7 @@ pub(crate) use fields::FieldArgs;
 pub(crate) use form::FormArgs;
 pub(crate) use movable::MoveArgs;
 pub(crate) use picture::PictureArgs;
-pub(crate) use quality::{QualityArgs, Threshold};
+pub(crate) use quality::QualityArgs;
 pub(crate) use read::ReadArgs;
 pub(crate) use sliding::SideArgs;
 pub(crate) use smooth::SmoothArgs;

@@ -1,15 +1,15 @@
 //! The options of `gpu-smooth quality`.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::{ArgGroup, Args};
-use gpu_smooth::measure::{Better, Measure};
+use gpu_smooth::measure::Measure;
 
 use crate::args::PictureArgs;
 use crate::args::ReadArgs;
 use crate::args::names;
 use crate::args::table::{OfCoordinates, TableArgs};
+use crate::limits::Threshold;
 
 // Arrows need a run. The option is accepted here only for the message that says so.
 #[derive(Args)]
@@ -35,9 +35,10 @@ pub(crate) struct QualityArgs {
     /// Show the statistics of each region too: physical groups, materials, references, attributes
     #[arg(long)]
     pub(crate) by_region: bool,
-    /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. The exit code is 1 if a
-    /// triangle has such a value. Each threshold has a line that says whether it holds and where the worst triangle is; -q
-    /// prints the violated ones alone
+    /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. orthogonality and flow-link are
+    /// those of edges, neighbors the number of triangles at a vertex, and boundary-corners the number of corners of a
+    /// triangle on the boundary. The exit code is 1 if a part of the mesh has such a value. Each threshold has a line that
+    /// says whether it holds and where the worst part is; -q prints the violated ones alone
     #[arg(long, value_name = "NAME<VALUE")]
     pub(crate) threshold: Vec<Threshold>,
     /// Print one line for each mesh, or for each --threshold of each mesh, for logs
@@ -83,65 +84,5 @@ impl QualityArgs {
             }
         });
         measures
-    }
-}
-
-/// A range of bad values of a measure, as in `min-angle<20`. If a triangle has a value in the range, the exit code
-/// is 1.
-#[derive(Clone, Debug)]
-pub(crate) struct Threshold {
-    pub(crate) measure: Measure,
-    or_equal: bool,
-    value: f64,
-}
-
-impl Threshold {
-    /// Returns whether a triangle with this value of the measure violates the threshold.
-    pub(crate) fn is_met(&self, value: f64) -> bool {
-        self.measure.is_worse(value, self.value) || self.or_equal && value == self.value
-    }
-}
-
-impl std::fmt::Display for Threshold {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let sign = match self.measure.definition().better {
-            Better::Higher => '<',
-            Better::Lower => '>',
-        };
-        let equal = if self.or_equal { "=" } else { "" };
-        write!(f, "{}{sign}{equal}{}", self.measure, self.value)
-    }
-}
-
-impl FromStr for Threshold {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        let form = "a measure, < or >, and a number, as in min-angle<20";
-        let at = text.find(['<', '>']).ok_or_else(|| format!("it must be {form}"))?;
-        let (name, rest) = text.split_at(at);
-        let measure: Measure = name.parse().map_err(|error| format!("{error}"))?;
-        let number = rest[1..].trim_start_matches('=');
-        let or_equal = match rest.len() - 1 - number.len() {
-            0 => false,
-            1 => true,
-            _ => return Err(format!("it must be {form}")),
-        };
-        let value: f64 =
-            number.trim().parse().map_err(|_| format!("'{number}' is not a number"))?;
-        if value.is_nan() {
-            return Err(format!("'{number}' is not a number"));
-        }
-        let threshold = Self { measure, or_equal, value };
-        let bad = match measure.definition().better {
-            Better::Higher => "low",
-            Better::Lower => "high",
-        };
-        if rest.starts_with('<') != (bad == "low") {
-            // Most likely the user wrote the values that all triangles should have.
-            return Err(format!(
-                "--threshold names the values that no triangle may have, and {bad} values of {measure} are bad: write '{threshold}'"
-            ));
-        }
-        Ok(threshold)
     }
 }

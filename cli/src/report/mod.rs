@@ -6,6 +6,8 @@ mod floored;
 mod histogram;
 mod improved;
 mod large_angles;
+mod place;
+mod quantities;
 mod run;
 mod spacing;
 mod summary;
@@ -19,6 +21,8 @@ pub(crate) use floored::FlooredReport;
 pub(crate) use histogram::{Histogram, histogram};
 pub(crate) use improved::ImprovedReport;
 pub(crate) use large_angles::LargeAnglesReport;
+pub(crate) use place::placed;
+pub(crate) use quantities::{Finding, Quantities, Worst};
 pub(crate) use run::{
     ChangeReport, EngineReport, FaultReport, GoalReport, MeshReport, QualityReport, Refusal,
     Report, Seconds, SlideReport, UntangleReport, history,

@@ -24,6 +24,7 @@ mod interrupt;
 mod jobs;
 mod killed;
 mod layers;
+mod limits;
 mod long;
 mod many;
 mod moving;

@@ -203,6 +203,7 @@ fn options_that_make_no_sense_are_refused() {
         ("--threshold min-angle<==20", "a measure, < or >, and a number"),
         ("--threshold min-angle<nan", "'nan' is not a number"),
         ("--threshold angle<20", "no measure is called 'angle'; there are "),
+        ("--threshold flow-link>0.1", "write 'flow-link<0.1'"),
         ("-m roundness", "no measure is called 'roundness'"),
         ("--json --csv", "--csv"),
         ("--worst -1", "-1"),

@@ -4,16 +4,17 @@ use std::path::Path;
 
 use crate::args::QualityArgs;
 use crate::commands::quality::bars::Style;
-use crate::commands::quality::mesh_quality::{MeshQuality, Violation};
+use crate::commands::quality::mesh_quality::MeshQuality;
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
 use crate::render::html::{self, MeshNumbers, PageEntry};
+use crate::report::Finding;
 use crate::request::Outputs;
 use crate::terminal::progress::Display;
 use crate::terminal::{Verbosity, interrupt, tell};
 
-/// Prints the quality of meshes. Shows progress on standard error if a picture or a page is drawn. Returns an error if a mesh cannot be read, or if triangles violate a
-/// threshold.
+/// Prints the quality of meshes. Shows progress on standard error if a picture or a page is drawn. Returns an error if a mesh cannot be read, or if its triangles, edges
+/// or vertices violate a threshold.
 pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliError> {
     let outputs = Outputs::of_drawings(&args.picture, args.html.as_ref())?;
     outputs.check(&args.meshes, &[])?;
@@ -102,40 +103,22 @@ fn entry(quality: &MeshQuality, is_alone: bool) -> Option<PageEntry<'_>> {
 fn summary(qualities: &[MeshQuality], style: &Style) -> String {
     let of_mesh = |quality: &MeshQuality| -> Vec<String> {
         let path = quality.path.display();
-        match &quality.violations[..] {
-            [] => vec![format!("{path}: {}", text::in_short(quality, style))],
-            all => all
-                .iter()
-                .map(|violation| {
-                    let result = if violation.count == 0 { "passed" } else { "failed" };
-                    format!("{path}: {result}: {}", finding(quality, violation, style))
-                })
-                .collect(),
+        if quality.findings.is_empty() {
+            return vec![format!("{path}: {}", text::in_short(quality, style))];
         }
+        let line = |finding: &Finding| {
+            let result = if finding.count == 0 { "passed" } else { "failed" };
+            format!("{path}: {result}: {}", finding.sentence(style.plain))
+        };
+        quality.findings.iter().map(line).collect()
     };
     qualities.iter().flat_map(of_mesh).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns a sentence for each threshold that triangles of a mesh violate.
+/// Returns a sentence for each threshold that parts of a mesh violate.
 fn violations(quality: &MeshQuality, style: &Style) -> impl Iterator<Item = String> {
-    let violated = quality.violations.iter().filter(|violation| violation.count > 0);
-    violated.map(move |violation| {
-        format!("{}: {}", quality.path.display(), finding(quality, violation, style))
+    let violated = quality.findings.iter().filter(|finding| finding.count > 0);
+    violated.map(move |finding| {
+        format!("{}: {}", quality.path.display(), finding.sentence(style.plain))
     })
-}
-
-/// Describes how many triangles violate a threshold, with the place of the worst triangle.
-fn finding(quality: &MeshQuality, violation: &Violation, style: &Style) -> String {
-    let Violation { threshold, count, worst } = violation;
-    let counted = match count {
-        0 => format!("none of {} triangles has {threshold}", quality.triangles),
-        count => format!("{count} of {} triangles have {threshold}", quality.triangles),
-    };
-    match worst {
-        None => counted,
-        Some((place, value)) => {
-            let worst = text::valued(threshold.measure, *value, style);
-            format!("{counted}; the worst is triangle {} ({place}), {worst}", place.id)
-        }
-    }
 }

@@ -3,13 +3,12 @@
 use std::fmt::Write;
 
 use gpu_smooth::measure::{QUANTILES, Statistics};
-use mesh_io::SourceLocation;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use crate::commands::quality::mesh_quality::{MeshQuality, Region, Violation, Worst, location};
+use crate::commands::quality::mesh_quality::{MeshQuality, Region, WorstTriangle};
 use crate::error::CliError;
 use crate::render::columns::quoted;
-use crate::report::Histogram;
+use crate::report::{Finding, Histogram, Worst, placed};
 
 /// Returns an object for a single mesh, or an array of objects for several meshes.
 pub(crate) fn json(qualities: &[MeshQuality]) -> Result<Value, CliError> {
@@ -45,8 +44,8 @@ fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
         });
         value["regions"] = regions.collect();
     }
-    if !quality.violations.is_empty() {
-        value["thresholds"] = quality.violations.iter().map(violation).collect();
+    if !quality.findings.is_empty() {
+        value["thresholds"] = quality.findings.iter().map(finding).collect();
     }
     Ok(value)
 }
@@ -68,18 +67,7 @@ fn histogram(histogram: &Histogram) -> Value {
     json!({ "measure": measure.name(), "edges": edges, "counts": counts })
 }
 
-/// Returns an object with a triangle's number or tag under `key`, and its location in the file.
-fn placed(key: &str, place: &SourceLocation) -> Map<String, Value> {
-    let mut object = Map::new();
-    object.insert(key.to_owned(), place.id.into());
-    object.insert("file".into(), place.path.display().to_string().into());
-    if let Some((kind, at)) = location(place) {
-        object.insert(kind.into(), at.into());
-    }
-    object
-}
-
-fn worst(worst: &Worst) -> Value {
+fn worst(worst: &WorstTriangle) -> Value {
     let mut object = placed("triangle", &worst.place);
     object.insert("vertices".into(), json!(worst.vertices));
     object.insert("corners".into(), json!(worst.corners));
@@ -90,15 +78,16 @@ fn worst(worst: &Worst) -> Value {
     object.into()
 }
 
-fn violation(violation: &Violation) -> Value {
-    let Violation { threshold, count, worst } = violation;
+fn finding(finding: &Finding) -> Value {
+    let Finding { threshold, count, worst, .. } = finding;
     let violating = worst.as_ref().filter(|_| *count > 0);
-    let worst = violating.map(|(place, value)| {
-        let mut object = placed("triangle", place);
+    let worst = violating.map(|Worst { place, value }| {
+        let mut object = place.json();
         object.insert("value".into(), json!(value));
         object
     });
-    json!({ "threshold": threshold.to_string(), "triangles": count, "worst": worst })
+    let parts = threshold.quantity.part().noun(false);
+    json!({ "threshold": threshold.to_string(), parts: count, "worst": worst })
 }
 
 /// Returns the group names of a region, in the spelling that options accept.

@@ -10,16 +10,16 @@ use gpu_smooth::{
     measure::{Measure, Measured, Statistics},
     topology::BadTriangle,
 };
-use mesh_io::{Group, Groups, Location, SourceLocation};
+use mesh_io::{Group, Groups, SourceLocation};
 
-use crate::args::{QualityArgs, Threshold};
+use crate::args::QualityArgs;
 use crate::load::explain::{self, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
 use crate::load::{as_in_file, lay_out};
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
-use crate::report::{Histogram, QualityReport, histogram};
+use crate::report::{Finding, Histogram, QualityReport, Quantities, histogram};
 use crate::request::{Outputs, ThirdCoordinate};
 use crate::terminal::progress::{Display, Stage};
 
@@ -40,8 +40,9 @@ pub(crate) struct MeshQuality {
     pub(crate) regions: Vec<Region>,
     pub(crate) histograms: Vec<Histogram>,
     /// The worst triangles by the first measure with a histogram, worst first.
-    pub(crate) worst: Vec<Worst>,
-    pub(crate) violations: Vec<Violation>,
+    pub(crate) worst: Vec<WorstTriangle>,
+    /// The parts of the mesh with values in the ranges of `--threshold`.
+    pub(crate) findings: Vec<Finding>,
     /// Inverted and flat triangles: all for JSON, otherwise the first [`explain::TOLD`].
     pub(crate) bad: Vec<BadTriangleReport>,
     pub(crate) flat: usize,
@@ -76,7 +77,7 @@ pub(crate) struct GroupNames {
 }
 
 /// One of the worst triangles, in the terms of its file.
-pub(crate) struct Worst {
+pub(crate) struct WorstTriangle {
     pub(crate) place: SourceLocation,
     /// Numbers or tags of the vertices in the file.
     pub(crate) vertices: [u64; 3],
@@ -89,16 +90,6 @@ pub(crate) struct Worst {
     pub(crate) values: Vec<(Measure, f64)>,
     /// Whether the triangle has a free vertex.
     pub(crate) can_move: bool,
-}
-
-/// The triangles that violate a threshold.
-pub(crate) struct Violation {
-    pub(crate) threshold: Threshold,
-    /// Number of triangles that violate the threshold.
-    pub(crate) count: usize,
-    /// Location and value of the worst triangle by the measure of the threshold, which may pass; `None` for a mesh without
-    /// triangles.
-    pub(crate) worst: Option<(SourceLocation, f64)>,
 }
 
 impl MeshQuality {
@@ -154,6 +145,7 @@ impl MeshQuality {
             })
         });
         let page = page.transpose()?;
+        let quantities = Quantities::new(&file, &measured);
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),
@@ -171,7 +163,7 @@ impl MeshQuality {
             },
             histograms: args.histograms().iter().map(|&m| histogram(&measured, m)).collect(),
             worst: worst(&file, &topology, &measured, args),
-            violations: args.threshold.iter().map(|t| violation(&file, &measured, t)).collect(),
+            findings: args.threshold.iter().map(|t| quantities.finding(t)).collect(),
             bad: explain::bad_triangles(&file, &bad[..listed]),
             flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),
             hanging_nodes: hanging.len(),
@@ -275,13 +267,13 @@ fn worst(
     topology: &Topology<'_>,
     measured: &Measured<'_>,
     args: &QualityArgs,
-) -> Vec<Worst> {
+) -> Vec<WorstTriangle> {
     let mesh = file.mesh();
     let Some(&measure) = args.histograms().first() else { return Vec::new() };
     let found = measured.worst(measure, args.worst);
     let places = file.source.triangle_locations(found.iter().map(|found| found.0));
     let names = file.vertex_places(found.iter().flat_map(|found| mesh.triangles[found.0]));
-    let one = |&(t, _): &(usize, f64)| Worst {
+    let one = |&(t, _): &(usize, f64)| WorstTriangle {
         place: places[&t].clone(),
         vertices: mesh.triangles[t].map(|v| names[&v].id),
         corners: file.source.triangles()[t].map(|v| file.positions()[v as usize]),
@@ -300,21 +292,4 @@ fn longest_edge([p, q, r]: [[f64; 2]; 3]) -> f64 {
 
 fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
     [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
-}
-
-fn violation(file: &LoadedMesh, measured: &Measured<'_>, threshold: &Threshold) -> Violation {
-    let measure = threshold.measure;
-    let (count, _) = measured.count_where(measure, |value| threshold.is_met(value));
-    let worst = measured.worst(measure, 1);
-    let worst = worst.first().map(|&(t, value)| (file.source.triangle_location(t), value));
-    Violation { threshold: threshold.clone(), count, worst }
-}
-
-/// Returns the line or byte of a location together with its key in JSON; `None` if the location is unknown.
-pub(crate) fn location(place: &SourceLocation) -> Option<(&'static str, usize)> {
-    match place.location {
-        Location::Line(line) => Some(("line", line)),
-        Location::Byte(byte) => Some(("byte", byte)),
-        Location::Unknown => None,
-    }
 }

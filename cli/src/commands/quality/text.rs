@@ -8,7 +8,7 @@ use gpu_smooth::{
 };
 
 use crate::commands::quality::bars::{self, Style};
-use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region, Worst};
+use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region, WorstTriangle};
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
 use crate::report::DistinctMeasures;
@@ -215,8 +215,8 @@ fn by_region(quality: &MeshQuality, style: &Style) -> String {
 }
 
 /// Writes the location of a triangle, its values, and whether smoothing can improve the triangle.
-fn worst_line(worst: &Worst, style: &Style) -> String {
-    let Worst { place, at, values, can_move, .. } = worst;
+fn worst_line(worst: &WorstTriangle, style: &Style) -> String {
+    let WorstTriangle { place, at, values, can_move, .. } = worst;
     let [x, y] = at.map(|x| coordinate(x, worst.length));
     let values: Vec<String> =
         values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();

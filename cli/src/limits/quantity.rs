@@ -1,0 +1,106 @@
+//! The quantities of triangles, edges and vertices that thresholds limit.
+
+use std::fmt;
+use std::str::FromStr;
+
+use gpu_smooth::measure::{Better, Measure};
+
+/// A number that each triangle, each edge between two triangles, or each vertex of a mesh has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    /// A measure of triangles, or of edges if [`Measure::is_of_edges`] is true.
+    Measure(Measure),
+    /// Number of corners of a triangle on the boundary, from 0 to 3.
+    BoundaryCorners,
+    /// Number of triangles at a vertex; inside the mesh, also the number of its neighbors.
+    Neighbors,
+}
+
+/// The parts of a mesh that have a quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    Triangle,
+    Edge,
+    Vertex,
+}
+
+impl Part {
+    /// Returns the name of one part, or of several parts.
+    pub(crate) fn noun(self, is_one: bool) -> &'static str {
+        match (self, is_one) {
+            (Self::Triangle, true) => "triangle",
+            (Self::Triangle, false) => "triangles",
+            (Self::Edge, true) => "edge",
+            (Self::Edge, false) => "edges",
+            (Self::Vertex, true) => "vertex",
+            (Self::Vertex, false) => "vertices",
+        }
+    }
+}
+
+impl Quantity {
+    /// The quantities that are no measures.
+    const COUNTS: [Self; 2] = [Self::BoundaryCorners, Self::Neighbors];
+
+    /// Returns the name on the command line and in profiles.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Measure(measure) => measure.name(),
+            Self::BoundaryCorners => "boundary-corners",
+            Self::Neighbors => "neighbors",
+        }
+    }
+
+    /// Returns the parts of a mesh that have the quantity.
+    pub(crate) fn part(self) -> Part {
+        match self {
+            Self::Measure(measure) if measure.is_of_edges() => Part::Edge,
+            Self::Measure(_) | Self::BoundaryCorners => Part::Triangle,
+            Self::Neighbors => Part::Vertex,
+        }
+    }
+
+    /// Returns whether large or small values are better; `None` if values can be bad in both directions.
+    pub(crate) fn better(self) -> Option<Better> {
+        match self {
+            Self::Measure(measure) => Some(measure.definition().better),
+            Self::BoundaryCorners => Some(Better::Lower),
+            Self::Neighbors => None,
+        }
+    }
+
+    /// Returns the unit that follows a value, empty for a ratio or a number of parts.
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Self::Measure(measure) => measure.definition().unit,
+            Self::BoundaryCorners | Self::Neighbors => "",
+        }
+    }
+
+    /// Returns whether values are whole numbers.
+    pub(crate) fn is_count(self) -> bool {
+        Self::COUNTS.contains(&self)
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Quantity {
+    type Err = String;
+
+    /// Parses a name. Underscores may replace hyphens.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let name = text.trim().to_ascii_lowercase().replace('_', "-");
+        match Self::COUNTS.into_iter().find(|count| count.name() == name) {
+            Some(count) => Ok(count),
+            None => text
+                .parse()
+                .map(Self::Measure)
+                .map_err(|error| format!("{error}, {}", Self::COUNTS.map(Self::name).join(", "))),
+        }
+    }
+}
