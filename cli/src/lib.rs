@@ -13,6 +13,7 @@ mod error;
 mod kept_layers;
 mod limits;
 mod load;
+mod profiles;
 mod render;
 mod report;
 mod request;

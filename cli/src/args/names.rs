@@ -9,6 +9,8 @@ use clap_complete::engine::CompletionCandidate;
 use gpu_smooth::{Metric, measure::Measure};
 use mesh_io::Format;
 
+use crate::profiles::{self, ProfileSource};
+
 /// A parser of values that offers names as completions. Values beyond the offered names may be valid, such as
 /// `edge+imr`.
 #[derive(Clone)]
@@ -47,6 +49,11 @@ pub(crate) fn completed_schemes(scheme: &OsStr) -> Vec<CompletionCandidate> {
 pub(crate) fn measures() -> Offering<Measure> {
     let parse = |text: &str| text.parse().map_err(|error| format!("{error}"));
     Offering { parse, names: || Measure::ALL.iter().map(|measure| measure.name()).collect() }
+}
+
+/// Returns the parser of profiles, which offers the names of the program's profiles.
+pub(crate) fn profiles() -> Offering<ProfileSource> {
+    Offering { parse: ProfileSource::of, names: profiles::names }
 }
 
 /// Returns the names of the metrics for which `is_wanted` is true.

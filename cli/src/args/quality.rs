@@ -10,6 +10,7 @@ use crate::args::ReadArgs;
 use crate::args::names;
 use crate::args::table::{OfCoordinates, TableArgs};
 use crate::limits::Threshold;
+use crate::profiles::ProfileSource;
 
 // Arrows need a run. The option is accepted here only for the message that says so.
 #[derive(Args)]
@@ -41,7 +42,11 @@ pub(crate) struct QualityArgs {
     /// says whether it holds and where the worst part is; -q prints the violated ones alone
     #[arg(long, value_name = "NAME<VALUE")]
     pub(crate) threshold: Vec<Threshold>,
-    /// Print one line for each mesh, or for each --threshold of each mesh, for logs
+    /// Compare each mesh with the limits of a solver, or of a TOML file of your own, in a table. The exit code is 1 if a limit
+    /// fails. docs/solvers.md has all limits with their sources
+    #[arg(long = "for", value_name = "NAME|FILE", value_parser = names::profiles())]
+    pub(crate) profile: Option<ProfileSource>,
+    /// Print one line for each mesh, or for each --threshold and each limit of --for of each mesh, for logs
     #[arg(long, conflicts_with_all = ["csv", "json"])]
     pub(crate) summary: bool,
     /// Print JSON

@@ -33,8 +33,9 @@ impl Threshold {
             1 => true,
             _ => return Err(form.into()),
         };
+        let number = number.trim();
         let not_a_number = || format!("'{number}' is not a number");
-        let value: f64 = number.trim().parse().map_err(|_| not_a_number())?;
+        let value: f64 = number.parse().map_err(|_| not_a_number())?;
         if value.is_nan() {
             return Err(not_a_number());
         }
@@ -63,6 +64,17 @@ impl Threshold {
     /// Returns whether the value `a` is worse than `b`.
     pub(crate) fn is_worse(&self, a: f64, b: f64) -> bool {
         if self.is_below { a < b } else { a > b }
+    }
+
+    /// Returns whether all values of another range of the quantity, with the direction of this one, are in this range.
+    pub(crate) fn contains(&self, other: &Self) -> bool {
+        self.is_worse(other.value, self.value)
+            || other.value == self.value && (self.or_equal || !other.or_equal)
+    }
+
+    /// Returns the range without the name of the quantity, as in `< 20`.
+    pub(crate) fn range(&self) -> String {
+        format!("{} {}", self.sign(), self.value)
     }
 
     fn sign(&self) -> &'static str {

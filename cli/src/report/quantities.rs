@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use gpu_smooth::measure::{InnerEdge, Measure, Measured};
+use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
 
 use crate::limits::{Part, Quantity, Threshold};
 use crate::load::LoadedMesh;
@@ -51,6 +51,11 @@ impl<'m> Quantities<'m> {
     /// Returns the edges between two triangles.
     pub(crate) fn edges(&self) -> &[InnerEdge] {
         self.edges.get_or_init(|| self.measured.edges())
+    }
+
+    /// Returns the reason for which a triangle keeps an angle of 90 degrees or more; `None` if no reason is known.
+    pub(crate) fn why_large(&self, triangle: usize) -> Option<WhyLarge> {
+        self.measured.why_large(triangle)
     }
 
     /// Counts the parts with a value in the range of a threshold, and locates the worst part.
@@ -139,7 +144,7 @@ impl<'m> Quantities<'m> {
 }
 
 /// Returns the value of a quantity of edges for an edge between two triangles.
-fn of_edge(quantity: Quantity, edge: &InnerEdge) -> f64 {
+pub(crate) fn of_edge(quantity: Quantity, edge: &InnerEdge) -> f64 {
     match quantity {
         Quantity::Measure(Measure::FlowLink) => edge.flow_link,
         _ => edge.orthogonality,

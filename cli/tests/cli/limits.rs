@@ -79,3 +79,90 @@ fn a_threshold_of_boundary_corners_finds_triangles_with_all_corners_on_the_bound
     let told = "1 of 4 triangles have boundary-corners>=3; the worst is triangle 4 (in.14:11), boundary-corners 3";
     assert_holds(&run.out, &[told]);
 }
+
+#[test]
+fn a_profile_has_a_line_for_each_limit_and_fails_with_the_mesh() {
+    let folder = quadrilateral();
+    let own = "name = \"ours\"\ntitle = \"our solver\"\n[[limits]]\nquantity = \"orthogonality\"\nwarn = \"> 0.01\"\nfail = \"> 0.3\"\n\
+               source = \"our experience\"\n[[limits]]\nquantity = \"neighbors\"\nfail = \"> 10\"\n[[limits]]\n\
+               quantity = \"max-angle\"\nwarn = \"> 100\"\n";
+    std::fs::write(folder.path("own.toml"), own).unwrap();
+    let run = quality(&folder, &["--for", "own.toml"]);
+    assert_eq!(run.code, Some(1));
+    let table: Vec<&str> =
+        run.out.lines().skip_while(|line| *line != "limits of ours: our solver").collect();
+    let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(words(table[1]), words("quantity warn fail warned failed verdict worst"));
+    let expected = [
+        ("orthogonality > 0.01 > 0.3 0 2 fail 0.", ", the edge between vertices "),
+        ("neighbors > 10 0 0 good 4, vertex 5 (in.14:7)", ""),
+        ("max-angle > 100 1 0 warn ", ", triangle 1 (in.14:8)"),
+    ];
+    for (line, (start, part)) in table[2..5].iter().zip(expected) {
+        assert!(words(line).join(" ").starts_with(start), "{line}");
+        assert_holds(line, &[part]);
+    }
+    assert_holds(&run.err, &["in.14: 2 of 4 edges have orthogonality>0.3; the worst is the edge "]);
+    let summary = quality(&folder, &["--for", "own.toml", "--summary"]);
+    let lines: Vec<&str> = summary.out.lines().collect();
+    assert_eq!(lines.len(), 3, "{}", summary.out);
+    assert!(
+        lines[0].starts_with("in.14: fail: 2 of 4 edges have orthogonality>0.3; the worst is ")
+    );
+    assert!(
+        lines[1].starts_with("in.14: good: none of 5 vertices has neighbors>10; the worst is ")
+    );
+    assert!(
+        lines[2].starts_with("in.14: warn: 1 of 4 triangles have max-angle>100; the worst is ")
+    );
+    let told: Value =
+        serde_json::from_str(&quality(&folder, &["--for", "own.toml", "--json"]).out).unwrap();
+    let profile = &told["profile"];
+    assert_eq!((&profile["name"], &profile["verdict"]), (&"ours".into(), &"fail".into()));
+    let limit = &profile["limits"][0];
+    assert_eq!(
+        (&limit["edges"], &limit["failed"], &limit["warned"]),
+        (&4.into(), &2.into(), &0.into())
+    );
+    assert_eq!((&limit["fail"], &limit["source"]), (&"> 0.3".into(), &"our experience".into()));
+    assert_eq!(limit["worst"]["vertices"][1], 5);
+    // A mesh that only warns passes.
+    let milder = own.replace("fail = \"> 0.3\"\n", "");
+    std::fs::write(folder.path("own.toml"), milder).unwrap();
+    quality(&folder, &["--for", "own.toml"]).clean();
+    assert_eq!(quality(&folder, &["--for", "own.toml", "-q"]).clean().out, "");
+}
+
+#[test]
+fn a_profile_that_cannot_be_read_is_refused_with_its_line_or_with_the_names() {
+    let folder = quadrilateral();
+    let run = quality(&folder, &["--for", "dflowfn"]);
+    assert_eq!((run.code, run.out.as_str()), (Some(2), ""));
+    let told = "no profile is called 'dflowfn'; there are adcirc, dflowfm, ";
+    assert_holds(&run.err, &[told, "Did you mean dflowfm?"]);
+    quality(&folder, &["--for", "none.toml"]).refused(&["none.toml: "]);
+    let own = "name = \"ours\"\n[[limits]]\nquantity = \"orthogonality\"\nfail = \"< 0.5\"\n";
+    std::fs::write(folder.path("own.toml"), own).unwrap();
+    let told = ["own.toml:2: fail of orthogonality: ", "write 'orthogonality>0.5'"];
+    quality(&folder, &["--for", "own.toml"]).refused(&told);
+}
+
+#[test]
+fn edges_beyond_a_limit_are_counted_by_the_reason_that_keeps_them() {
+    // The vertex inside has four triangles, one of which is obtuse there.
+    let folder = quadrilateral();
+    let own = "name = \"ours\"\n[[limits]]\nquantity = \"orthogonality\"\nfail = \"> 0.3\"\n";
+    std::fs::write(folder.path("own.toml"), own).unwrap();
+    let run = quality(&folder, &["--for", "own.toml"]);
+    let told = "edges beyond the limits, by reason\n        2 fail        0 warn  a vertex inside with three or four triangles: ";
+    assert_holds(&run.out, &[told]);
+    let told: Value =
+        serde_json::from_str(&quality(&folder, &["--for", "own.toml", "--json"]).out).unwrap();
+    let reasons = told["profile"]["reasons"].as_array().unwrap();
+    assert_eq!(reasons.len(), 1);
+    assert_eq!(
+        (&reasons[0]["reason"], &reasons[0]["failed"]),
+        (&"few-triangles".into(), &2.into())
+    );
+    assert_eq!(reasons[0]["remedies"], Value::from(vec!["swap", "refine"]));
+}

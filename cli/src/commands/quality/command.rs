@@ -7,8 +7,9 @@ use crate::commands::quality::bars::Style;
 use crate::commands::quality::mesh_quality::MeshQuality;
 use crate::commands::quality::{json, text};
 use crate::error::CliError;
+use crate::profiles::ProfileSource;
 use crate::render::html::{self, MeshNumbers, PageEntry};
-use crate::report::Finding;
+use crate::report::{Finding, Verdict};
 use crate::request::Outputs;
 use crate::terminal::progress::Display;
 use crate::terminal::{Verbosity, interrupt, tell};
@@ -25,10 +26,11 @@ pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliErr
         interrupt::watch(verbosity.quiet);
     }
     let display = Display::new(verbosity, None, 0);
+    let profile = args.profile.as_ref().map(ProfileSource::read).transpose()?;
     let style = Style::of_terminal(args.ascii);
     let (mut qualities, mut errors) = (Vec::new(), Vec::new());
     for path in &args.meshes {
-        match MeshQuality::of(path, args, &outputs, &display) {
+        match MeshQuality::of(path, args, profile.as_ref(), &outputs, &display) {
             Ok(quality) => qualities.push(quality),
             // A mesh that cannot be read must not hide the others.
             Err(error) => errors.push(error),
@@ -49,8 +51,8 @@ pub(crate) fn run(args: &QualityArgs, verbosity: Verbosity) -> Result<(), CliErr
     last.map_or(Ok(()), Err)
 }
 
-/// Prints the quality of at least one mesh. Prints no text if `quiet` is true and thresholds are given, which the exit code
-/// answers.
+/// Prints the quality of at least one mesh. Prints no text if `quiet` is true and thresholds or a profile are given, which
+/// the exit code answers.
 fn print(
     qualities: &[MeshQuality],
     args: &QualityArgs,
@@ -63,11 +65,17 @@ fn print(
         tell::say_data(&json::csv(qualities));
     } else if args.summary {
         tell::say(&summary(qualities, style));
-    } else if !quiet || args.threshold.is_empty() {
+    } else if !quiet || args.threshold.is_empty() && args.profile.is_none() {
         let is_usual = args.measure.is_empty();
         let mut text = text::text(qualities, is_usual, style);
+        for quality in qualities {
+            let Some(profile) = &quality.profile else { continue };
+            let path = quality.path.display();
+            let name = if qualities.len() > 1 { format!("== {path}\n") } else { String::new() };
+            text += &format!("\n\n{name}{}", profile.table());
+        }
         if !args.threshold.is_empty() {
-            text += &format!("\n\n{}", summary(qualities, style));
+            text += &format!("\n\n{}", of_thresholds(qualities, style).join("\n"));
         }
         tell::say(&text);
     }
@@ -99,26 +107,43 @@ fn entry(quality: &MeshQuality, is_alone: bool) -> Option<PageEntry<'_>> {
     Some(PageEntry { numbers, part: quality.page.as_ref()? })
 }
 
-/// Returns a line for each threshold of each mesh; without thresholds, a line for each mesh.
-fn summary(qualities: &[MeshQuality], style: &Style) -> String {
+/// Returns a line for each threshold of each mesh.
+fn of_thresholds(qualities: &[MeshQuality], style: &Style) -> Vec<String> {
     let of_mesh = |quality: &MeshQuality| -> Vec<String> {
         let path = quality.path.display();
-        if quality.findings.is_empty() {
-            return vec![format!("{path}: {}", text::in_short(quality, style))];
-        }
         let line = |finding: &Finding| {
             let result = if finding.count == 0 { "passed" } else { "failed" };
             format!("{path}: {result}: {}", finding.sentence(style.plain))
         };
         quality.findings.iter().map(line).collect()
     };
-    qualities.iter().flat_map(of_mesh).collect::<Vec<_>>().join("\n")
+    qualities.iter().flat_map(of_mesh).collect()
 }
 
-/// Returns a sentence for each threshold that parts of a mesh violate.
-fn violations(quality: &MeshQuality, style: &Style) -> impl Iterator<Item = String> {
+/// Returns a line for each threshold and each limit of the profile of each mesh; without both, a line for each mesh.
+fn summary(qualities: &[MeshQuality], style: &Style) -> String {
+    let mut lines = of_thresholds(qualities, style);
+    for quality in qualities {
+        let path = quality.path.display();
+        for limit in quality.profile.iter().flat_map(|profile| &profile.limits) {
+            let verdict = limit.verdict().name();
+            lines.push(format!("{path}: {verdict}: {}", limit.sentence(style.plain)));
+        }
+        if quality.findings.is_empty() && quality.profile.is_none() {
+            lines.push(format!("{path}: {}", text::in_short(quality, style)));
+        }
+    }
+    lines.join("\n")
+}
+
+/// Returns a sentence for each threshold that parts of a mesh violate, and for each limit that fails.
+fn violations(quality: &MeshQuality, style: &Style) -> Vec<String> {
     let violated = quality.findings.iter().filter(|finding| finding.count > 0);
-    violated.map(move |finding| {
-        format!("{}: {}", quality.path.display(), finding.sentence(style.plain))
-    })
+    let limits = quality.profile.iter().flat_map(|profile| &profile.limits);
+    let failed = limits.filter(|limit| limit.verdict() == Verdict::Fail);
+    violated
+        .map(|finding| finding.sentence(style.plain))
+        .chain(failed.map(|limit| limit.sentence(style.plain)))
+        .map(|sentence| format!("{}: {sentence}", quality.path.display()))
+        .collect()
 }

@@ -44,6 +44,9 @@ fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
         });
         value["regions"] = regions.collect();
     }
+    if let Some(profile) = &quality.profile {
+        value["profile"] = serde_json::to_value(profile)?;
+    }
     if !quality.findings.is_empty() {
         value["thresholds"] = quality.findings.iter().map(finding).collect();
     }

@@ -17,9 +17,10 @@ use crate::load::explain::{self, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
 use crate::load::{as_in_file, lay_out};
+use crate::profiles::Profile;
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
-use crate::report::{Finding, Histogram, QualityReport, Quantities, histogram};
+use crate::report::{Finding, Histogram, ProfileReport, QualityReport, Quantities, histogram};
 use crate::request::{Outputs, ThirdCoordinate};
 use crate::terminal::progress::{Display, Stage};
 
@@ -43,6 +44,8 @@ pub(crate) struct MeshQuality {
     pub(crate) worst: Vec<WorstTriangle>,
     /// The parts of the mesh with values in the ranges of `--threshold`.
     pub(crate) findings: Vec<Finding>,
+    /// The mesh beside the limits of `--for`.
+    pub(crate) profile: Option<ProfileReport>,
     /// Inverted and flat triangles: all for JSON, otherwise the first [`explain::TOLD`].
     pub(crate) bad: Vec<BadTriangleReport>,
     pub(crate) flat: usize,
@@ -97,6 +100,7 @@ impl MeshQuality {
     pub(crate) fn of(
         path: &Path,
         args: &QualityArgs,
+        profile: Option<&Profile>,
         outputs: &Outputs,
         display: &Display,
     ) -> Result<Self, CliError> {
@@ -163,6 +167,7 @@ impl MeshQuality {
             },
             histograms: args.histograms().iter().map(|&m| histogram(&measured, m)).collect(),
             worst: worst(&file, &topology, &measured, args),
+            profile: profile.map(|profile| ProfileReport::new(profile, &quantities)),
             findings: args.threshold.iter().map(|t| quantities.finding(t)).collect(),
             bad: explain::bad_triangles(&file, &bad[..listed]),
             flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),

@@ -1,0 +1,174 @@
+//! The limits of a solver or of its users, as a TOML file lists them.
+
+use gpu_smooth::Metric;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+
+use crate::limits::{Quantity, Threshold};
+
+/// Limits of the quantities of a mesh.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "GivenProfile")]
+pub(crate) struct Profile {
+    /// The name for `--for`, or that of a user's file.
+    pub(crate) name: String,
+    /// A description of the solver in a few words, which may be empty.
+    pub(crate) title: String,
+    /// The metric by which runs for the solver smooth meshes; `None` if the default metric suits the solver.
+    pub(crate) scheme: Option<Metric>,
+    /// The limits in the order of the file, at least one.
+    pub(crate) limits: Vec<Limit>,
+}
+
+/// Ranges of values of a quantity that are bad for a solver.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "GivenLimit")]
+pub(crate) struct Limit {
+    pub(crate) quantity: Quantity,
+    /// Values of which users should know.
+    pub(crate) warn: Option<Threshold>,
+    /// Values with which the solver does not run, or that it or its users refuse.
+    pub(crate) fail: Option<Threshold>,
+    /// The document or the source file that states the limit.
+    pub(crate) source: String,
+}
+
+/// A problem of the text of a profile.
+#[derive(Debug, PartialEq)]
+pub(crate) struct ProfileProblem {
+    pub(crate) message: String,
+    /// The line, from 1; `None` if the problem has no place.
+    pub(crate) line: Option<usize>,
+}
+
+/// The keys of a file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GivenProfile {
+    name: String,
+    #[serde(default)]
+    title: String,
+    #[serde(default, deserialize_with = "metric")]
+    scheme: Option<Metric>,
+    limits: Vec<Limit>,
+}
+
+/// The keys of a limit.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GivenLimit {
+    quantity: String,
+    warn: Option<String>,
+    fail: Option<String>,
+    #[serde(default)]
+    source: String,
+}
+
+/// Reads the name of a metric.
+fn metric<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Metric>, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    name.parse().map(Some).map_err(|error| D::Error::custom(format!("scheme: {error}")))
+}
+
+impl Profile {
+    /// Parses the text of a file.
+    ///
+    /// # Errors
+    /// The first problem of the text, such as a key that no profile has.
+    pub(crate) fn parse(text: &str) -> Result<Self, ProfileProblem> {
+        toml::from_str(text).map_err(|error| ProfileProblem {
+            message: error.message().to_owned(),
+            line: error.span().map(|span| {
+                let before = text.get(..span.start).unwrap_or(text);
+                1 + before.matches('\n').count()
+            }),
+        })
+    }
+}
+
+impl TryFrom<GivenProfile> for Profile {
+    type Error = String;
+
+    fn try_from(given: GivenProfile) -> Result<Self, String> {
+        let GivenProfile { name, title, scheme, limits } = given;
+        if limits.is_empty() {
+            return Err("a profile needs a limit, as in [[limits]]".into());
+        }
+        Ok(Self { name, title, scheme, limits })
+    }
+}
+
+impl TryFrom<GivenLimit> for Limit {
+    type Error = String;
+
+    fn try_from(given: GivenLimit) -> Result<Self, String> {
+        let GivenLimit { quantity, warn, fail, source } = given;
+        let quantity: Quantity = quantity.parse()?;
+        let threshold = |key: &str, range: Option<String>| {
+            let range = range.map(|range| Threshold::of(quantity, &range));
+            range.transpose().map_err(|problem| format!("{key} of {quantity}: {problem}"))
+        };
+        let (warn, fail) = (threshold("warn", warn)?, threshold("fail", fail)?);
+        match (&warn, &fail) {
+            (None, None) => {
+                return Err(format!(
+                    "the limit of {quantity} needs warn or fail, as in fail = \"> 1\""
+                ));
+            }
+            (Some(warn), Some(fail)) if warn.is_below != fail.is_below => {
+                return Err(format!(
+                    "warn and fail of {quantity} have different directions: write two limits"
+                ));
+            }
+            (Some(warn), Some(fail)) if !warn.contains(fail) => {
+                return Err(format!("fail of {quantity} must be beyond warn"));
+            }
+            _ => {}
+        }
+        Ok(Self { quantity, warn, fail, source })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OWN: &str = "name = \"ours\"\nscheme = \"acute\"\n\n[[limits]]\nquantity = \"min-angle\"\nwarn = \"< 30\"\n\
+                       fail = \"< 20\"\n";
+
+    #[test]
+    fn the_ranges_of_a_file_are_thresholds_of_its_quantities() {
+        let Profile { name, title, scheme, limits } = Profile::parse(OWN).unwrap();
+        assert_eq!((&*name, &*title, scheme), ("ours", "", Some(Metric::Acute)));
+        let [Limit { quantity, warn, fail, source }] = &limits[..] else { panic!("{limits:?}") };
+        let written = |threshold: &Option<Threshold>| threshold.as_ref().unwrap().to_string();
+        assert_eq!(quantity.name(), "min-angle");
+        assert_eq!([written(warn), written(fail)], ["min-angle<30", "min-angle<20"]);
+        assert_eq!(source, "");
+    }
+
+    #[test]
+    fn each_mistake_of_a_file_has_its_line_and_its_remedy() {
+        let cases = [
+            ("fail = \"< 20\"", "fail = \"> 20\"", 4, "write 'min-angle<20'"),
+            ("min-angle", "roundness", 4, "no measure is called 'roundness'; there are "),
+            ("fail = \"< 20\"", "fails = \"< 20\"", 7, "unknown field `fails`"),
+            ("warn = \"< 30\"\nfail = \"< 20\"\n", "", 4, "needs warn or fail"),
+            ("acute", "round", 2, "scheme: no metric is called 'round'"),
+            ("name = \"ours\"\n", "", 1, "missing field `name`"),
+            ("\"< 20\"", "20", 7, "expected a string"),
+            ("\"< 20\"", "\"< twenty\"", 4, "fail of min-angle: 'twenty' is not a number"),
+            ("[[limits]]", "[limits", 4, ""),
+            ("\"< 20\"", "\"< 40\"", 4, "fail of min-angle must be beyond warn"),
+        ];
+        for (from, to, line, part) in cases {
+            let ProfileProblem { message, line: found } =
+                Profile::parse(&OWN.replace(from, to)).unwrap_err();
+            assert!(message.contains(part), "{to}: {message}");
+            assert_eq!(found, Some(line), "{to}: {message}");
+        }
+        let two = OWN.replace("min-angle", "neighbors").replace("\"< 20\"", "\"> 20\"");
+        let message = Profile::parse(&two).unwrap_err().message;
+        assert!(message.contains("write two limits"), "{message}");
+    }
+}

@@ -1,0 +1,198 @@
+//! A mesh beside the limits of a profile.
+
+use std::fmt::Write;
+
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
+
+use crate::limits::{Part, Threshold};
+use crate::profiles::{Limit, Profile};
+use crate::report::quantities::{Finding, Quantities, Worst, written};
+use crate::report::reasons::{Reason, reasons};
+
+/// The judgment of a mesh by a limit, or by all limits of a profile; the worst of them is the largest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Verdict {
+    Good,
+    Warn,
+    Fail,
+}
+
+impl Verdict {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Warn => "warn",
+            Self::Fail => "fail",
+        }
+    }
+}
+
+/// A mesh beside the limits of a profile.
+pub(crate) struct ProfileReport {
+    name: String,
+    title: String,
+    pub(crate) limits: Vec<LimitReport>,
+    /// The edges beyond limits of edges, by the reason that no move of free vertices mends them.
+    reasons: Vec<Reason>,
+}
+
+/// A mesh beside a limit.
+pub(crate) struct LimitReport {
+    limit: Limit,
+    /// The parts of the mesh in the range of `warn`, which includes the range of `fail`; `None` without such a range.
+    warn: Option<Finding>,
+    fail: Option<Finding>,
+}
+
+/// Widths of the columns in front of the numbers, in characters.
+const QUANTITY: usize = 18;
+const RANGE: usize = 10;
+
+impl ProfileReport {
+    /// Compares a mesh with the limits of a profile.
+    pub(crate) fn new(profile: &Profile, quantities: &Quantities<'_>) -> Self {
+        let compared = |limit: &Limit| LimitReport {
+            limit: limit.clone(),
+            warn: limit.warn.as_ref().map(|range| quantities.finding(range)),
+            fail: limit.fail.as_ref().map(|range| quantities.finding(range)),
+        };
+        Self {
+            name: profile.name.clone(),
+            title: profile.title.clone(),
+            limits: profile.limits.iter().map(compared).collect(),
+            reasons: reasons(profile, quantities),
+        }
+    }
+
+    /// Returns the worst verdict of all limits.
+    pub(crate) fn verdict(&self) -> Verdict {
+        self.limits.iter().map(LimitReport::verdict).max().unwrap_or(Verdict::Good)
+    }
+
+    /// Returns a table with a line for each limit, and the reasons of edges beyond limits.
+    pub(crate) fn table(&self) -> String {
+        let mut text = format!("limits of {}", self.heading());
+        let _ = write!(text, "\n{}", ranges("quantity", ["warn", "fail"]));
+        let _ = write!(text, "{}  worst", LimitReport::HEAD);
+        for limit in &self.limits {
+            let _ = write!(text, "\n{}{}", limit.ranges(), limit.numbers());
+            if let Some(worst) = limit.worst() {
+                let value = written(limit.limit.quantity, worst.value);
+                let _ = write!(text, "  {value}, {}", worst.place);
+            }
+        }
+        self.explained(&text)
+    }
+
+    fn heading(&self) -> String {
+        match &*self.title {
+            "" => self.name.clone(),
+            title => format!("{}: {title}", self.name),
+        }
+    }
+
+    /// Returns a table without blanks at the ends of its lines, and a line for each reason of edges beyond limits.
+    fn explained(&self, table: &str) -> String {
+        let mut lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
+        if !self.reasons.is_empty() {
+            lines.push("edges beyond the limits, by reason".to_owned());
+        }
+        lines.extend(self.reasons.iter().map(|Reason { why, warned, failed }| {
+            format!("{failed:>9} fail{warned:>9} warn  {}", Reason::words(*why))
+        }));
+        lines.join("\n")
+    }
+}
+
+fn range(threshold: &Option<Threshold>) -> Option<String> {
+    threshold.as_ref().map(Threshold::range)
+}
+
+/// Returns the columns of a quantity and its ranges.
+fn ranges(quantity: &str, [warn, fail]: [&str; 2]) -> String {
+    format!("{quantity:<QUANTITY$}{warn:<RANGE$}{fail:<RANGE$}")
+}
+
+impl LimitReport {
+    /// The headings of [`Self::numbers`].
+    const HEAD: &str = "   warned   failed  verdict";
+
+    /// Returns the number of parts beyond `warn` but not beyond `fail`.
+    fn warned(&self) -> usize {
+        self.warn.as_ref().map_or(0, |warn| warn.count - self.failed())
+    }
+
+    /// Returns the number of parts beyond `fail`.
+    fn failed(&self) -> usize {
+        self.fail.as_ref().map_or(0, |fail| fail.count)
+    }
+
+    pub(crate) fn verdict(&self) -> Verdict {
+        match (self.failed(), self.warned()) {
+            (0, 0) => Verdict::Good,
+            (0, _) => Verdict::Warn,
+            _ => Verdict::Fail,
+        }
+    }
+
+    fn worst(&self) -> Option<&Worst> {
+        self.fail.as_ref().or(self.warn.as_ref())?.worst.as_ref()
+    }
+
+    fn ranges(&self) -> String {
+        let Limit { quantity, warn, fail, .. } = &self.limit;
+        let [warn, fail] = [warn, fail].map(range);
+        ranges(quantity.name(), [&warn, &fail].map(|range| range.as_deref().unwrap_or_default()))
+    }
+
+    fn numbers(&self) -> String {
+        format!("{:>9}{:>9}  {:<7}", self.warned(), self.failed(), self.verdict().name())
+    }
+
+    /// Describes how many parts are beyond the limit, with the worst part. Values have no sign for degrees if `is_plain` is
+    /// true.
+    pub(crate) fn sentence(&self, is_plain: bool) -> String {
+        match (&self.warn, &self.fail) {
+            (Some(warn), Some(fail)) => match self.verdict() {
+                Verdict::Fail => {
+                    let have = if self.warned() == 1 { "has" } else { "have" };
+                    let more = format!("{} more {have} {}", self.warned(), warn.threshold);
+                    format!("{}; {more}", fail.sentence(is_plain))
+                }
+                Verdict::Warn | Verdict::Good => warn.sentence(is_plain),
+            },
+            (only, None) | (None, only) => {
+                only.as_ref().map(|finding| finding.sentence(is_plain)).unwrap_or_default()
+            }
+        }
+    }
+
+    fn json(&self) -> Value {
+        let Limit { quantity, warn, fail, source } = &self.limit;
+        let worst = self.worst().map(|Worst { place, value }| {
+            let mut object = place.json();
+            object.insert("value".into(), json!(value));
+            object
+        });
+        let total = self.fail.as_ref().or(self.warn.as_ref()).map(|finding| finding.total);
+        json!({
+            "quantity": quantity.name(), "warn": range(warn), "fail": range(fail), "source": source,
+            quantity.part().noun(false): total, "warned": self.warned(), "failed": self.failed(),
+            "verdict": self.verdict().name(), "worst": worst,
+        })
+    }
+}
+
+impl Serialize for ProfileReport {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let limits: Vec<Value> = self.limits.iter().map(LimitReport::json).collect();
+        let mut value = json!({
+            "name": self.name, "title": self.title, "verdict": self.verdict().name(), "limits": limits,
+        });
+        if self.limits.iter().any(|limit| limit.limit.quantity.part() == Part::Edge) {
+            value["reasons"] = self.reasons.iter().map(Reason::json).collect();
+        }
+        value.serialize(serializer)
+    }
+}
