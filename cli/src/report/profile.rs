@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use gpu_smooth::Metric;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
@@ -32,6 +33,8 @@ impl Verdict {
 pub(crate) struct ProfileReport {
     name: String,
     title: String,
+    /// The metric by which runs for the solver smooth meshes.
+    scheme: Option<Metric>,
     pub(crate) limits: Vec<LimitReport>,
     /// The edges beyond limits of edges, by the reason that no move of free vertices mends them.
     reasons: Vec<Reason>,
@@ -60,6 +63,7 @@ impl ProfileReport {
         Self {
             name: profile.name.clone(),
             title: profile.title.clone(),
+            scheme: profile.scheme,
             limits: profile.limits.iter().map(compared).collect(),
             reasons: reasons(profile, quantities),
         }
@@ -188,7 +192,8 @@ impl Serialize for ProfileReport {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let limits: Vec<Value> = self.limits.iter().map(LimitReport::json).collect();
         let mut value = json!({
-            "name": self.name, "title": self.title, "verdict": self.verdict().name(), "limits": limits,
+            "name": self.name, "title": self.title, "scheme": self.scheme.map(Metric::name),
+            "verdict": self.verdict().name(), "limits": limits,
         });
         if self.limits.iter().any(|limit| limit.limit.quantity.part() == Part::Edge) {
             value["reasons"] = self.reasons.iter().map(Reason::json).collect();

@@ -119,6 +119,7 @@ fn a_profile_has_a_line_for_each_limit_and_fails_with_the_mesh() {
         serde_json::from_str(&quality(&folder, &["--for", "own.toml", "--json"]).out).unwrap();
     let profile = &told["profile"];
     assert_eq!((&profile["name"], &profile["verdict"]), (&"ours".into(), &"fail".into()));
+    assert!(profile["scheme"].is_null() && profile.get("scheme").is_some(), "{profile}");
     let limit = &profile["limits"][0];
     assert_eq!(
         (&limit["edges"], &limit["failed"], &limit["warned"]),
