@@ -4,8 +4,12 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
+use gpu_smooth_job::TargetKind;
+
+use crate::args::names;
 use crate::args::table::{OfRun, TableArgs};
 use crate::args::{FieldArgs, FormArgs, MoveArgs, PictureArgs, ReadArgs, SideArgs, TargetArgs};
+use crate::profiles::ProfileSource;
 
 #[derive(Args)]
 #[command(group = ArgGroup::new("drawing").args(["picture", "html"]).multiple(true))]
@@ -27,6 +31,16 @@ pub(crate) struct SmoothArgs {
 
     #[command(flatten)]
     pub(crate) options: TableArgs<OfRun>,
+
+    /// Smooth for a solver, or for a TOML file of limits: by the metric of the profile, unless --scheme or --target is given.
+    /// The summary ends with a table of the limits before and after the run. docs/solvers.md has all limits
+    #[arg(
+        long = "for",
+        value_name = "NAME|FILE",
+        value_parser = names::profiles(),
+        help_heading = "Quality"
+    )]
+    pub(crate) profile: Option<ProfileSource>,
 
     /// Exit with 1 if the run neither converges nor reaches its goal. The mesh is written all the same
     #[arg(long, help_heading = "Stopping")]
@@ -103,4 +117,17 @@ pub(crate) struct SmoothArgs {
     /// Print the table of the meshes as JSON
     #[arg(long, requires = "out_dir", help_heading = "Many meshes")]
     pub(crate) json: bool,
+}
+
+impl SmoothArgs {
+    /// Sets the scheme to the metric of the profile, unless a scheme or a target is given. A profile that cannot be read
+    /// changes nothing here, as the request reads it again and returns the error.
+    pub(crate) fn take_metric_of_profile(&mut self) {
+        let is_free = self.target.kind() == TargetKind::Equilateral && !self.options.has("scheme");
+        let profile = self.profile.as_ref().filter(|_| is_free);
+        let metric = profile.and_then(|profile| profile.read().ok()?.scheme);
+        if let Some(metric) = metric {
+            self.options.set("scheme", metric.name());
+        }
+    }
 }

@@ -71,6 +71,14 @@ impl<S> TableArgs<S> {
     pub(crate) fn settings(&self) -> &Settings {
         self.given.settings()
     }
+
+    /// Sets an option to a valid value, as if the command line had it.
+    pub(crate) fn set(&mut self, name: &str, text: &str) {
+        if let Some(row) = GivenOptions::row(name) {
+            // The value is valid.
+            let _ = self.given.set(row, text);
+        }
+    }
 }
 
 impl<S> Deref for TableArgs<S> {

@@ -89,6 +89,27 @@ impl ProfileReport {
         self.explained(&text)
     }
 
+    /// Returns a table of the mesh before and after a run, where `self` is the mesh after.
+    fn table_after(&self, before: &Self) -> String {
+        let width = LimitReport::HEAD.len() + 2 + VALUE;
+        let name = format!("limits of {}", self.name);
+        let start = QUANTITY + 2 * RANGE;
+        let mut text = format!("{name:<start$}{:>width$}{:>width$}", "before", "after");
+        let _ = write!(text, "\n{}", ranges("quantity", ["warn", "fail"]));
+        for _ in 0..2 {
+            let _ = write!(text, "  {:>VALUE$}{}", "worst", LimitReport::HEAD);
+        }
+        for (before, after) in before.limits.iter().zip(&self.limits) {
+            let _ = write!(text, "\n{}", after.ranges());
+            for limit in [before, after] {
+                let worst = limit.worst();
+                let worst = worst.map(|worst| written(limit.limit.quantity, worst.value));
+                let _ = write!(text, "  {:>VALUE$}{}", worst.unwrap_or_default(), limit.numbers());
+            }
+        }
+        self.explained(&text)
+    }
+
     fn heading(&self) -> String {
         match &*self.title {
             "" => self.name.clone(),
@@ -108,6 +129,9 @@ impl ProfileReport {
         lines.join("\n")
     }
 }
+
+/// Width of a value of a quantity, in characters.
+const VALUE: usize = 9;
 
 fn range(threshold: &Option<Threshold>) -> Option<String> {
     threshold.as_ref().map(Threshold::range)
@@ -185,6 +209,20 @@ impl LimitReport {
             quantity.part().noun(false): total, "warned": self.warned(), "failed": self.failed(),
             "verdict": self.verdict().name(), "worst": worst,
         })
+    }
+}
+
+/// A mesh beside the limits of a profile before and after a run.
+#[derive(Serialize)]
+pub(crate) struct ProfileChange {
+    pub(crate) before: ProfileReport,
+    pub(crate) after: ProfileReport,
+}
+
+impl ProfileChange {
+    /// Returns a table with a line for each limit, and the reasons of edges that are beyond limits after the run.
+    pub(crate) fn table(&self) -> String {
+        self.after.table_after(&self.before)
     }
 }
 

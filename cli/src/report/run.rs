@@ -12,7 +12,8 @@ use serde::Serialize;
 
 use crate::load::explain::BadTriangleReport;
 use crate::report::{
-    Certificate, FlooredReport, ImprovedReport, LargeAnglesReport, SpacingReport, TargetReport,
+    Certificate, FlooredReport, ImprovedReport, LargeAnglesReport, ProfileChange, SpacingReport,
+    TargetReport,
 };
 
 /// The report of a run. Times are in seconds, angles in degrees.
@@ -84,6 +85,9 @@ pub(crate) struct Report {
     pub(crate) spacing: Vec<SpacingReport>,
     pub(crate) before: QualityReport,
     pub(crate) after: QualityReport,
+    /// The limits of `--for` before and after the run; `None` without `--for`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) profile: Option<ProfileChange>,
     /// Movement of vertices along lines; `None` without `--slide`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) slid: Option<SlideReport>,

@@ -54,6 +54,9 @@ impl Report {
             let _ = write!(text, ", pictures {pictures:.3} s");
         }
         let _ = write!(text, "; total {total:.3} s");
+        if let Some(profile) = &self.profile {
+            let _ = write!(text, "\n\n{}", profile.table());
+        }
         text
     }
 

@@ -45,7 +45,8 @@ pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, 
     if let Some(text) = misplaced(&matches) {
         return refused(ErrorKind::ArgumentConflict, text);
     }
-    let cli = Cli::from_arg_matches(&matches)?;
+    let mut cli = Cli::from_arg_matches(&matches)?;
+    cli.smooth.take_metric_of_profile();
     if let (None, Some(extra)) = (&cli.smooth.out_dir, cli.smooth.more.first()) {
         let text = format!(
             "unexpected argument '{}' after IN and OUT: give one mesh per run, or --out-dir DIR for several meshes",

@@ -9,6 +9,7 @@ use gpu_smooth_job::options::GivenOptions;
 
 use crate::args::SmoothArgs;
 use crate::error::CliError;
+use crate::profiles::{Profile, ProfileSource};
 use crate::request::form::FormRequest;
 use crate::request::movable::{FieldsRequest, MovableRequest, SlideRequest};
 use crate::request::outputs::Outputs;
@@ -42,6 +43,8 @@ pub(crate) struct SmoothRequest {
     /// Whether a run that neither converges nor reaches its goal is an error.
     pub(crate) is_strict: bool,
     pub(crate) extent: RunExtent,
+    /// The limits with which the mesh is compared before and after the run.
+    pub(crate) profile: Option<Profile>,
     /// The format of the written mesh.
     pub(crate) form: FormRequest,
     pub(crate) outputs: Outputs,
@@ -93,7 +96,8 @@ impl SmoothRequest {
     /// Returns the request for options without conflicts.
     ///
     /// # Errors
-    /// Returns a usage error if IN or OUT is missing, or if the picture's extension is unknown.
+    /// Returns a usage error if IN or OUT is missing, or if the picture's extension is unknown. Returns an input error if
+    /// the file of a profile cannot be read.
     pub(crate) fn new(args: SmoothArgs) -> Result<Self, CliError> {
         let outputs = Outputs::of_run(&args)?;
         let settings = args.options.settings();
@@ -137,6 +141,7 @@ impl SmoothRequest {
                 true => RunExtent::Prepared,
                 false => RunExtent::Whole,
             },
+            profile: args.profile.as_ref().map(ProfileSource::read).transpose()?,
             outputs,
         })
     }

@@ -2,11 +2,14 @@
 
 use std::time::Instant;
 
-use gpu_smooth::{Quality, measure::Change};
+use gpu_smooth::measure::{Change, Measured};
+use gpu_smooth::{Quality, Topology};
 
 use crate::error::CliError;
 use crate::load::{InterpolatedFields, conversion, streams};
-use crate::report::{Certificate, FileHash, SpacingReport, TargetReport};
+use crate::report::{
+    Certificate, FileHash, ProfileChange, ProfileReport, Quantities, SpacingReport, TargetReport,
+};
 use crate::run::input::Input;
 use crate::run::observer::PipelineObserver;
 use crate::run::prepare::Ready;
@@ -21,6 +24,8 @@ pub(super) struct Measures {
     pub(super) change: Change,
     pub(super) spacing: Vec<SpacingReport>,
     pub(super) target: Option<TargetReport>,
+    /// The limits of the profile before and after; `None` without a profile.
+    pub(super) profile: Option<ProfileChange>,
     /// A sentence on interpolated data; `None` without interpolation.
     pub(super) interpolated: Option<String>,
     /// Time at the end of the measurements.
@@ -61,7 +66,24 @@ pub(super) fn measure(
     for note in interpolated.iter().chain(&omission_remark).chain(left_over) {
         follow.remark(note);
     }
-    Ok(Measures { after, change, spacing, target, interpolated, at: Instant::now() })
+    let profile = profile(input, topology, &outcome.points)?;
+    Ok(Measures { after, change, spacing, target, profile, interpolated, at: Instant::now() })
+}
+
+/// Compares a mesh with the limits of its profile before and after a run, with the vertices at `points` after the run.
+fn profile(
+    input: &Input<'_>,
+    topology: &Topology<'_>,
+    points: &[[f64; 2]],
+) -> Result<Option<ProfileChange>, CliError> {
+    let (request, file) = (input.request(), input.file);
+    let Some(profile) = &request.profile else { return Ok(None) };
+    let report = |points: &[[f64; 2]]| -> Result<ProfileReport, CliError> {
+        let measured = Measured::on(request.surface, points, topology)?;
+        Ok(ProfileReport::new(profile, &Quantities::new(file, &measured)))
+    };
+    let (before, after) = (report(&file.mesh().points)?, report(points)?);
+    Ok(Some(ProfileChange { before, after }))
 }
 
 /// Writes a smoothed mesh, and proves the statements of the report from the files. Removes the checkpoint unless the

@@ -88,6 +88,7 @@ pub(super) fn report(
         large_angles: outcome.large_angles.map(Into::into),
         improved: outcome.improved.map(Into::into),
         change: measured.change.into(),
+        profile: measured.profile,
         spacing: measured.spacing,
         before: (&ready.before).into(),
         after: (&measured.after).into(),

@@ -1,6 +1,6 @@
 //! Thresholds of edges and vertices, and profiles of solvers.
 
-use super::{Folder, Run, assert_holds, finish, number};
+use super::{Folder, Run, assert_holds, finish, number, small};
 use serde_json::Value;
 
 /// A quadrilateral around a vertex of four triangles, with an obtuse triangle at its lower edge. Triangles are elements 1 to
@@ -166,4 +166,47 @@ fn edges_beyond_a_limit_are_counted_by_the_reason_that_keeps_them() {
         (&"few-triangles".into(), &2.into())
     );
     assert_eq!(reasons[0]["remedies"], Value::from(vec!["swap", "refine"]));
+}
+
+#[test]
+fn a_run_for_a_solver_takes_its_metric_and_ends_with_its_limits_before_and_after() {
+    let folder = small();
+    let run = folder.line("in out --for dflowfm --engine cpu --report r.json").clean();
+    assert_holds(&run.out, &["\nacute on cpu (", "\nlimits of dflowfm "]);
+    let table = run.out.split("\nlimits of dflowfm ").nth(1).unwrap();
+    let row: Vec<&str> = table
+        .lines()
+        .find(|line| line.starts_with("flow-link"))
+        .unwrap()
+        .split_whitespace()
+        .collect();
+    let report = folder.json("r.json");
+    assert_eq!(report["options"]["scheme"], "acute");
+    let counts = |state: &str| {
+        let limit = &report["profile"][state]["limits"][1];
+        assert_eq!(limit["quantity"], "flow-link");
+        ["warned", "failed", "verdict"].map(|key| limit[key].to_string().replace('"', ""))
+    };
+    // The quantity and both ranges are five words, and the worst value is before the numbers.
+    assert_eq!([row[6], row[7], row[8]], counts("before").each_ref().map(String::as_str));
+    assert_eq!([row[10], row[11], row[12]], counts("after").each_ref().map(String::as_str));
+    // The table is that of the written files.
+    for (mesh, state) in [("in", "before"), ("out", "after")] {
+        let told: Value =
+            serde_json::from_str(&folder.line(&format!("quality {mesh} --for dflowfm --json")).out)
+                .unwrap();
+        let failed = |limits: &Value, k: usize| limits[k]["failed"].clone();
+        for k in 0..2 {
+            let of_run = &report["profile"][state]["limits"];
+            assert_eq!(failed(&told["profile"]["limits"], k), failed(of_run, k), "{mesh}");
+        }
+    }
+    // A given scheme or target takes precedence.
+    let scheme = |options: &str| {
+        let line = format!("in out2 --force --for dflowfm --engine cpu {options} --report r.json");
+        folder.line(&line).clean();
+        folder.json("r.json")["scheme"].clone()
+    };
+    assert_eq!([scheme("--scheme imr"), scheme("--target keep-size")], ["imr", "tmop-94"]);
+    folder.line("in out3 --for none.toml").refused(&["none.toml: "]);
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Folder, assert_holds, disturbed, number, small};
+use super::{Folder, assert_holds, disturbed, number, plate_path, small};
 use gpu_smooth::Metric;
 use serde_json::Value;
 
@@ -283,6 +283,11 @@ fn add_paths(path: &str, value: &Value, found: &mut BTreeSet<String>) {
                     key => key,
                 };
                 let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+                // docs/quality.md has the keys of a mesh beside the limits of a solver.
+                if path.starts_with("profile.") {
+                    found.insert(path);
+                    continue;
+                }
                 add_paths(&path, value, found);
             }
         }
@@ -315,12 +320,18 @@ fn every_key_of_a_report_is_documented_and_every_documented_key_is_in_a_report()
     let [node, ele] = right_triangles();
     std::fs::write(folder.path("right.node"), node).unwrap();
     std::fs::write(folder.path("right.ele"), ele).unwrap();
+    // The sweeps by ACUTE leave large angles.
+    for ending in ["node", "ele"] {
+        let plate = plate_path().with_extension(ending);
+        std::fs::copy(plate, folder.path(&format!("plate.{ending}"))).unwrap();
+    }
     let mut found = BTreeSet::new();
     for line in [
         "in out --engine gpu --history all",
         "in out --slide --improve-worst --target keep-size --fix-box 0,0,3,3",
         "in out --fraction 0.9",
         "in out --max-move 0.4",
+        "plate plate-out --for dflowfm",
         "in out --time-limit 1e-6 --checkpoint r.ckpt",
         "in out --continue r.ckpt",
         "in.gr3 out.gr3 --interpolate all",
