@@ -39,13 +39,13 @@ fn a_run_makes_nearly_all_triangles_acute_on_both_engines() {
     let [_, small, obtuse] = counts(mesh, &mesh.points);
     assert!(small > 20 && obtuse > 100, "{small} {obtuse}");
     for backend in backends() {
-        let outcome = run(&smoother, &acute(), &backend);
+        let outcome = run(&smoother, &acute(), backend);
         assert!(check::is_valid(&with_points(mesh, &outcome.points)));
         let after = counts(mesh, &outcome.points);
         let is_better = after[0] == 0 && after[1] <= small / 5 && after[2] <= obtuse / 3;
         assert!(is_better, "{}: {after:?} of {small} and {obtuse}", name(backend));
-        let by_imr = run(&smoother, &Options::default(), &backend);
-        assert!(counts(mesh, &by_imr.points)[1] > 0, "{}", name(&backend));
+        let by_imr = run(&smoother, &Options::default(), backend);
+        assert!(counts(mesh, &by_imr.points)[1] > 0, "{}", name(backend));
         // Shapes stay near those of a run by imr.
         let f =
             |points: &[[f64; 2]]| Quality::of(points, smoother.topology()).unwrap().f(Metric::Imr);
@@ -58,12 +58,12 @@ fn the_rounds_after_the_sweeps_lessen_large_angles_and_say_so() {
     let mesh = perturbed();
     let smoother = Smoother::new(mesh).unwrap();
     for backend in backends() {
-        let outcome = run(&smoother, &acute(), &backend);
+        let outcome = run(&smoother, &acute(), backend);
         let large = outcome.large_angles.unwrap();
         let [swept, left] = large.triangles;
         assert!(large.moved > 0 && left < swept, "{large:?}");
         assert!(large.f[0] < large.f[1], "{large:?}");
-        assert!(run(&smoother, &Options::default(), &backend).large_angles.is_none());
+        assert!(run(&smoother, &Options::default(), backend).large_angles.is_none());
     }
 }
 

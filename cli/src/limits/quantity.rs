@@ -12,6 +12,8 @@ pub(crate) enum Quantity {
     Measure(Measure),
     /// Number of corners of a triangle on the boundary, from 0 to 3.
     BoundaryCorners,
+    /// Number of edges around a hole of the mesh, such as an island.
+    HoleEdges,
     /// Number of triangles at a vertex; inside the mesh, also the number of its neighbors.
     Neighbors,
 }
@@ -21,6 +23,8 @@ pub(crate) enum Quantity {
 pub(crate) enum Part {
     Triangle,
     Edge,
+    /// A hole of the mesh, which has the place of its first vertex.
+    Hole,
     Vertex,
 }
 
@@ -32,6 +36,8 @@ impl Part {
             (Self::Triangle, false) => "triangles",
             (Self::Edge, true) => "edge",
             (Self::Edge, false) => "edges",
+            (Self::Hole, true) => "hole",
+            (Self::Hole, false) => "holes",
             (Self::Vertex, true) => "vertex",
             (Self::Vertex, false) => "vertices",
         }
@@ -40,13 +46,14 @@ impl Part {
 
 impl Quantity {
     /// The quantities that are no measures.
-    const COUNTS: [Self; 2] = [Self::BoundaryCorners, Self::Neighbors];
+    const COUNTS: [Self; 3] = [Self::BoundaryCorners, Self::HoleEdges, Self::Neighbors];
 
     /// Returns the name on the command line and in profiles.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Measure(measure) => measure.name(),
             Self::BoundaryCorners => "boundary-corners",
+            Self::HoleEdges => "hole-edges",
             Self::Neighbors => "neighbors",
         }
     }
@@ -56,6 +63,7 @@ impl Quantity {
         match self {
             Self::Measure(measure) if measure.is_of_edges() => Part::Edge,
             Self::Measure(_) | Self::BoundaryCorners => Part::Triangle,
+            Self::HoleEdges => Part::Hole,
             Self::Neighbors => Part::Vertex,
         }
     }
@@ -65,6 +73,7 @@ impl Quantity {
         match self {
             Self::Measure(measure) => Some(measure.definition().better),
             Self::BoundaryCorners => Some(Better::Lower),
+            Self::HoleEdges => Some(Better::Higher),
             Self::Neighbors => None,
         }
     }
@@ -73,7 +82,7 @@ impl Quantity {
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::Measure(measure) => measure.definition().unit,
-            Self::BoundaryCorners | Self::Neighbors => "",
+            Self::BoundaryCorners | Self::HoleEdges | Self::Neighbors => "",
         }
     }
 

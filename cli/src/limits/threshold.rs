@@ -119,6 +119,7 @@ mod tests {
             ("neighbors>10", Part::Vertex, "neighbors>10"),
             ("neighbors<4", Part::Vertex, "neighbors<4"),
             ("boundary-corners>=3", Part::Triangle, "boundary-corners>=3"),
+            ("hole-edges<7", Part::Hole, "hole-edges<7"),
         ] {
             let threshold = parse(text);
             assert_eq!((threshold.quantity.part(), &*threshold.to_string()), (part, own));
@@ -135,6 +136,6 @@ mod tests {
         assert!(error("orthogonality<0.02").contains("no edge may have, and high values"));
         assert!(error("orthogonality<0.02").ends_with("write 'orthogonality>0.02'"));
         assert!(error("boundary-corners<3").ends_with("write 'boundary-corners>3'"));
-        assert!(error("roundness<1").ends_with(", boundary-corners, neighbors"));
+        assert!(error("roundness<1").ends_with(", boundary-corners, hole-edges, neighbors"));
     }
 }

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 
 use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
+use gpu_smooth::topology::signed_area;
 
 use crate::limits::{Part, Quantity, Threshold};
 use crate::load::LoadedMesh;
@@ -107,6 +108,12 @@ impl<'m> Quantities<'m> {
                 };
                 topology.triangles().iter().map(corners).enumerate().map(valued).collect()
             }
+            Quantity::HoleEdges => {
+                let points = self.measured.points();
+                let is_hole = |vertices: &Vec<u32>| signed_area(points, vertices) < 0.0;
+                let holes = topology.boundary_loops().into_iter().filter(is_hole);
+                holes.map(|hole| valued((hole[0] as usize, hole.len() as f64))).collect()
+            }
             Quantity::Neighbors => {
                 let is_on_boundary = self.is_on_boundary();
                 let is_counted = |&(v, count): &(usize, usize)| {
@@ -133,7 +140,7 @@ impl<'m> Quantities<'m> {
     fn place(&self, part: Part, index: usize) -> Place {
         match part {
             Part::Triangle => Place::Triangle(self.file.source.triangle_location(index)),
-            Part::Vertex => Place::Vertex(self.file.vertex_place(index as u32)),
+            Part::Vertex | Part::Hole => Place::Vertex(self.file.vertex_place(index as u32)),
             Part::Edge => {
                 let mut ends = self.edges()[index].vertices.map(|v| self.file.vertex_place(v));
                 ends.sort_by_key(|end| end.id);

@@ -81,6 +81,19 @@ fn a_threshold_of_boundary_corners_finds_triangles_with_all_corners_on_the_bound
 }
 
 #[test]
+fn a_threshold_of_hole_edges_counts_small_islands() {
+    // A square of eight triangles around a hole of four edges.
+    let mesh = "ring\n8 8\n1 0 0 1\n2 3 0 1\n3 3 3 1\n4 0 3 1\n5 1 1 1\n6 2 1 1\n7 2 2 1\n8 1 2 1\n\
+                1 3 1 2 5\n2 3 2 6 5\n3 3 2 3 6\n4 3 3 7 6\n5 3 3 4 7\n6 3 4 8 7\n7 3 4 1 8\n8 3 1 5 8\n0\n0\n0\n0\n";
+    let folder = Folder::new(&[("in.14", mesh)]);
+    let run = quality(&folder, &["--threshold", "hole-edges<7", "--summary"]);
+    assert_eq!(run.code, Some(1));
+    let told = "1 of 1 holes have hole-edges<7; the worst is vertex 5 (in.14:7), hole-edges 4";
+    assert_holds(&run.out, &[told]);
+    quality(&folder, &["--threshold", "hole-edges<4"]).clean();
+}
+
+#[test]
 fn a_profile_has_a_line_for_each_limit_and_fails_with_the_mesh() {
     let folder = quadrilateral();
     let own = "name = \"ours\"\ntitle = \"our solver\"\n[[limits]]\nquantity = \"orthogonality\"\nwarn = \"> 0.01\"\nfail = \"> 0.3\"\n\
