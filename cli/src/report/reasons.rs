@@ -10,7 +10,7 @@ use crate::report::quantities::{Quantities, of_edge};
 /// The edges beyond the limits of a profile that have one reason.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Reason {
-    /// The reason; `None` if no reason is known.
+    /// The reason; `None` if nothing is known that prevents it.
     pub(crate) why: Option<WhyLarge>,
     /// Number of edges beyond a limit for warnings alone.
     pub(crate) warned: usize,
@@ -67,7 +67,7 @@ impl Reason {
                 "a vertex inside with three or four triangles: swap an edge or refine"
             }
             Some(WhyLarge::WideFan) => "a wide fan at a fixed vertex: slide or refine",
-            _ => "no reason is known",
+            _ => "nothing known prevents it: a run by acute mends most",
         }
     }
 
