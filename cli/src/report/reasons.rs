@@ -10,7 +10,7 @@ use crate::report::quantities::{Quantities, of_edge};
 /// The edges beyond the limits of a profile that have one reason.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Reason {
-    /// The reason; `None` if nothing is known that prevents it.
+    /// The reason; `None` if nothing known prevents a better edge.
     pub(crate) why: Option<WhyLarge>,
     /// Number of edges beyond a limit for warnings alone.
     pub(crate) warned: usize,
