@@ -19,7 +19,7 @@ def quality(
     triangles: Array | None = None,
     measure: str = "imr",
     *,
-    surface: Surface = "plane",
+    surface: Surface | None = None,
     z: ThirdCoordinate = "coordinate",
 ) -> Doubles:
     """Return the quality of each triangle by a measure.
@@ -32,8 +32,9 @@ def quality(
         Vertices of each triangle, numbered from 0.
     measure : str, default "imr"
         Name of a measure or metric, such as `"min-angle"`; `measures` lists them with their sources.
-    surface : {"plane", "sphere"}, default "plane"
-        Meaning of the coordinates: lengths, or longitude and latitude in degrees.
+    surface : {"plane", "sphere"}, optional
+        Meaning of the coordinates: lengths, or longitude and latitude in degrees. The default is the surface that the mesh
+        states, else the plane.
     z : {"coordinate", "data"}, default "coordinate"
         Meaning of third coordinates, as in `smooth`.
 
@@ -62,8 +63,9 @@ def quality(
     if triangles is None:
         from gpu_smooth import _meshes
 
-        points, triangles = _meshes.points_and_triangles(points)
-    return _native.quality(points, triangles, measure, surface, z)
+        points, cells = _meshes.points_and_cells(points)
+        triangles, surface = cells.triangles, surface or cells.surface
+    return _native.quality(points, triangles, measure, surface or "plane", z)
 
 
 def untangle(

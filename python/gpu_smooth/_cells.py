@@ -14,7 +14,7 @@ from gpu_smooth._errors import MeshError
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from gpu_smooth._options import Integers
+    from gpu_smooth._options import Integers, Surface
 
 # Names of cell data that number the regions of triangles, the first that a mesh has: of gmsh, Medit, Salome and VTK.
 REGIONS = ("gmsh:physical", "medit:ref", "gmsh:geometrical", "cell_tags", "region", "material", "MaterialIds")
@@ -37,6 +37,8 @@ class Cells(NamedTuple):
     """Pairs of vertices that slide together, of shape (k, 2)."""
     of_model: Integers = np.empty(0, np.int64)
     """Vertices inside the mesh on curves of a model that have no lines, of shape (k,). They stay unless lines are free."""
+    surface: Surface | None = None
+    """Meaning of the coordinates that the mesh states; None if the mesh states none."""
 
     def options(self, given: dict[str, Any], vertices: int) -> dict[str, Any]:
         """Return options with the constraints of the cells, beside those that were given."""
@@ -60,11 +62,13 @@ class Cells(NamedTuple):
         lines = self.lines
         if "lines" in given:
             lines = np.concatenate([lines, _native.pairs("lines", given["lines"], vertices)])
-        found = {"fixed": fixed, "lines": lines}
+        found: dict[str, Any] = {"fixed": fixed, "lines": lines}
         if self.regions is not None:
             found["regions"] = self.regions
         if given.get("slide") and len(self.periodic):
             found["periodic"] = self.periodic
+        if self.surface is not None:
+            found["surface"] = self.surface
         return {**found, **{name: value for name, value in given.items() if name not in ("fixed", "lines")}}
 
     def _ends_that_slide(self, vertices: int) -> Integers:
@@ -73,6 +77,13 @@ class Cells(NamedTuple):
         if self.regions is not None:
             curves = np.union1d(curves, between_regions(self.regions, self.triangles, vertices))
         return np.intersect1d(self.ends, curves)
+
+
+def of_faces(faces: Integers, surface: Surface | None = None) -> Cells:
+    """Return the cells of a mesh of faces, each a row of vertices with -1 beyond the last; of shape (m, k)."""
+    is_triangle = np.count_nonzero(faces >= 0, axis=1) == 3
+    triangles, others = faces[is_triangle, :3].reshape(-1, 3), faces[~is_triangle]
+    return Cells(triangles, np.empty((0, 2), np.int64), others[others >= 0], None, surface=surface)
 
 
 def with_groups(options: dict[str, Any], groups: Callable[[], dict[str, Callable[[], Any]]]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gpu_smooth import _native
-from gpu_smooth._cells import with_groups
+from gpu_smooth._cells import Cells, with_groups
 from gpu_smooth._files import MeshFile
 
 if TYPE_CHECKING:
@@ -36,8 +36,11 @@ def arrays_of(mesh: Any, options: dict[str, Any]) -> MeshArrays:
     if options.get("slide"):
         cells = cells._replace(ends=package.ends_of(mesh, cells))
     points = package.points_of(mesh)
-    with_points = None if isinstance(mesh, MeshFile) else functools.partial(package.with_points, mesh)
-    return MeshArrays(points, cells.triangles, cells.options(options, len(points)), with_points)
+    options = cells.options(options, len(points))
+    with_points = None
+    if not isinstance(mesh, MeshFile):
+        with_points = functools.partial(package.with_points, mesh, surface=options.get("surface", "plane"))
+    return MeshArrays(points, cells.triangles, options, with_points)
 
 
 def smooth(mesh: Any, options: dict[str, Any]) -> Any:
@@ -47,10 +50,10 @@ def smooth(mesh: Any, options: dict[str, Any]) -> Any:
     return moved if with_points is None else with_points(moved)
 
 
-def points_and_triangles(mesh: Any) -> tuple[Any, Integers]:
-    """Return the points and the triangles of a mesh."""
+def points_and_cells(mesh: Any) -> tuple[Any, Cells]:
+    """Return the points and the cells of a mesh."""
     package = _package_of(mesh)
-    return package.points_of(mesh), package.cells_of(mesh).triangles
+    return package.points_of(mesh), package.cells_of(mesh)
 
 
 def _package_of(mesh: Any) -> Any:
@@ -78,7 +81,11 @@ def _package_of(mesh: Any) -> Any:
         from gpu_smooth import _skfem
 
         return _skfem
+    if "meshkernel" in packages:
+        from gpu_smooth import _meshkernel
+
+        return _meshkernel
     raise TypeError(
-        "points and triangles are needed, or a mesh of meshio, PyVista or scikit-fem, or a MeshFile, not an object of type "
-        f"{type(mesh).__name__}"
+        "points and triangles are needed, or a mesh of meshio, PyVista, scikit-fem or MeshKernel, or a MeshFile, not an object "
+        f"of type {type(mesh).__name__}"
     )

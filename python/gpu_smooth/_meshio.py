@@ -102,7 +102,7 @@ def points_of(mesh: Any) -> Any:
     return np.asarray(mesh.points)
 
 
-def with_points(mesh: Any, points: Any) -> Any:
+def with_points(mesh: Any, points: Any, surface: str) -> Any:
     """Return a copy of a `meshio.Mesh` with moved vertices. The copy shares cells and data with the mesh."""
     moved = copy.copy(mesh)
     moved.points = points

@@ -108,7 +108,7 @@ def ends_of(mesh: Any, cells: Cells) -> Any:
     return cells.ends
 
 
-def with_points(mesh: Any, points: Any) -> Any:
+def with_points(mesh: Any, points: Any, surface: str) -> Any:
     """Return a copy of a PyVista mesh with moved vertices."""
     moved = mesh.copy(deep=True)
     moved.points = points

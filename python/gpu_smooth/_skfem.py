@@ -64,6 +64,6 @@ def ends_of(mesh: Any, cells: Cells) -> Any:
     return np.concatenate([np.empty(0, np.int64), *found])
 
 
-def with_points(mesh: Any, points: Any) -> Any:
+def with_points(mesh: Any, points: Any, surface: str) -> Any:
     """Return a copy of a mesh with moved vertices, and with its boundaries and subdomains."""
     return dataclasses.replace(mesh, doflocs=np.ascontiguousarray(points.T))

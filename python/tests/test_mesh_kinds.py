@@ -151,7 +151,7 @@ def test_groups_regions_and_third_coordinates_of_a_file_are_used(tmp_path: Path)
 
 def test_other_objects_in_place_of_a_mesh_are_refused() -> None:
     for call in (gpu_smooth.smooth, gpu_smooth.run, gpu_smooth.quality, gpu_smooth.Smoother):
-        with pytest.raises(TypeError, match="a mesh of meshio, PyVista or scikit-fem, or a MeshFile, not an object of type dict"):
+        with pytest.raises(TypeError, match="a mesh of meshio, PyVista, .*, or a MeshFile, not an object of type dict"):
             call({})
         with pytest.raises(TypeError, match="not the name of a file"):
             call("mesh.msh")
