@@ -85,7 +85,11 @@ def _package_of(mesh: Any) -> Any:
         from gpu_smooth import _meshkernel
 
         return _meshkernel
+    if "xugrid" in packages:
+        from gpu_smooth import _xugrid
+
+        return _xugrid
     raise TypeError(
-        "points and triangles are needed, or a mesh of meshio, PyVista, scikit-fem or MeshKernel, or a MeshFile, not an object "
-        f"of type {type(mesh).__name__}"
+        "points and triangles are needed, or a mesh of meshio, PyVista, scikit-fem, MeshKernel or xugrid, or a MeshFile, not an "
+        f"object of type {type(mesh).__name__}"
     )

@@ -159,8 +159,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     points : array_like of float, shape (n, 2) or (n, 3); or a mesh
         Positions of the vertices, in any unit. Vertices with three coordinates lie in one plane of any orientation, and
         are moved in the plane; `z` makes exceptions. The result has the same shape, and is float32 if the array is. In
-        place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid`, a `pyvista.PolyData`, a `skfem.MeshTri` or a
-        `meshkernel.Mesh2d` may be passed. A mesh of the same kind is then returned, with all other cells, groups and
+        place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid`, a `pyvista.PolyData`, a `skfem.MeshTri`, a
+        `meshkernel.Mesh2d`, or a `Ugrid2d`, `UgridDataset` or `UgridDataArray` of xugrid may be passed. A mesh of the same kind is then returned, with all other cells, groups and
         data. Vertices of other cells, of boundaries of scikit-fem, and between regions stay. A `MeshFile` may be passed
         too; the new points are then returned, for `MeshFile.write`.
     triangles : array_like of int, shape (m, 3)
