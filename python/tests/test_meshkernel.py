@@ -121,3 +121,38 @@ def test_numbers_of_no_node_are_refused(mesh: Mesh) -> None:
     given.nodes_per_face = given.nodes_per_face[1:]
     with pytest.raises(gpu_smooth.MeshError, match="add up to the 864 numbers in face_nodes. Their sum is 861"):
         gpu_smooth.quality(given)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5, "degrees"])
+def test_measures_of_edges_are_those_of_meshkernel(seed: Any) -> None:
+    import meshkernel
+
+    in_degrees = seed == "degrees"
+    points, triangles = lattice(12, 6 if in_degrees else seed, 0.3)
+    surface: Any = "sphere" if in_degrees else "plane"
+    points = points * [0.02, 0.01] + [4.0, 60.0] if in_degrees else points * seed
+    kernel, given = administered(of_edges(points, edges_of(triangles)), "SPHERICAL" if in_degrees else "CARTESIAN")
+    own = given.face_nodes.reshape(-1, 3)
+    edges = {tuple(sorted(edge)): k for k, edge in enumerate(given.edge_nodes.reshape(-1, 2).tolist())}
+    sides = np.array([[edges[tuple(sorted((row[k], row[k - 1])))] for k in range(3)] for row in own.tolist()])
+    # MeshKernel has -999 at edges of the boundary.
+    cosines = np.abs(kernel.mesh2d_get_orthogonality().values)
+    ratios = kernel.mesh2d_get_smoothness().values
+    found = {name: gpu_smooth.quality(given, measure=name, surface=surface) for name in ("orthogonality", "size-ratio", "flow-link")}
+    np.testing.assert_allclose(found["orthogonality"], np.where(cosines == 999, 0, cosines)[sides].max(axis=1), rtol=0, atol=1e-9)
+    if in_degrees:
+        return
+    np.testing.assert_allclose(found["size-ratio"], np.maximum(ratios, 1)[sides].max(axis=1), rtol=1e-9)
+    # MeshKernel returns no lengths of links, so the links are those between its circumcenters.
+    (a, b), (c, d) = (np.moveaxis(points[own][:, 1:] - points[own][:, :1], 1, 0)[k].T for k in (0, 1))
+    roots = np.sqrt(np.abs(a * d - b * c) / 2)
+    of_faces = meshkernel.Mesh2dLocation.FACES
+    circumcenters = kernel.mesh2d_get_property(of_faces, meshkernel.Mesh2d.Property.FACE_CIRCUMCENTER)
+    centers = np.column_stack([circumcenters.x_coordinates, circumcenters.y_coordinates])
+    least = np.full(len(own), np.inf)
+    for edge in np.unique(sides):
+        across = np.flatnonzero((sides == edge).any(axis=1))
+        if len(across) == 2:
+            link = np.linalg.norm(centers[across[0]] - centers[across[1]]) / roots[across].mean()
+            least[across] = np.minimum(least[across], link)
+    np.testing.assert_allclose(found["flow-link"], least, rtol=0, atol=1e-9)
