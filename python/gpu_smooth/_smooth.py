@@ -220,9 +220,9 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         CPU.
     scheme : str or sequence of str, optional
         The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first
-        judges convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94, acute. Several
-        metrics may also be a list. `metrics` describes each. The default is imr, tmop-94 for `target="keep-size"`, and
-        soft-size for given sizes.
+        judges convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94, acute,
+        acute-size. Several metrics may also be a list. `metrics` describes each. The default is imr, tmop-94 for
+        `target="keep-size"`, and soft-size for given sizes.
     engine : {"auto", "gpu", "cpu"}, default "auto"
         Where to compute: on a GPU adapter, even if it is software (gpu), on the CPU (cpu), or where the run is
         estimated to be done first, but not on a software adapter (auto).
@@ -232,7 +232,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         Stop after this many sweeps at the latest.
     tolerance : float, optional
         Stop when f is estimated to be within this share of its limit; 0 to go on to the last sweep. The default is
-        1e-6, 1e-4 by acute.
+        1e-6, 1e-4 by acute, and 1e-3 by acute with `slide`.
     fraction : float, optional
         Stop after this fraction of the reduction from the initial f to the desired f, instead of at the tolerance. Park
         & Shontz use 0.95. The default is 0.95 with `desired`.

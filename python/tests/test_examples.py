@@ -64,6 +64,16 @@ def test_a_thousand_meshes_are_smoothed_through_dask() -> None:
 
 
 @pytest.mark.heavy
+def test_a_grid_for_delft3d_fm_is_made_orthogonal(tmp_path: Path) -> None:
+    import xugrid
+
+    printed = output("delft3d_fm.py", tmp_path / "grid_net.nc")
+    count, before, after = map(int, re.findall(r"(\d+) triangles, refused edges (\d+) -> (\d+)", printed)[0])
+    assert after <= before // 5
+    assert xugrid.open_dataset(tmp_path / "grid_net.nc").ugrid.grid.n_face == count
+
+
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["coast", "airfoil", "two_materials"])
 def test_the_gallery_draws(name: str, tmp_path: Path) -> None:
     printed = output(f"gallery_{name}.py", tmp_path / "picture.png", MPLBACKEND="agg")
