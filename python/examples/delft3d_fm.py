@@ -19,7 +19,10 @@ def lake() -> meshkernel.MeshKernel:
     """Return a MeshKernel with triangles in a lake whose shore swings."""
     turn = np.linspace(0, 2 * np.pi, 121)
     radius = 1000 + 120 * np.cos(3 * turn) + 60 * np.sin(7 * turn)
-    shore = meshkernel.GeometryList(1.5 * radius * np.cos(turn), radius * np.sin(turn))
+    x, y = 1.5 * radius * np.cos(turn), radius * np.sin(turn)
+    # The last point of a polygon is the first again, without rounding.
+    x[-1], y[-1] = x[0], y[0]
+    shore = meshkernel.GeometryList(x, y)
     kernel = meshkernel.MeshKernel()
     kernel.mesh2d_make_triangular_mesh_from_polygon(shore)
     return kernel
