@@ -470,6 +470,7 @@ impl Metric {
 
     /// Returns whether q² is a function of the [`Invariants`], and so has Hessians of triangles by their corners. False
     /// for EDGE and ACUTE.
+    #[cfg(feature = "gpu")]
     pub(crate) const fn is_of_invariants(self) -> bool {
         matches!(self.formulas(), AnyFormulas::Invariants(_))
     }
