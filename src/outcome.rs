@@ -164,7 +164,7 @@ pub struct LargeAngles {
 
 impl LargeAngles {
     /// Cotangent of the angle of 87.1 degrees, above which an angle is large. If all angles are smaller, no edge is longer
-    /// than ten times the distance between the circumcenters beside it.
+    /// than twenty times the distance between the circumcenters beside it.
     pub(crate) const COTANGENT: f64 = 0.05;
 }
 
