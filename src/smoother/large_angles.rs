@@ -78,7 +78,8 @@ impl Smoother<'_> {
         let has_field = self.field.is_some();
         let is_acute = match options.scheme.base() {
             Metric::Acute => self.problem.targets().is_none(),
-            Metric::AcuteSize => true,
+            // The penalties see triangles in the plane, and a target may want large angles there.
+            Metric::AcuteSize => self.problem.targets().is_none() || !self.problem.is_stretched(),
             _ => false,
         };
         if !is_acute || has_field {

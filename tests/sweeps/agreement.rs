@@ -1,6 +1,6 @@
 //! Both engines execute equal sweeps, in any grouping.
 
-use crate::{backends, engine, name, perturbed, plan, plate, problem, scheme};
+use crate::{backends, engine, is_of_angles, name, perturbed, plan, plate, problem, scheme};
 use gpu_smooth::{
     Backend, Metric, Quality, Stop, Topology,
     internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
@@ -43,9 +43,10 @@ fn one_sweep_is_the_same_on_both_engines() {
             let plan = Plan { unrelaxed_sweeps, ..plan(metric.into(), 1) };
             let OneSweep { f: [cpu, gpu], moved_apart } = one_sweep(&problem, [plan.clone(), plan]);
             // In single precision, a step is accurate to 1e-6 of its length; bad shapes and the p-norm of EDGE amplify
-            // the error. f is a mean, in which most of the error cancels.
-            assert!((gpu / cpu - 1.0).abs() < 1e-6, "{metric}: {gpu} for {cpu}");
-            assert!(moved_apart < 1e-3, "{metric}: {moved_apart:e}");
+            // the error, and so do penalties on angles. f is a mean, in which most of the error cancels.
+            let [of_f, of_moves] = if is_of_angles(metric) { [2e-5, 0.1] } else { [1e-6, 1e-3] };
+            assert!((gpu / cpu - 1.0).abs() < of_f, "{metric}: {gpu} for {cpu}");
+            assert!(moved_apart < of_moves, "{metric}: {moved_apart:e}");
         }
     }
 }

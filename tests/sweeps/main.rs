@@ -73,6 +73,11 @@ fn all_schemes() -> Vec<Scheme> {
     alone.chain(SCHEMES.map(scheme)).collect()
 }
 
+/// Returns whether a metric has penalties on angles. They bend within a hundredth of an edge, and amplify rounding.
+fn is_of_angles(metric: Metric) -> bool {
+    matches!(metric, Metric::Acute | Metric::AcuteSize)
+}
+
 /// Returns the CPU and the GPU backend. Panics without an adapter, because tests would then not cover the GPU.
 fn backends() -> &'static [Backend; 2] {
     static BACKENDS: OnceLock<[Backend; 2]> = OnceLock::new();

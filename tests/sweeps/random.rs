@@ -257,7 +257,8 @@ fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outc
         history[0]
     );
     let swept = history[outcome.best_sweep as usize];
-    let is_as_swept = outcome.returned == 0 && outcome.floored.is_none();
+    let is_as_swept =
+        outcome.returned == 0 && outcome.floored.is_none() && outcome.large_angles.is_none();
     if outcome.best_sweep > 0 && is_as_swept && digits(mesh) > 1e3 {
         let near = near.max(1.0 / digits(mesh)) * end.max(1e-3);
         assert!((swept - end).abs() <= near, "f is {end}, told is {swept}");

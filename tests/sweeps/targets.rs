@@ -1,6 +1,6 @@
 //! Targets: elements of given sizes and shapes, on both engines.
 
-use crate::{backends, history, name, perturbed, plate, run};
+use crate::{backends, history, is_of_angles, name, perturbed, plate, run};
 use gpu_smooth::{
     Backend, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother, Stop,
     Targets, Topology,
@@ -46,8 +46,10 @@ fn a_stretched_mesh_with_the_tensor_of_its_stretching_is_smoothed_as_the_mesh_be
     let plain = Smoother::new(&mesh).unwrap();
     let targets = Targets::tensors(&vec![tensor(matrix); mesh.points.len()]).unwrap();
     let smoother = with_targets(&stretched, &targets);
-    // EDGE has many minima, and rounding decides in which minimum a run ends.
-    for &metric in Metric::ALL.iter().filter(|&&m| corrected(m) && m.is_smooth()) {
+    // EDGE has many minima, and rounding decides in which minimum a run ends. Rounds on large angles follow runs by ACUTE alone
+    // where no target stretches triangles.
+    let is_chosen = |m: Metric| corrected(m) && m.is_smooth() && !is_of_angles(m);
+    for &metric in Metric::ALL.iter().filter(|&&m| is_chosen(m)) {
         let options = Options::default().scheme(metric.into());
         for backend in backends() {
             let (one, other) = (run(&plain, &options, backend), run(&smoother, &options, backend));
