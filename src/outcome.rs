@@ -96,8 +96,9 @@ pub struct Outcome {
     /// The work of the floor under the worst triangles. `None` if no shape was worse after the sweeps than before the run,
     /// or if the options or the mesh have another aim; see [`Floored`].
     pub floored: Option<Floored>,
-    /// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute). `None` if the sweeps left no large angle, or
-    /// if the run has another base metric or targets; see [`LargeAngles`].
+    /// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute) without targets, or by
+    /// [`AcuteSize`](crate::Metric::AcuteSize) without targets that stretch triangles. `None` if the sweeps left no large angle,
+    /// and after other runs; see [`LargeAngles`].
     pub large_angles: Option<LargeAngles>,
     /// The result of improving the worst triangles; `None` without
     /// [`Options::improve_worst`](crate::Options::improve_worst).
@@ -148,8 +149,8 @@ pub struct Floored {
     pub f: [f64; 2],
 }
 
-/// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute): vertices around triangles with an angle above
-/// 87.1 degrees take further Newton steps by growing penalties on large and on small angles.
+/// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute): vertices around triangles with an
+/// angle above 87.1 degrees take further Newton steps by growing penalties on large and on small angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LargeAngles {
