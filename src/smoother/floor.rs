@@ -79,19 +79,24 @@ impl Smoother<'_> {
 }
 
 impl Movable<'_> {
-    /// Returns the worst shapes of the triangles that can move, for each of two lists of points.
-    pub(super) async fn worst_shapes(&self, lists: [&[[f64; 2]]; 2]) -> [WorstShapes; 2] {
-        let add = |worst: [WorstShapes; 2], t: &[u32; 3]| {
-            let of = |k: usize| worst[k].and(WorstShapes::of(self.surface, lists[k], t));
-            [of(0), of(1)]
+    /// Returns the worst shapes of the triangles that can move, for each of some lists of points.
+    pub(super) async fn worst_shapes<const LISTS: usize>(
+        &self,
+        lists: [&[[f64; 2]]; LISTS],
+    ) -> [WorstShapes; LISTS] {
+        let none = [WorstShapes::NONE; LISTS];
+        let add = |worst: [WorstShapes; LISTS], t: &[u32; 3]| {
+            std::array::from_fn(|k| worst[k].and(WorstShapes::of(self.surface, lists[k], t)))
         };
-        let both = |a: [WorstShapes; 2], b: &[WorstShapes; 2]| [a[0].and(b[0]), a[1].and(b[1])];
+        let both = |a: [WorstShapes; LISTS], b: &[WorstShapes; LISTS]| {
+            std::array::from_fn(|k| a[k].and(b[k]))
+        };
         let of_part = |_, triangles: &[[u32; 3]]| {
-            triangles.iter().filter(|t| self.can_move(t)).fold([WorstShapes::NONE; 2], add)
+            triangles.iter().filter(|t| self.can_move(t)).fold(none, add)
         };
         let parts = self.smoother.topology.triangles().chunks(CHUNK);
         let parts = paced::map_parts(parts, of_part).await;
-        parts.iter().fold([WorstShapes::NONE; 2], both)
+        parts.iter().fold(none, both)
     }
 }
 
@@ -124,7 +129,7 @@ impl Floor<'_> {
                 *if bits(to) == bits(*before) { &mut returned } else { &mut moved } += 1;
             }
         }
-        let [_, after] = self.movable.worst_shapes([before, points]).await;
+        let [after] = self.movable.worst_shapes([points]).await;
         let [first, last] = self.worst;
         let worst = [first, last, after];
         Ok(Floored {

@@ -86,7 +86,7 @@ impl Smoother<'_> {
             return Ok(None);
         }
         let movable = Movable::new(self);
-        let worst = movable.worst_shapes([points, points]).await[0];
+        let [worst] = movable.worst_shapes([points]).await;
         let aim = ToAcute { small: worst.cotangent.max(LARGEST_SMALL) };
         let count = async |points: &[[f64; 2]]| {
             movable.chosen(|t| aim.is_beyond(movable.surface, points, t)).await.len()

@@ -259,6 +259,10 @@ fn check(mesh: &Mesh, smoother: &Smoother<'_>, options: &Options, outcome: &Outc
     let swept = history[outcome.best_sweep as usize];
     let is_as_swept =
         outcome.returned == 0 && outcome.floored.is_none() && outcome.large_angles.is_none();
+    if let Some(large) = outcome.large_angles.filter(|_| outcome.best_sweep > 0) {
+        let told = large.f[1];
+        assert!((told - end).abs() <= 1e-9 * end, "f is {end}, told after large angles is {told}");
+    }
     if outcome.best_sweep > 0 && is_as_swept && digits(mesh) > 1e3 {
         let near = near.max(1.0 / digits(mesh)) * end.max(1e-3);
         assert!((swept - end).abs() <= near, "f is {end}, told is {swept}");

@@ -18,12 +18,12 @@ pub(crate) enum Quantity {
     Neighbors,
 }
 
-/// The parts of a mesh that have a quantity.
+/// The kind of items to which a quantity belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     Triangle,
     Edge,
-    /// A hole of the mesh, which has the place of its first vertex.
+    /// A hole of the mesh. Messages locate a hole by the first vertex of its boundary.
     Hole,
     Vertex,
 }

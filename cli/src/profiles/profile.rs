@@ -16,7 +16,7 @@ pub(crate) struct Profile {
     pub(crate) title: String,
     /// The metric by which runs for the solver smooth meshes; `None` if the default metric suits the solver.
     pub(crate) scheme: Option<Metric>,
-    /// The limits in the order of the file, at least one.
+    /// The limits in the order of the file. A profile has at least one limit.
     pub(crate) limits: Vec<Limit>,
 }
 
@@ -74,7 +74,7 @@ impl Profile {
     /// Parses the text of a file.
     ///
     /// # Errors
-    /// The first problem of the text, such as a key that no profile has.
+    /// Returns the first mistake in the text, such as an unknown key.
     pub(crate) fn parse(text: &str) -> Result<Self, ProfileProblem> {
         toml::from_str(text).map_err(|error| ProfileProblem {
             message: error.message().to_owned(),

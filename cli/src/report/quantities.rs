@@ -18,14 +18,15 @@ pub(crate) struct Quantities<'m> {
     is_on_boundary: OnceCell<Vec<bool>>,
 }
 
-/// The parts of a mesh with a value in the range of a threshold.
+/// The number of triangles, edges, holes or vertices that violate a threshold, and the worst one.
 pub(crate) struct Finding {
     pub(crate) threshold: Threshold,
     /// Number of triangles, edges or vertices with a value in the range.
     pub(crate) count: usize,
     /// Number of triangles, edges or vertices that have the quantity.
     pub(crate) total: usize,
-    /// The part with the worst value, which may be out of the range; `None` for a mesh without such parts.
+    /// The triangle, edge, hole or vertex with the worst value, even if this value satisfies the limit. `None` if the mesh
+    /// has none.
     pub(crate) worst: Option<Worst>,
 }
 
@@ -159,8 +160,8 @@ pub(crate) fn of_edge(quantity: Quantity, edge: &InnerEdge) -> f64 {
 }
 
 impl Finding {
-    /// Describes how many parts have a value in the range, with the worst part. Values have no sign for degrees if `is_plain`
-    /// is true.
+    /// Returns a sentence with the number of violations and the place of the worst value. Values have no sign for degrees
+    /// if `is_plain` is true.
     pub(crate) fn sentence(&self, is_plain: bool) -> String {
         let Self { threshold, count, total, worst } = self;
         let parts = threshold.quantity.part().noun(false);
