@@ -1,21 +1,23 @@
 //! Errors of the library, an enum per kind of operation.
 
+use crate::mesh::{Element, Mesh};
+
 /// Error of an unsuitable mesh, or of arguments that do not match the mesh. Indices are zero-based, as in
 /// [`Mesh`](crate::Mesh).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// The mesh has no triangles.
-    #[error("the mesh has no triangles")]
+    /// The mesh has neither triangles nor quadrilaterals.
+    #[error("the mesh has no triangles and no quadrilaterals")]
     Empty,
-    /// There are more vertices or triangle corners than 32-bit indices can number.
+    /// There are more vertices or corners of elements than 32-bit indices can number.
     #[error(
-        "{vertices} vertices and {triangles} triangles are more than 32-bit indices can number"
+        "{vertices} vertices and {triangles} triangles (two for each quadrilateral) are more than 32-bit indices can number"
     )]
     TooLarge {
         /// Number of vertices.
         vertices: usize,
-        /// Number of triangles.
+        /// Number of triangles, two for each quadrilateral.
         triangles: usize,
     },
     /// A coordinate is NaN or infinite.
@@ -28,49 +30,73 @@ pub enum MeshError {
     /// precision and exact predicates would not be exact.
     #[error("the coordinates are of size {size:e}, outside of 1e-100 to 1e100")]
     OutOfRange {
-        /// Largest absolute value of a coordinate, among the vertices that triangles use.
+        /// Largest absolute value of a coordinate, among the vertices that elements use.
         size: f64,
     },
-    /// A triangle, or a list of vertices to fix or to move, names a vertex that does not exist.
+    /// An element, or a list of vertices to fix or to move, names a vertex that does not exist.
     #[error("vertex {vertex} does not exist: the mesh has {vertices}, counted from 0")]
     IndexOutOfRange {
-        /// The triangle that names the vertex, `None` if a list of vertices names it.
-        triangle: Option<usize>,
+        /// The element that names the vertex, `None` if a list of vertices names it.
+        element: Option<Element>,
         /// The vertex that does not exist.
         vertex: u32,
         /// Number of vertices of the mesh.
         vertices: usize,
     },
-    /// A triangle names one vertex twice.
-    #[error("triangle {triangle} uses vertex {vertex} twice")]
+    /// An element names one vertex twice.
+    #[error("{element} uses vertex {vertex} twice")]
     RepeatedVertex {
-        /// The triangle.
-        triangle: usize,
+        /// The element.
+        element: Element,
         /// The repeated vertex.
         vertex: u32,
     },
-    /// Three or more triangles share an edge, so the mesh is not two-dimensional.
-    #[error("the edge between vertices {} and {} belongs to {} triangles", edge[0], edge[1], triangles.len())]
+    /// Three or more elements share an edge, so the mesh is not two-dimensional.
+    #[error("the edge between vertices {} and {} belongs to {} {}", edge[0], edge[1], elements.len(), kinds(elements))]
     EdgeOfThree {
         /// The two vertices of the edge.
         edge: [u32; 2],
-        /// All triangles at the edge, ascending.
-        triangles: Vec<usize>,
+        /// All elements at the edge, ascending.
+        elements: Vec<Element>,
     },
-    /// Triangles are inverted or flat.
-    #[error("{}", listed(triangles))]
+    /// A vertex inside the mesh has two elements alone, at least one a quadrilateral. The two corners fill 360 degrees
+    /// together, so one is not convex, wherever the vertex is.
+    #[error(
+        "vertex {vertex} is a doublet: it is inside the mesh between {} and {} alone, so the corner of one of them is not convex: join the two elements",
+        elements[0], elements[1]
+    )]
+    Doublet {
+        /// The first such vertex.
+        vertex: u32,
+        /// The two elements, ascending.
+        elements: [Element; 2],
+    },
+    /// Triangles are inverted or flat, or quadrilaterals have a corner that is not convex.
+    #[error("{}", listed(triangles, quadrilaterals))]
     Infeasible {
         /// All inverted or flat triangles, in ascending order.
         triangles: Vec<BadTriangle>,
+        /// All corners of quadrilaterals that are not convex, in ascending order.
+        quadrilaterals: Vec<BadQuadrilateral>,
     },
     /// An edge-connected part of the mesh has no boundary: a closed surface in space, which no placement of vertices in
     /// the plane untangles.
     #[error(
-        "the connected part of the mesh around triangle {triangle} has no boundary: it is a closed surface in space"
+        "the connected part of the mesh around {element} has no boundary: it is a closed surface in space"
     )]
     Closed {
-        /// The first triangle of the part.
-        triangle: usize,
+        /// The first element of the part.
+        element: Element,
+    },
+    /// The mesh has quadrilaterals, and an operation takes meshes of triangles alone.
+    #[error(
+        "{operation} takes meshes of triangles alone, and this mesh has {quadrilaterals} quadrilaterals"
+    )]
+    TrianglesAlone {
+        /// The operation.
+        operation: &'static str,
+        /// Number of quadrilaterals.
+        quadrilaterals: usize,
     },
     /// The triangles around a free vertex overlap although none is inverted: they wind more than once around the
     /// vertex.
@@ -81,19 +107,19 @@ pub enum MeshError {
         /// Number of turns that the triangles make around the vertex.
         turns: u32,
     },
-    /// The metric that judges the run cannot judge a triangle. Its area is zero or negative as computed in double
+    /// The metric that judges the run cannot judge an element. Its area is zero or negative as computed in double
     /// precision, though by exact predicates the triangle is not inverted. Such a triangle is too flat, or too small
     /// beside other triangles.
     #[error(
-        "triangle {triangle} is too flat, or too small beside the others, for double precision: \
+        "{element} is too flat, or too small beside the others, for double precision: \
          {metric} cannot judge it"
     )]
     BeyondPrecision {
-        /// The worst triangle.
-        triangle: usize,
+        /// The worst element.
+        element: Element,
         /// Name of the metric that judges the run.
         metric: &'static str,
-        /// Names of the metrics that can judge all triangles of this mesh.
+        /// Names of the metrics that can judge all elements of this mesh.
         usable: Vec<&'static str>,
     },
     /// The target of a vertex is invalid; see [`Targets`](crate::Targets).
@@ -139,6 +165,16 @@ pub enum MeshError {
     },
 }
 
+impl MeshError {
+    /// Fails with [`MeshError::TrianglesAlone`] if a mesh has quadrilaterals, which `operation` does not take.
+    pub(crate) fn check_triangles_alone(mesh: &Mesh, operation: &'static str) -> Result<(), Self> {
+        match mesh.quadrilaterals.len() {
+            0 => Ok(()),
+            quadrilaterals => Err(Self::TrianglesAlone { operation, quadrilaterals }),
+        }
+    }
+}
+
 /// A triangle that is inverted or flat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BadTriangle {
@@ -157,16 +193,61 @@ impl BadTriangle {
     }
 }
 
-/// Returns the message of [`MeshError::Infeasible`]: the number of bad triangles, and the first ten.
-fn listed(triangles: &[BadTriangle]) -> String {
-    let one = |bad: &BadTriangle| format!("{} ({})", bad.triangle, bad.problem());
-    let first: Vec<String> = triangles.iter().take(10).map(one).collect();
-    let more = match triangles.len().saturating_sub(10) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
+/// A corner of a quadrilateral that is not convex: its triangle, of a vertex and the two vertices beside it, is inverted or
+/// flat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BadQuadrilateral {
+    /// Index of the quadrilateral in [`Mesh::quadrilaterals`](crate::Mesh::quadrilaterals).
+    pub quadrilateral: usize,
+    /// Vertices of the quadrilateral, with the winding that is counter-clockwise once all corners are convex.
+    pub vertices: [u32; 4],
+    /// Index in `vertices` of the corner.
+    pub corner: usize,
+    /// Whether the angle at the corner is 180 degrees. If false, the angle is larger.
+    pub flat: bool,
+}
+
+impl BadQuadrilateral {
+    /// Returns the defect of the corner: `"concave"` or `"flat"`.
+    pub fn problem(&self) -> &'static str {
+        if self.flat { "flat" } else { "concave" }
+    }
+}
+
+/// Returns the message of [`MeshError::Infeasible`]: the numbers of bad triangles and of bad corners, and the first ten of each.
+fn listed(triangles: &[BadTriangle], quadrilaterals: &[BadQuadrilateral]) -> String {
+    let triangle = |bad: &BadTriangle| format!("{} ({})", bad.triangle, bad.problem());
+    let corner = |bad: &BadQuadrilateral| {
+        let (number, vertex) = (bad.quadrilateral, bad.vertices[bad.corner]);
+        format!("{number} ({} at vertex {vertex})", bad.problem())
     };
     let (s, are) = if triangles.len() == 1 { ("", "is") } else { ("s", "are") };
-    format!("{} triangle{s} {are} inverted or flat: {}{more}", triangles.len(), first.join(", "))
+    let of_triangles = format!("{} triangle{s} {are} inverted or flat", triangles.len());
+    let (s, are) = if quadrilaterals.len() == 1 { ("", "is") } else { ("s", "are") };
+    let of_corners =
+        format!("{} corner{s} of quadrilaterals {are} not convex", quadrilaterals.len());
+    let parts = [
+        (of_triangles, triangles.iter().map(triangle).collect::<Vec<_>>()),
+        (of_corners, quadrilaterals.iter().map(corner).collect()),
+    ];
+    let texts = parts.into_iter().filter(|(_, list)| !list.is_empty()).map(|(count, list)| {
+        let more = match list.len().saturating_sub(10) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!("{count}: {}{more}", list[..list.len().min(10)].join(", "))
+    });
+    texts.collect::<Vec<_>>().join("; ")
+}
+
+/// Returns the word for a list of elements: triangles, quadrilaterals, or elements if the list has both.
+fn kinds(elements: &[Element]) -> &'static str {
+    let is_triangle = |element: &Element| matches!(element, Element::Triangle(_));
+    match elements.iter().filter(|element| is_triangle(element)).count() {
+        0 => "quadrilaterals",
+        count if count == elements.len() => "triangles",
+        _ => "elements",
+    }
 }
 
 /// Error of a run that failed or could not start.

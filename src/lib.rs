@@ -16,6 +16,7 @@
 //!     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.9, 0.2]],
 //!     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 //!     fixed: vec![],
+//!     ..Mesh::default(),
 //! };
 //! let smoother = Smoother::new(&mesh)?;
 //! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None).block()?), or what Backend::auto chooses
@@ -107,7 +108,7 @@ pub use error::{CheckpointError, GpuError, MeshError, ResumeError, SmoothError};
 pub use front_ends::BackendReason;
 #[cfg(feature = "gpu")]
 pub use gpu::Gpu;
-pub use mesh::{Mesh, MeshSize};
+pub use mesh::{Element, Mesh, MeshSize};
 pub use metric::{Metric, Scheme};
 pub use options::{Goal, Guard, Method, OptionError, Options, Stopping};
 pub use outcome::Outcome;

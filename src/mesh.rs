@@ -1,8 +1,11 @@
-//! The mesh that a caller supplies, and its size.
+//! The mesh that a caller supplies, its elements by number, and its size.
 
-/// A 2D triangle mesh: double-precision positions and vertex triples, in the order of their file or application.
+use std::fmt;
+
+/// A 2D mesh of triangles and quadrilaterals: double-precision positions and the vertices of each element, in the order of
+/// their file or application.
 ///
-/// The struct checks nothing: triangles may have either winding, and vertices may be unused.
+/// The struct checks nothing: elements may have either winding, and vertices may be unused.
 /// [`Topology`](crate::Topology) checks the properties that smoothing needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -10,16 +13,47 @@ pub struct Mesh {
     pub points: Vec<[f64; 2]>,
     /// Vertex indices of each triangle, zero-based, in either winding.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertices that must not move: vertices on constraint lines, between regions, or of elements that are not triangles.
+    /// Vertex indices of each quadrilateral, zero-based, around it in either direction.
+    pub quadrilaterals: Vec<[u32; 4]>,
+    /// Vertices that must not move: vertices on constraint lines, between regions, or of elements of other kinds.
     /// Any order, repeats allowed. Boundary vertices move only if they slide, and a listed boundary vertex does not slide
     /// along the boundary; see [`Slide::lines`](crate::Slide::lines).
     pub fixed: Vec<u32>,
 }
 
 impl Mesh {
-    /// Returns the numbers of vertices and triangles.
+    /// Returns the numbers of vertices and of triangles, with two triangles for each quadrilateral.
     pub fn size(&self) -> MeshSize {
-        MeshSize { vertices: self.points.len(), triangles: self.triangles.len() }
+        let triangles = self.triangles.len() + 2 * self.quadrilaterals.len();
+        MeshSize { vertices: self.points.len(), triangles }
+    }
+}
+
+/// An element of a [`Mesh`], by its kind and its index in the list of that kind. Displayed as its kind and number, such as
+/// "quadrilateral 7".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Element {
+    /// Index in [`Mesh::triangles`].
+    Triangle(usize),
+    /// Index in [`Mesh::quadrilaterals`].
+    Quadrilateral(usize),
+}
+
+impl Element {
+    /// Returns the index of the element in the list of its kind.
+    pub fn index(self) -> usize {
+        match self {
+            Self::Triangle(index) | Self::Quadrilateral(index) => index,
+        }
+    }
+}
+
+impl fmt::Display for Element {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Triangle(index) => write!(f, "triangle {index}"),
+            Self::Quadrilateral(index) => write!(f, "quadrilateral {index}"),
+        }
     }
 }
 
@@ -30,6 +64,6 @@ impl Mesh {
 pub struct MeshSize {
     /// Number of vertices.
     pub vertices: usize,
-    /// Number of triangles.
+    /// Number of triangles. A quadrilateral counts as two.
     pub triangles: usize,
 }

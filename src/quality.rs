@@ -1,6 +1,7 @@
 //! Quality statistics of a mesh.
 
 use crate::error::MeshError;
+use crate::mesh::Element;
 use crate::metric::{Corner, Ideal, Metric};
 use crate::parallel::pace::now;
 use crate::parallel::paced;
@@ -8,35 +9,36 @@ use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates;
 
-/// Quality statistics of a mesh, in double precision. Exact predicates decide which triangles are inverted or flat.
+/// Quality statistics of a mesh, in double precision. Exact predicates decide which elements are inverted or flat.
 ///
-/// A triangle with an infinite or NaN coordinate counts as inverted.
+/// A quadrilateral is measured by its four corners. An element with an infinite or NaN coordinate counts as inverted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     f: [f64; Metric::ALL.len()],
-    /// Smallest angle of any triangle, in degrees. An inverted triangle counts as its mirror image.
+    /// Smallest angle of any element, in degrees. An inverted corner counts as its mirror image.
     pub min_angle: f64,
-    /// Largest angle of any triangle, in degrees. An inverted triangle counts as its mirror image.
+    /// Largest angle of any element, in degrees. An inverted corner counts as its mirror image.
     pub max_angle: f64,
-    /// Largest inverse mean ratio: 1 at best, infinite if a triangle is inverted or flat.
+    /// Largest inverse mean ratio of a triangle or of a corner of a quadrilateral: 1 at best, infinite if an element is inverted
+    /// or flat.
     pub worst_imr: f64,
-    /// Index of the triangle with the largest inverse mean ratio.
-    pub worst_triangle: usize,
-    /// Largest inverse mean ratio among the triangles with a free vertex, which smoothing can improve; 0 if there is no
+    /// The element with the largest inverse mean ratio.
+    pub worst: Element,
+    /// Largest inverse mean ratio among the elements with a free vertex, which smoothing can improve; 0 if there is no
     /// free vertex.
     pub worst_movable_imr: f64,
-    /// Number of inverted or flat triangles.
+    /// Number of elements that are inverted or flat, or not convex.
     pub inverted: usize,
 }
 
-/// Sums and extremes over a set of triangles.
+/// Sums and extremes over a set of elements.
 #[derive(Clone)]
 struct Tally {
     sums: [f64; Metric::ALL.len()],
     /// Least and largest cotangent of an angle. A cotangent decreases as its angle grows, and its computation needs no
     /// arc function.
     cotangents: [f64; 2],
-    /// Largest inverse mean ratio, with the index of its triangle.
+    /// Largest inverse mean ratio, with the index of its corner.
     worst: (f64, usize),
     worst_movable: f64,
     inverted: usize,
@@ -67,7 +69,7 @@ impl Tally {
 }
 
 impl Quality {
-    /// Measures the triangles of `topology` with vertices at `points`, one plane point per vertex of the mesh, in any
+    /// Measures the elements of `topology` with vertices at `points`, one plane point per vertex of the mesh, in any
     /// unit.
     ///
     /// # Errors
@@ -76,8 +78,8 @@ impl Quality {
         Self::on(Surface::Plane, points, topology)
     }
 
-    /// Measures the triangles of `topology` with vertices at `points`, given as coordinates on `surface`. Lengths and
-    /// angles are measured on the surface, by its metric at the center of each triangle.
+    /// Measures the elements of `topology` with vertices at `points`, given as coordinates on `surface`. Lengths and
+    /// angles are measured on the surface, by its metric at the center of each corner.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -96,61 +98,92 @@ impl Quality {
         topology: &Topology<'_>,
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
-        let triangles = topology.triangles();
+        let corners = topology.corner_list();
+        let (triangles, right) = (corners.triangles(), corners.of_quadrilaterals());
         // Areas are absolute, as signed areas may cancel if large triangles are inverted.
         let area = |t: &[u32; 3]| {
             let [x, y] = surface.lengths_in(points, t);
             0.5 * predicates::orientation(points, t).abs() * x * y
         };
-        let areas = paced::map_parts(triangles.chunks(1024), |_, chunk| {
-            chunk.iter().map(area).sum::<f64>()
-        });
-        let mean_area = areas.await.iter().sum::<f64>() / triangles.len() as f64;
+        let areas = |_, chunk: &[[u32; 3]]| chunk.iter().map(area).sum::<f64>();
+        let mut total_area =
+            paced::map_parts(triangles.chunks(1024), areas).await.iter().sum::<f64>();
+        if !right.is_empty() {
+            let areas = paced::map_parts(right.chunks(1024), areas).await;
+            total_area += 0.5 * areas.iter().sum::<f64>();
+        }
+        let mean_area = total_area / corners.equivalent_triangles();
 
+        let one = |corner: &[u32; 3], index: usize, is_right: bool| {
+            let movable = topology.can_move(corners.element(index as u32));
+            let lengths = surface.lengths_in(points, corner);
+            one(points, corner, lengths, mean_area, index, movable, is_right)
+        };
         let tallies = paced::map_parts(triangles.chunks(1024), |chunk, part| {
-            let add = |tally: Tally, (t, corners): (usize, &[u32; 3])| {
-                let movable = topology.can_move(chunk * 1024 + t);
-                let lengths = surface.lengths_in(points, corners);
-                tally.and(&one(points, corners, lengths, mean_area, chunk * 1024 + t, movable))
+            let add = |tally: Tally, (t, corner): (usize, &[u32; 3])| {
+                tally.and(&one(corner, chunk * 1024 + t, false))
             };
             part.iter().enumerate().fold(Tally::EMPTY, add)
         });
-        let total = tallies.await.iter().fold(Tally::EMPTY, Tally::and);
+        let mut total = tallies.await.iter().fold(Tally::EMPTY, Tally::and);
+        let tallies = paced::map_parts(right.chunks(1024), |chunk, part| {
+            let first = triangles.len() + chunk * 1024;
+            let element = |(k, four): (usize, &[[u32; 3]])| {
+                let at = |(c, corner)| one(corner, first + 4 * k + c, true);
+                let mut tally =
+                    four.iter().enumerate().map(at).fold(Tally::EMPTY, |a, b| a.and(&b));
+                tally.sums.iter_mut().for_each(|sum| *sum *= 0.25);
+                tally.inverted = tally.inverted.min(1);
+                tally
+            };
+            let elements = part.chunks(4).enumerate().map(element);
+            elements.fold(Tally::EMPTY, |a, b| a.and(&b))
+        });
+        total = tallies.await.iter().fold(total, Tally::and);
 
+        let count = topology.element_count() as f64;
         let angle = |cotangent: f64| 1f64.atan2(cotangent).to_degrees();
-        let mean =
-            |sum: f64| if sum.is_nan() { f64::INFINITY } else { sum / triangles.len() as f64 };
+        let mean = |sum: f64| if sum.is_nan() { f64::INFINITY } else { sum / count };
         Ok(Self {
             f: total.sums.map(mean),
             min_angle: angle(total.cotangents[1]),
             max_angle: angle(total.cotangents[0]),
             worst_imr: total.worst.0,
-            worst_triangle: total.worst.1,
+            worst: corners.element(total.worst.1 as u32),
             worst_movable_imr: total.worst_movable,
             inverted: total.inverted,
         })
     }
 
-    /// Returns the objective f = (1/n) Σ q² over all n triangles (Park & Shontz, equation 1). Infinite if a triangle is
-    /// inverted or flat and the metric has a barrier.
+    /// Returns the objective f = (1/n) Σ q² over all n elements (Park & Shontz, equation 1), with q² of a
+    /// quadrilateral the mean over its corners. Infinite if an element is inverted or flat and the metric has a barrier.
     pub fn f(&self, metric: Metric) -> f64 {
         self.f[metric as usize]
     }
 }
 
-/// Returns the tally of a single triangle.
+/// Returns the tally of a triangle, or of a corner of a quadrilateral if it `is_right`.
 fn one(
     points: &[[f64; 2]],
     corners: &[u32; 3],
     lengths: [f64; 2],
     mean_area: f64,
-    triangle: usize,
+    index: usize,
     movable: bool,
+    is_right: bool,
 ) -> Tally {
     let orientation = predicates::orientation(points, corners);
     let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
     let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
-    let corner = Corner { a, b, ideal: Ideal::of_area(mean_area / unit / unit) };
+    let mut corner = Corner { a, b, ideal: Ideal::of_area(mean_area / unit / unit) };
+    let doubled = corner.doubled_area().abs();
+    let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
+    let mut cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
+    if is_right {
+        // The other two angles are between a side and a diagonal.
+        cotangents = [cotangents[0]; 3];
+        corner = corner.of_right_angle();
+    }
     // The exact predicate decides, not the rounded area, so a ratio is infinite only if the triangle is inverted or
     // flat.
     let mut sums = Metric::every_excess(&corner);
@@ -160,9 +193,6 @@ fn one(
             *square = if is_positive { square.min(f64::MAX) } else { f64::INFINITY };
         }
     }
-    let doubled = corner.doubled_area().abs();
-    let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
-    let cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
     let imr = match is_positive {
         true => corner.inverse_mean_ratio().min(f64::MAX),
         false => f64::INFINITY,
@@ -173,7 +203,7 @@ fn one(
             cotangents.into_iter().fold(f64::INFINITY, f64::min),
             cotangents.into_iter().fold(f64::NEG_INFINITY, f64::max),
         ],
-        worst: (imr, triangle),
+        worst: (imr, index),
         worst_movable: if movable { imr } else { 0.0 },
         inverted: usize::from(!is_positive),
     }
@@ -227,7 +257,7 @@ mod tests {
     use crate::mesh::Mesh;
 
     fn quality(points: &[[f64; 2]]) -> Quality {
-        let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], fixed: vec![] };
+        let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
         Quality::of(points, &Topology::new(&mesh).unwrap()).unwrap()
     }
 

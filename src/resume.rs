@@ -85,6 +85,7 @@ async fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
     counts.into_iter().for_each(|count| add(count as u64));
     each(mesh.points.as_flattened(), |x| add(x.to_bits())).await;
     each(mesh.triangles.as_flattened(), |&i| add(i.into())).await;
+    each(mesh.quadrilaterals.as_flattened(), |&i| add(i.into())).await;
     each(&mesh.fixed, |&i| add(i.into())).await;
     each(targets.unwrap_or_default().as_flattened(), |x| add(x.to_bits().into())).await;
     more.iter().for_each(|&word| add(word));
@@ -143,7 +144,7 @@ mod tests {
             [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
         };
         let squares = (0..n).flat_map(|row| (0..n).map(move |column| (row, column)));
-        Mesh { points, triangles: squares.flat_map(of_square).collect(), fixed: Vec::new() }
+        Mesh { points, triangles: squares.flat_map(of_square).collect(), ..Mesh::default() }
     }
 
     /// Returns the CPU backend and, with the feature `gpu`, the default device.
@@ -338,6 +339,7 @@ mod tests {
             points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             fixed: vec![2],
+            ..Mesh::default()
         };
         let changes: [fn(&mut Mesh); 5] = [
             |mesh| mesh.points[3][1] += f64::EPSILON,

@@ -295,6 +295,7 @@ fn written_meshes_look_as_their_formats_say() {
         points: vec![[0.0, 0.0], [0.1, 0.0], [0.0, 1e-7], [0.025, 2.5e-8]],
         triangles: vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]],
         fixed: vec![3],
+        ..Mesh::default()
     };
     let [node, ele] = support::triangle_text(&mesh, "made up");
     assert_eq!(

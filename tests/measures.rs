@@ -15,7 +15,7 @@ use gpu_smooth::{
 use support::SplitMix64;
 
 fn value(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
-    let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], fixed: vec![] };
+    let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     Measured::new(&mesh.points, &topology).unwrap().value(measure, 0)
 }
@@ -24,7 +24,7 @@ fn value(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
 /// triangle: a topology of a single inverted triangle would reverse the winding.
 fn value_as_wound(measure: Measure, points: [[f64; 2]; 3]) -> f64 {
     let upright = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-    let mesh = Mesh { points: upright, triangles: vec![[0, 1, 2]], fixed: vec![] };
+    let mesh = Mesh { points: upright, triangles: vec![[0, 1, 2]], ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     Measured::new(&points, &topology).unwrap().value(measure, 0)
 }
@@ -194,7 +194,7 @@ fn measures_have_equal_values_only_if_their_rows_say_so() {
     // Metrics of sizes need triangles of several sizes.
     let points: Vec<[f64; 2]> = (0..60).map(|_| [0; 2].map(|_| random.unit())).collect();
     let triangles = (0..20).map(|t| [0, 1, 2].map(|corner| 3 * t + corner)).collect();
-    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     let measured = Measured::new(&mesh.points, &topology).unwrap();
     for (i, &measure) in Measure::ALL.iter().enumerate() {

@@ -125,5 +125,5 @@ fn read_medit(path: &Path) -> Mesh {
     let points = section("Vertices", 3).iter().map(|row| [row[0], row[1]]).collect();
     let triangles = section("Triangles", 4);
     let corner = |row: &Vec<f64>| [0, 1, 2].map(|i| row[i] as u32 - 1);
-    Mesh { points, triangles: triangles.iter().map(corner).collect(), fixed: Vec::new() }
+    Mesh { points, triangles: triangles.iter().map(corner).collect(), ..Mesh::default() }
 }

@@ -142,7 +142,7 @@ impl Domain {
         let between_regions = interfaces.clone();
         interfaces.retain(|v| fixed.binary_search(v).is_err());
         fixed.extend_from_slice(&interfaces);
-        let mesh = Mesh { points, triangles, fixed };
+        let mesh = Mesh { points, triangles, fixed, ..Mesh::default() };
         Self { mesh, interfaces, between_regions, ..Self::default() }
     }
 
@@ -327,7 +327,7 @@ impl Domain {
         let mut marked = vec![false; count];
         for &vertex in vertices {
             *marked.get_mut(vertex as usize).ok_or(MeshError::IndexOutOfRange {
-                triangle: None,
+                element: None,
                 vertex,
                 vertices: count,
             })? = true;

@@ -179,7 +179,7 @@ impl TargetRequest {
         let (points, triangles) = (&smoother.mesh().points, smoother.topology().triangles());
         if is_of_places {
             let (points, triangles) = (points.clone(), triangles.to_vec());
-            let mesh = Mesh { points, triangles, fixed: Vec::new() };
+            let mesh = Mesh { points, triangles, ..Mesh::default() };
             let field = TargetField::new(&mesh, &targets)?.seen_on(surface);
             smoother.set_target_field(field)?;
         } else {

@@ -186,17 +186,22 @@ fn indices(error: &MeshError) -> (Vec<usize>, Option<usize>) {
         MeshError::NotFinite { vertex } | MeshError::OverlappingStar { vertex, .. } => {
             (Vec::new(), Some(*vertex as usize))
         }
-        MeshError::IndexOutOfRange { triangle, vertex, .. } => {
-            (triangle.iter().copied().collect(), Some(*vertex as usize))
+        MeshError::IndexOutOfRange { element, vertex, .. } => {
+            (element.iter().map(|element| element.index()).collect(), Some(*vertex as usize))
         }
-        MeshError::RepeatedVertex { triangle, vertex } => (vec![*triangle], Some(*vertex as usize)),
-        MeshError::EdgeOfThree { triangles, .. } => (triangles.clone(), None),
-        MeshError::Infeasible { triangles } => {
+        MeshError::RepeatedVertex { element, vertex } => {
+            (vec![element.index()], Some(*vertex as usize))
+        }
+        MeshError::EdgeOfThree { elements, .. } => {
+            (elements.iter().map(|element| element.index()).collect(), None)
+        }
+        MeshError::Infeasible { triangles, .. } => {
             (triangles.iter().map(|bad| bad.triangle).collect(), None)
         }
-        MeshError::Closed { triangle }
-        | MeshError::BeyondPrecision { triangle, .. }
-        | MeshError::Pole { triangle } => (vec![*triangle], None),
+        MeshError::Closed { element } | MeshError::BeyondPrecision { element, .. } => {
+            (vec![element.index()], None)
+        }
+        MeshError::Pole { triangle } => (vec![*triangle], None),
         MeshError::Target { vertex, .. } => (Vec::new(), Some(*vertex)),
         _ => (Vec::new(), None),
     }
@@ -212,10 +217,12 @@ fn explained(error: &MeshError) -> String {
             format!("points[{vertex}]: {error}. {NOT_FINITE_REMEDY}")
         }
         MeshError::OutOfRange { .. } => format!("points: {error}. Choose another unit of length"),
-        MeshError::IndexOutOfRange { triangle: Some(triangle), .. } => {
+        MeshError::IndexOutOfRange { element: Some(element), .. } => {
+            let triangle = element.index();
             format!("triangles[{triangle}]: {error}. Vertices are numbered from 0 by the rows of points")
         }
-        MeshError::RepeatedVertex { triangle, .. } => {
+        MeshError::RepeatedVertex { element, .. } => {
+            let triangle = element.index();
             format!("triangles[{triangle}]: {error}. Remove the triangle")
         }
         MeshError::EdgeOfThree { .. } => {
@@ -227,7 +234,8 @@ fn explained(error: &MeshError) -> String {
         MeshError::OverlappingStar { vertex, .. } => {
             format!("points[{vertex}]: {error}. Correct the points around the vertex")
         }
-        MeshError::BeyondPrecision { triangle, usable, .. } => {
+        MeshError::BeyondPrecision { element, usable, .. } => {
+            let triangle = element.index();
             let usable = match usable.is_empty() {
                 true => "Pass untangle=True".to_owned(),
                 false => format!("Pass untangle=True, or a scheme of {}", usable.join(", ")),

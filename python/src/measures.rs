@@ -81,7 +81,7 @@ pub(crate) fn mesh(
     let triangles = arrays::triangles("triangles", triangles, read.xy.len())?;
     arrays::check_finite(points.py(), name, &read.xy)?;
     let Points { xy, form } = plane::lay_out(points.py(), name, read, z, surface)?;
-    Ok((Mesh { points: xy, triangles, fixed: Vec::new() }, form))
+    Ok((Mesh { points: xy, triangles, ..Mesh::default() }, form))
 }
 
 /// Returns the value of a measure for each triangle.
@@ -126,7 +126,8 @@ pub(crate) struct Statistics {
 impl Quality {
     pub(crate) fn of(quality: MeshQuality) -> Self {
         let f = Metric::ALL.iter().map(|&own| (own.name().to_owned(), quality.f(own))).collect();
-        let MeshQuality { min_angle, max_angle, worst_imr, worst_triangle, inverted, .. } = quality;
+        let MeshQuality { min_angle, max_angle, worst_imr, worst, inverted, .. } = quality;
+        let worst_triangle = worst.index();
         Self(Statistics { f, min_angle, max_angle, worst_imr, worst_triangle, inverted })
     }
 

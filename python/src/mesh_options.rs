@@ -164,7 +164,7 @@ impl MeshOptions {
             Target::Given(values) => TargetSource::Vertices(values.numbers.clone()),
             Target::Background { points, triangles, values } => {
                 let (points, triangles) = (points.xy.clone(), triangles.clone());
-                let mesh = Mesh { points, triangles, fixed: vec![] };
+                let mesh = Mesh { points, triangles, ..Mesh::default() };
                 let field = kind.field(&mesh, &values.numbers, surface)?;
                 TargetSource::Background(Box::new(field))
             }

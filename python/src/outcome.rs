@@ -39,7 +39,7 @@ impl Outcome {
     ) -> Self {
         let engine = match backend {
             Backend::Cpu => "cpu".to_owned(),
-            Backend::Gpu(_) if prepared.smoother.slides_on_cpu() => "cpu".to_owned(),
+            Backend::Gpu(_) if prepared.smoother.stays_on_cpu() => "cpu".to_owned(),
             Backend::Gpu(gpu) => gpu.adapter().name.clone(),
         };
         Self { outcome, prepared, options: options.clone(), engine, remarks }

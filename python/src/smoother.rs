@@ -157,7 +157,7 @@ impl Call {
         if let Target::Background { points, .. } = &mut options.mesh.target {
             **points = plane::lay_out_likewise(py, "target[0]", std::mem::take(points), &form)?;
         }
-        let mesh = Mesh { points: xy, triangles, fixed: Vec::new() };
+        let mesh = Mesh { points: xy, triangles, ..Mesh::default() };
         Ok(Self { mesh, form, options })
     }
 }

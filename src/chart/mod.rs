@@ -25,7 +25,7 @@ use crate::precision::Precision;
 /// // A square across the date line with a vertex in its middle.
 /// let points = vec![[179.0, 0.0], [-179.0, 0.0], [-179.0, 2.0], [179.0, 2.0], [-179.8, 1.1]];
 /// let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-/// let mesh = Mesh { points, triangles, fixed: vec![] };
+/// let mesh = Mesh { points, triangles, ..Mesh::default() };
 /// let chart = Chart::new(&mesh, Precision::Double)?.expect("triangles are across the date line");
 /// assert_eq!(chart.mesh().points[4], [180.2, 1.1]);
 /// let mut moved = chart.mesh().points.clone();
@@ -54,8 +54,9 @@ impl Chart {
     ///
     /// # Errors
     /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if a pole is inside a
-    /// triangle or on an edge.
+    /// triangle or on an edge, [`MeshError::TrianglesAlone`] if the mesh has quadrilaterals.
     pub fn new(mesh: &Mesh, stored: Precision) -> Result<Option<Self>, MeshError> {
+        MeshError::check_triangles_alone(mesh, "a chart of the sphere")?;
         let Mesh { points, triangles, .. } = mesh;
         let has_point = |&v: &u32| points.get(v as usize).is_some_and(|[x, y]| (x + y).is_finite());
         if !triangles.as_flattened().iter().all(has_point) {
@@ -269,7 +270,7 @@ mod tests {
                 triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
             }
         }
-        Mesh { points, triangles, fixed: vec![] }
+        Mesh { points, triangles, ..Mesh::default() }
     }
 
     fn within_half(x: f64) -> f64 {
@@ -343,7 +344,8 @@ mod tests {
     #[test]
     fn a_pole_within_a_triangle_and_a_latitude_off_the_sphere_are_refused() {
         let of = |points: [[f64; 2]; 3]| {
-            let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], fixed: vec![] };
+            let mesh =
+                Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
             Chart::new(&mesh, Precision::Double).map(|chart| chart.is_some())
         };
         let pole = Err(MeshError::Pole { triangle: 0 });

@@ -29,19 +29,25 @@ impl Along<'_> {
         (points(simd, self.positions, vertices), moved)
     }
 
-    /// Returns whether the move keeps a triangle acceptable; see [`is_kept`] and [`keeps_altitude`]. Compiled once for all
+    /// Returns whether the move keeps a corner acceptable; see [`is_kept`] and [`keeps_altitude`]. Compiled once for all
     /// metrics.
     #[inline(never)]
-    pub(super) fn keeps(&self, problem: &Problem, triangle: &[u32; 3], guard: f64) -> bool {
+    pub(super) fn keeps(
+        &self,
+        problem: &Problem,
+        is_right: bool,
+        triangle: &[u32; 3],
+        guard: f64,
+    ) -> bool {
         let position = |v: u32| self.positions[v as usize];
-        let now = problem.corner(triangle, |v| self.to(v));
+        let now = problem.corner_of(is_right, triangle, |v| self.to(v));
         let keeps_altitude = || {
             let at = |position: DVec2| problem.coordinates().at(position);
             let [before, now] =
                 [triangle.map(|v| at(position(v))), triangle.map(|v| at(self.to(v)))];
             keeps_altitude(problem.floor(), before, now)
         };
-        is_kept(&problem.corner(triangle, position), &now, guard)
+        is_kept(&problem.corner_of(is_right, triangle, position), &now, guard)
             && (problem.floor() <= 0.0 || keeps_altitude())
     }
 
@@ -58,17 +64,13 @@ impl Along<'_> {
     }
 }
 
-/// Returns for each free vertex whether the move breaks a triangle around it, as defined at
+/// Returns for each free vertex whether the move breaks a corner with it, as defined at
 /// [`mean_excess_along`](super::objective::mean_excess_along), with the shape guard `guard`.
 pub(crate) async fn broken(problem: &Problem, along: &Along<'_>, guard: f64) -> Vec<bool> {
     paced::collect(along.moved.len(), |v| {
-        let ring = problem.ring_of(v as u32);
-        let mut before = ring[ring.len() - 1];
-        ring.iter().any(|&neighbor| {
-            let triangle = [v as u32, before, neighbor];
-            before = neighbor;
-            !along.keeps(problem, &triangle, guard)
-        })
+        let breaks =
+            |(corner, is_right): ([u32; 3], bool)| !along.keeps(problem, is_right, &corner, guard);
+        problem.corners_around(v as u32).any(breaks)
     })
     .await
 }

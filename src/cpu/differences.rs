@@ -2,15 +2,15 @@
 
 use fearless_simd::prelude::*;
 
-use crate::metric::{Corner, Dual, Formulas, Real, Smoothing};
+use crate::metric::{Corner, Dual, EdgeSlopes, Formulas, Real, Smoothing};
+use crate::patch::LanePatch;
 use crate::patch::lanes::{Lanes, Points};
-use crate::patch::{Corners, Rings};
 use crate::run::line_search;
 
 /// Returns the objectives of four patches with their gradients and Hessians, by forward differences.
 #[inline(always)]
-pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
-    rings: &Rings<'_, S, MAPPED>,
+pub(crate) fn derivatives<S: Simd>(
+    rings: &impl LanePatch<S>,
     formulas: impl Formulas,
     at: Points<S>,
     smoothing: Smoothing,
@@ -20,17 +20,15 @@ pub(crate) fn derivatives<S: Simd, const MAPPED: bool>(
     let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
     for i in 0..rings.count() {
         let corner = rings.corner(i, at);
-        sum = sum + differences(formulas, &corner, smoothing, width);
+        let term = differences(formulas, &corner, rings.slopes(i), smoothing, width);
+        sum = sum + rings.weighted(i, term);
     }
     sum
 }
 
 /// Returns the least distance of each vertex from a line through an outer edge of its patch.
 #[inline(always)]
-fn least_height<S: Simd, const MAPPED: bool>(
-    rings: &Rings<'_, S, MAPPED>,
-    at: Points<S>,
-) -> Lanes<S> {
+fn least_height<S: Simd>(rings: &impl LanePatch<S>, at: Points<S>) -> Lanes<S> {
     let mut least = at[0].constant(f64::INFINITY);
     for i in 0..rings.count() {
         let c = rings.corner(i, at);
@@ -45,16 +43,18 @@ fn least_height<S: Simd, const MAPPED: bool>(
 fn differences<S: Simd>(
     formulas: impl Formulas,
     corner: &Corner<Lanes<S>>,
+    edges: impl EdgeSlopes,
     smoothing: Smoothing,
     h: Lanes<S>,
 ) -> Dual<Lanes<S>> {
+    let (alpha, beta) = (edges.alpha(), edges.beta());
     let mut values = [h; 16];
     let displacements = std::hint::black_box(line_search::DISPLACEMENTS);
     for k in 0..16 {
         let [x, y] = displacements[k];
         let (x, y) = (h * f64::from(x), h * f64::from(y));
-        let a = [corner.a[0] - x, corner.a[1] - y];
-        let b = [corner.b[0] - x, corner.b[1] - y];
+        let a = [corner.a[0] + x * alpha, corner.a[1] + y * alpha];
+        let b = [corner.b[0] + x * beta, corner.b[1] + y * beta];
         values[k] = formulas.model(&Corner { a, b, ..*corner }, smoothing);
     }
     // Gradients at the vertex, and at points one step along x and along y, each by forward differences.

@@ -129,7 +129,7 @@ impl CpuEngine {
     /// objective at `length`.
     async fn proposal(&mut self, length: f64) -> Proposal {
         let Self { base, step, problem, positions, gradient, direction, .. } = &*self;
-        let slope = dot(gradient, direction).await / problem.judged_triangles().len() as f64;
+        let slope = dot(gradient, direction).await / problem.judged_count() as f64;
         let here = mean_model(*base, step.smoothing(), problem, positions).await;
         let there = if slope < 0.0 { self.try_length(length).await } else { None };
         Proposal { here, slope, there }

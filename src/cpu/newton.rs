@@ -7,15 +7,15 @@ use crate::cpu::within::{LaneBounds, Within};
 use crate::metric::{Dual, Formulas, Properties};
 use crate::options::Derivatives;
 use crate::patch::lanes::{Lanes, Mask, Points};
-use crate::patch::{Direction, MetricObjective, Objective, Rings, SearchRule, newton_step};
+use crate::patch::{Direction, LanePatch, MetricObjective, Objective, SearchRule, newton_step};
 use crate::run::{SweepParams, line_search};
 
-/// Visits four vertices at `at` within their bounds, and returns their new positions. Only copies of the code for rings
-/// with maps know bounds.
+/// Visits four vertices at `at` within their bounds, and returns their new positions. Only `GENERAL` copies of the code know
+/// bounds.
 #[inline(always)]
-pub(crate) fn visit<S: Simd, const GENERAL: bool>(
+pub(crate) fn visit<S: Simd, P: LanePatch<S>, const GENERAL: bool>(
     formulas: impl Formulas,
-    rings: &Rings<S, GENERAL>,
+    rings: &P,
     mut at: Points<S>,
     bounds: Option<LaneBounds<S>>,
     step: &SweepParams,
@@ -64,11 +64,7 @@ fn rule_of(properties: &Properties, step: &SweepParams) -> SearchRule {
 
 /// Returns the lanes whose step was so short that the visit ends; see [`line_search::SETTLED`].
 #[inline(always)]
-fn settled<S: Simd, const MAPPED: bool>(
-    rings: &Rings<S, MAPPED>,
-    from: Points<S>,
-    to: Points<S>,
-) -> Mask<S> {
+fn settled<S: Simd>(rings: &impl LanePatch<S>, from: Points<S>, to: Points<S>) -> Mask<S> {
     let (x, y) = (to[0] - from[0], to[1] - from[1]);
     let least = line_search::SETTLED * line_search::SETTLED;
     (x * x + y * y).simd_lt(rings.squared_edge(from) * least)
@@ -80,9 +76,7 @@ struct SweepObjective<'a, P, F> {
     derivatives: Derivatives,
 }
 
-impl<S: Simd, const MAPPED: bool, F: Formulas> Objective<Lanes<S>>
-    for SweepObjective<'_, Rings<'_, S, MAPPED>, F>
-{
+impl<S: Simd, P: LanePatch<S>, F: Formulas> Objective<Lanes<S>> for SweepObjective<'_, P, F> {
     #[inline(always)]
     fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
         let MetricObjective { patch, formulas, smoothing, .. } = self.metric;

@@ -1,26 +1,26 @@
-//! The objective over all triangles, on the CPU.
+//! The objective over all elements, on the CPU.
 
 use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::cpu::along::Along;
-use crate::layout::Problem;
+use crate::layout::{CornerPart, Problem};
 use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
 use crate::parallel::paced;
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, vertex_maps, with_lanes};
 use crate::patch::{is_no_worse, is_positive, is_within};
 use crate::run::{Objectives, SweepParams};
 
-/// Number of triangles that one task evaluates.
+/// Number of corners that one task evaluates.
 const CHUNK: usize = 1024;
 
-/// Returns the mean of q² - ideal² over the triangles that a problem is judged by, summed in an order that does not
+/// Returns the mean of q² - ideal² over the elements that a problem is judged by, summed in an order that does not
 /// depend on the number of threads.
 pub(crate) async fn mean_excess(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
-    mean(metric, None, problem, problem.judged_triangles(), positions).await
+    mean(metric, None, problem, problem.judged_parts(), positions).await
 }
 
-/// Returns the objective by a metric, over the triangles that a problem is judged by.
+/// Returns the objective by a metric, over the elements that a problem is judged by.
 pub(crate) async fn objective(metric: Metric, problem: &Problem, positions: &[DVec2]) -> f64 {
     metric.ideal_squared() + mean_excess(metric, problem, positions).await
 }
@@ -38,17 +38,17 @@ pub(crate) async fn objectives(
     objectives
 }
 
-/// Returns the mean of q² - ideal² over the triangles that are left out of the objective of a problem; NaN if no
-/// triangle is left out.
+/// Returns the mean of q² - ideal² over the elements that are left out of the objective of a problem; NaN if no
+/// element is left out.
 pub(crate) async fn mean_excess_left_out(
     metric: Metric,
     problem: &Problem,
     positions: &[DVec2],
 ) -> f64 {
-    mean(metric, None, problem, problem.unjudged_triangles(), positions).await
+    mean(metric, None, problem, problem.unjudged_parts(), positions).await
 }
 
-/// Returns the mean over the triangles that a problem is judged by of the function that a step minimizes: q² - ideal², or its smooth model.
+/// Returns the mean over the elements that a problem is judged by of the function that a step minimizes: q² - ideal², or its smooth model.
 pub(crate) async fn mean_model(
     metric: Metric,
     smoothing: Smoothing,
@@ -56,28 +56,43 @@ pub(crate) async fn mean_model(
     positions: &[DVec2],
 ) -> f64 {
     let smoothing = Some(smoothing).filter(|_| !metric.is_smooth());
-    mean(metric, smoothing, problem, problem.judged_triangles(), positions).await
+    mean(metric, smoothing, problem, problem.judged_parts(), positions).await
 }
 
-/// Returns the mean of q² - ideal² over `triangles`, or of its smooth model if `smoothing` is given.
+/// Returns the mean of q² - ideal² over the elements of corners, or of its smooth model if `smoothing` is given.
 async fn mean(
     metric: Metric,
     smoothing: Option<Smoothing>,
     problem: &Problem,
-    triangles: &[[u32; 3]],
+    parts: [CornerPart<'_>; 2],
     positions: &[DVec2],
 ) -> f64 {
+    let [CornerPart { corners: triangles, .. }, right] = parts;
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem.targets(), false, metric, simd, formulas, MAPPED => {
             excess::<_, MAPPED>(simd, formulas, smoothing, problem, positions, chunk)
         })
     };
     let sums = paced::map_parts(triangles.chunks(CHUNK), sum).await;
-    sums.iter().sum::<f64>() / triangles.len() as f64
+    let sum = sums.iter().sum::<f64>();
+    if right.corners.is_empty() {
+        return sum / triangles.len() as f64;
+    }
+    let of_corner = |corner: &[u32; 3]| {
+        let corner = problem.corner_of(true, corner, |v| positions[v as usize]);
+        match smoothing {
+            Some(smoothing) => metric.formulas().model(&corner, smoothing),
+            None => metric.formulas().excess(&corner),
+        }
+    };
+    let of_part = |_, part: CornerPart<'_>| part.corners.iter().map(of_corner).sum::<f64>();
+    let sums = paced::map_parts(right.chunks(CHUNK), of_part).await;
+    let elements = triangles.len() + right.corners.len() / 4;
+    (sum + right.weight() * sums.iter().sum::<f64>()) / elements as f64
 }
 
 /// Returns the mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model.
-/// `None` if the move breaks a triangle: inverts or flattens it, or makes its inverse mean ratio both worse than before
+/// `None` if the move breaks a corner: inverts or flattens it, or makes its inverse mean ratio both worse than before
 /// and larger than the shape guard of the step, or its altitude both lower than before and below the floor of the problem.
 pub(crate) async fn mean_excess_along(
     step: &SweepParams,
@@ -92,10 +107,22 @@ pub(crate) async fn mean_excess_along(
             excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
         })
     };
-    let triangles = problem.judged_triangles();
+    let [CornerPart { corners: triangles, .. }, right] = problem.judged_parts();
     let sums = paced::map_parts(triangles.chunks(CHUNK), sum).await;
-    let sum: Option<f64> = sums.into_iter().sum();
-    sum.map(|sum| sum / triangles.len() as f64)
+    let mut sum: Option<f64> = sums.into_iter().sum();
+    if !right.corners.is_empty() {
+        let of_corner = |corner: &[u32; 3]| {
+            let now = problem.corner_of(true, corner, |v| along.to(v));
+            let is_kept = along.keeps(problem, true, corner, step.shape_guard);
+            is_kept.then(|| step.metric.formulas().model(&now, step.smoothing()))
+        };
+        let of_part =
+            |_, part: CornerPart<'_>| part.corners.iter().map(of_corner).sum::<Option<f64>>();
+        let sums = paced::map_parts(right.chunks(CHUNK), of_part).await;
+        let others: Option<f64> = sums.into_iter().sum();
+        sum = sum.zip(others).map(|(sum, others)| sum + right.weight() * others);
+    }
+    sum.map(|sum| sum / problem.judged_count() as f64)
 }
 
 /// Does the work of [`mean_excess_along`] on a problem with bounds, without loops of its own for each metric.
@@ -104,10 +131,12 @@ async fn mean_excess_within(
     problem: &Problem,
     along: &Along<'_>,
 ) -> Option<f64> {
-    let keeps = |_, triangles: &[[u32; 3]]| {
-        triangles.iter().all(|t| along.keeps(problem, t, step.shape_guard))
+    let keeps = |_, part: CornerPart<'_>| {
+        let keeps = |t| along.keeps(problem, part.is_right, t, step.shape_guard);
+        part.corners.iter().all(keeps)
     };
-    let kept = paced::map_parts(problem.judged_triangles().chunks(CHUNK), keeps).await;
+    let parts = problem.judged_parts().into_iter().flat_map(|part| part.chunks(CHUNK));
+    let kept = paced::map_parts(parts.collect::<Vec<_>>(), keeps).await;
     if kept.contains(&false) {
         return None;
     }
@@ -151,7 +180,7 @@ fn excess_along<S: Simd, const MAPPED: bool>(
     let mut last = 0.0;
     for t in rest {
         let now = problem.corner(t, |v| along.to(v));
-        borne &= Mask::splat(simd, along.keeps(problem, t, guard));
+        borne &= Mask::splat(simd, along.keeps(problem, false, t, guard));
         last += formulas.model(&now, step.smoothing());
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
@@ -240,7 +269,7 @@ mod tests {
         let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [x, y]).collect();
         points.push([0.1, 0.2]);
         let triangles = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
-        let (_, problem) = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap();
+        let (_, problem) = prepare(&Mesh { points, triangles, ..Mesh::default() }).unwrap();
         let positions = problem.positions();
         for metric in [Metric::Imr, Metric::Rms, Metric::Edge] {
             let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });

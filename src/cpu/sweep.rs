@@ -1,6 +1,6 @@
 //! Loops over all free vertices: sweeps, gradients and stiffness.
 
-use fearless_simd::prelude::*;
+use fearless_simd::{Level, prelude::*};
 use glam::{DVec2, Vec2};
 
 use crate::cpu::newton;
@@ -10,8 +10,11 @@ use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
-use crate::patch::lanes::{Lanes, points, with_lanes};
-use crate::patch::{MetricObjective, Objective, Rings, Scratch, batch_at};
+use crate::patch::lanes::{Lanes, Points, points, with_instructions, with_lanes};
+use crate::patch::{
+    LanePatch, MetricObjective, MixedRings, MixedScratch, Objective, Rings, Scratch, VertexBatch,
+    batch_at,
+};
 use crate::run::SweepParams;
 
 /// Number of vertices that one task visits.
@@ -159,6 +162,15 @@ async fn visit<T: VisitOutput>(
     sought: VertexQuantity,
     found: &mut [T],
 ) {
+    if problem.has_quadrilaterals() {
+        paced::for_each_chunk(found, CHUNK, |at, found| {
+            with_instructions!(Level::new(), simd => {
+                visit_mixed(simd, problem, positions, first + at, step, sought, found);
+            });
+        })
+        .await;
+        return;
+    }
     paced::for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
         let bounded = T::STEPS && problem.is_bounded();
@@ -189,33 +201,82 @@ fn visit_all<S: Simd, T: VisitOutput, const GENERAL: bool>(
         let degree = problem.ring_of(vertices[0]).len();
         let rings = Rings::<S, GENERAL>::gather(simd, problem, positions, vertices, &mut scratch);
         let at = points(simd, positions, vertices);
-        let [x, y] = match T::STEPS {
-            true => {
-                let bounds = GENERAL.then(|| LaneBounds::gather(simd, problem, vertices)).flatten();
-                newton::visit(formulas, &rings, at, bounds, step)
-            }
-            false => {
-                let (smoothing, shape_guard) = (step.smoothing(), f64::INFINITY);
-                let objective = MetricObjective { patch: &rings, formulas, smoothing, shape_guard };
-                let sum = objective.expansion(at);
-                match sought {
-                    VertexQuantity::Gradient => sum.gradient,
-                    VertexQuantity::StiffnessRoot => {
-                        let sum = match rings.inverse_map() {
-                            Some(inverse) if GENERAL && !problem.are_levels_in_plane() => {
-                                inverse.shape().pull_back(sum)
-                            }
-                            _ => sum,
-                        };
-                        [stiffness_root(&sum, degree); 2]
-                    }
-                }
-            }
-        };
+        let patch = Visited { rings: &rings, vertices, degree, at };
+        let [x, y] = patch.visit::<T, GENERAL>(formulas, problem, step, sought);
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
             *found = T::new([x[lane], y[lane]]);
         }
         done += count;
+    }
+}
+
+/// Does the work of [`visit_all`] in a mesh with quadrilaterals.
+#[inline(always)]
+fn visit_mixed<S: Simd, T: VisitOutput>(
+    simd: S,
+    problem: &Problem,
+    positions: &[DVec2],
+    first: usize,
+    step: &SweepParams,
+    sought: VertexQuantity,
+    found: &mut [T],
+) {
+    let mut scratch = MixedScratch::new();
+    let mut done = 0;
+    while done < found.len() {
+        let (vertices, count) = batch_at(problem, first + done, found.len() - done);
+        let degree = problem.neighbors(vertices[0]).count();
+        let rings = &MixedRings::gather(simd, problem, positions, vertices, &mut scratch);
+        let at = points(simd, positions, vertices);
+        let patch = Visited { rings, vertices, degree, at };
+        let [x, y] = patch.visit::<T, true>(step.metric.formulas(), problem, step, sought);
+        for (lane, found) in found[done..done + count].iter_mut().enumerate() {
+            *found = T::new([x[lane], y[lane]]);
+        }
+        done += count;
+    }
+}
+
+/// Four vertices of a visit with their patches.
+struct Visited<'a, S: Simd, P> {
+    rings: &'a P,
+    vertices: VertexBatch,
+    /// Number of neighbors along edges.
+    degree: usize,
+    at: Points<S>,
+}
+
+impl<S: Simd, P: LanePatch<S>> Visited<'_, S, P> {
+    /// Returns the new positions of the vertices, or the quantity `sought`.
+    #[inline(always)]
+    fn visit<T: VisitOutput, const GENERAL: bool>(
+        &self,
+        formulas: impl Formulas,
+        problem: &Problem,
+        step: &SweepParams,
+        sought: VertexQuantity,
+    ) -> Points<S> {
+        let Self { rings, vertices, degree, at } = *self;
+        if T::STEPS {
+            let simd = at[0].simd;
+            let bounds = GENERAL.then(|| LaneBounds::gather(simd, problem, vertices)).flatten();
+            return newton::visit::<S, P, GENERAL>(formulas, rings, at, bounds, step);
+        }
+        let (smoothing, shape_guard) = (step.smoothing(), f64::INFINITY);
+        let objective = MetricObjective { patch: rings, formulas, smoothing, shape_guard };
+        let sum = objective.expansion(at);
+        match sought {
+            VertexQuantity::Gradient => sum.gradient,
+            VertexQuantity::StiffnessRoot => {
+                let sum = match rings.inverse_map() {
+                    Some(inverse) if GENERAL && !problem.are_levels_in_plane() => {
+                        inverse.shape().pull_back(sum)
+                    }
+                    _ => sum,
+                };
+                [stiffness_root(&sum, degree); 2]
+            }
+        }
     }
 }
 

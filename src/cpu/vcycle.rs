@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use crate::layout::Problem;
 use crate::parallel::paced;
-use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, SMOOTHING, Sparse};
+use crate::run::multilevel::{CHEBYSHEV, Coarser, Hierarchy, Level, NONE, Sparse};
 
 /// Number of rows that one task computes. Levels with fewer rows are left to a single thread, as distributing their
 /// rows would take longer than computing them.
@@ -20,10 +20,11 @@ pub(crate) async fn correction(
     gradient: &[Vec2],
 ) -> Vec<Vec2> {
     let Some(first) = hierarchy.levels().first() else { return vec![Vec2::ZERO; gradient.len()] };
-    let start = problem.ring_start();
+    let smoothing = Hierarchy::smoothing(problem);
+    // Marks of opposite vertices are numbers beyond all free vertices.
     let ring = |v: usize| {
-        let ring = &problem.ring()[start[v] as usize..start[v + 1] as usize];
-        ring.iter().map(|&k| k as usize).filter(|&k| k < gradient.len())
+        let ring = problem.ring_of(v as u32).iter();
+        ring.map(|&k| k as usize).filter(|&k| k < gradient.len())
     };
     let root = hierarchy.roots();
     // `values` are already multiplied by the stiffness roots of their vertices.
@@ -34,7 +35,7 @@ pub(crate) async fn correction(
     let restricted = {
         let scaled = rows(gradient.len(), |v| gradient[v] * (diagonal[v] * root[v])).await;
         let smoothed = rows(gradient.len(), |v| {
-            gradient[v] * (1.0 - SMOOTHING) + around(v, &scaled) * SMOOTHING
+            gradient[v] * (1.0 - smoothing) + around(v, &scaled) * smoothing
         })
         .await;
         let (starts, members) = (hierarchy.member_starts(), hierarchy.members());
@@ -51,7 +52,7 @@ pub(crate) async fn correction(
     };
     let handed = rows(gradient.len(), |v| own(v) * root[v]).await;
     rows(gradient.len(), |v| {
-        own(v) * (1.0 - SMOOTHING) + around(v, &handed) * (SMOOTHING * diagonal[v])
+        own(v) * (1.0 - smoothing) + around(v, &handed) * (smoothing * diagonal[v])
     })
     .await
 }
@@ -161,7 +162,7 @@ mod tests {
         let points = (0..side * side).map(|k| [at(k % side), f64::from(k / side)]).collect();
         let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
         let triangles = cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]);
-        let mesh = Mesh { points, triangles: triangles.collect(), fixed: Vec::new() };
+        let mesh = Mesh { points, triangles: triangles.collect(), ..Mesh::default() };
         prepare(&mesh).unwrap().1
     }
 

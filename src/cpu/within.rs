@@ -7,7 +7,9 @@ use crate::layout::{MeshCoordinates, Problem};
 use crate::metric::{Dual, Real};
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, numbers, points};
 use crate::patch::numbers::Numbers;
-use crate::patch::{AT_DISC, Circle, Direction, GROWTH, MIN_CIRCLE_CURVATURE, Objective, Rings};
+use crate::patch::{
+    AT_DISC, Circle, Direction, GROWTH, LanePatch, MIN_CIRCLE_CURVATURE, Objective,
+};
 
 /// The bounds of four free vertices of a problem with bounds.
 #[derive(Clone, Copy)]
@@ -74,36 +76,34 @@ fn each<S: Simd>(points: Points<S>, of: impl Fn(DVec2) -> DVec2) -> Points<S> {
 /// The objective of vertices at `at` that may leave neither their discs nor lower a triangle below the least altitude.
 /// Without bounds, the objective is unchanged. Trials beyond a disc end at the nearest point of the disc. Steps of vertices at the circle of their disc that would lead
 /// outward are Newton steps along the circle.
-pub(super) struct Within<'a, S: Simd, O, const MAPPED: bool> {
+pub(super) struct Within<'a, S: Simd, O, P> {
     pub(super) objective: &'a O,
-    pub(super) rings: &'a Rings<'a, S, MAPPED>,
+    pub(super) rings: &'a P,
     pub(super) at: Points<S>,
     pub(super) bounds: Option<LaneBounds<S>>,
 }
 
-impl<S: Simd, O, const MAPPED: bool> Within<'_, S, O, MAPPED> {
-    /// Returns which triangles between two neighbors are acceptable in all lanes' patches; see
+impl<S: Simd, O, P: LanePatch<S>> Within<'_, S, O, P> {
+    /// Returns which corners are acceptable in all lanes' patches; see
     /// [`keeps_altitude`](crate::patch::keeps_altitude).
     #[inline(always)]
     fn keeps_altitudes(&self, to: Points<S>, bounds: &LaneBounds<S>) -> Mask<S> {
         let &LaneBounds { coordinates, floor, .. } = bounds;
-        let (from, to) = (in_mesh(coordinates, self.at), in_mesh(coordinates, to));
         let mut kept = to[0].mask(true);
         let floor = to[0].constant(floor * floor);
-        let &[mut last, ref rest @ ..] = self.rings.neighbors() else { return kept };
-        last = in_mesh(coordinates, last);
-        for &next in rest {
-            let next = in_mesh(coordinates, next);
-            let (area, longest) = doubled_area_and_square([to, last, next]);
+        for i in 0..self.rings.count() {
+            let now = self.rings.vertices(i, to).map(|point| in_mesh(coordinates, point));
+            let (area, longest) = doubled_area_and_square(now);
             let squared = area * Numbers::abs(area);
             let mut is_kept = (floor * longest).le(squared);
             if !is_kept.all_true() {
-                let (before, longest_before) = doubled_area_and_square([from, last, next]);
+                let before = self.rings.vertices(i, self.at);
+                let before = before.map(|point| in_mesh(coordinates, point));
+                let (before, longest_before) = doubled_area_and_square(before);
                 let grown = before * Numbers::abs(before) * (GROWTH * GROWTH);
                 is_kept |= (grown * longest).le(squared * longest_before);
             }
             kept &= is_kept;
-            last = next;
         }
         kept
     }
@@ -119,9 +119,7 @@ fn doubled_area_and_square<S: Simd>([p, q, r]: [Points<S>; 3]) -> (Lanes<S>, Lan
     (a[0] * b[1] - a[1] * b[0], longest)
 }
 
-impl<S: Simd, O: Objective<Lanes<S>>, const MAPPED: bool> Objective<Lanes<S>>
-    for Within<'_, S, O, MAPPED>
-{
+impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for Within<'_, S, O, P> {
     #[inline(always)]
     fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
         self.objective.expansion(at)
@@ -246,7 +244,7 @@ mod tests {
         let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [x, y]).collect();
         points.push(at);
         let triangles = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
-        let (_, mut problem) = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap();
+        let (_, mut problem) = prepare(&Mesh { points, triangles, ..Mesh::default() }).unwrap();
         problem.set_bounds(Bounds { radii: Some(vec![radius]), floor: 0.0 });
         problem
     }

@@ -7,6 +7,7 @@
 //!     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.9, 0.5]],
 //!     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 //!     fixed: vec![],
+//!     ..Mesh::default(),
 //! };
 //! let topology = Topology::new(&mesh)?;
 //! let bad = select::triangles_above(&mesh.points, &topology, 3.0);
@@ -47,7 +48,7 @@ fn inverse_mean_ratio(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
 /// Returns the vertices of the given triangles and of `rings` rings of triangles around them, ascending. Indices of
 /// nonexistent triangles are ignored.
 pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> Vec<u32> {
-    let all = topology.triangles();
+    let all = topology.corners();
     let mut found = vec![false; topology.free().len()];
     let mut ring = Vec::new();
     let mut add = |corners: &[u32; 3], ring: &mut Vec<u32>| {
@@ -63,8 +64,8 @@ pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> 
     for _ in 0..rings {
         let mut next = Vec::new();
         for &vertex in &ring {
-            for &triangle in topology.star(vertex) {
-                add(&all[triangle as usize], &mut next);
+            for corner in topology.corners_with(vertex) {
+                add(&all[corner as usize], &mut next);
             }
         }
         if next.is_empty() {
@@ -125,7 +126,7 @@ mod tests {
         Mesh {
             points: (0..13).map(point).collect(),
             triangles: (0..5).flat_map(square).collect(),
-            fixed: vec![],
+            ..Mesh::default()
         }
     }
 

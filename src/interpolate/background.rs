@@ -36,12 +36,14 @@ impl Background {
     /// Makes a background; copies the mesh.
     ///
     /// # Errors
-    /// [`MeshError::Infeasible`] if triangles are inverted or flat, or an error of [`Topology::new`].
+    /// [`MeshError::Infeasible`] if triangles are inverted or flat, [`MeshError::TrianglesAlone`], or an error of
+    /// [`Topology::new`].
     pub(crate) fn new(mesh: &Mesh) -> Result<Self, MeshError> {
+        MeshError::check_triangles_alone(mesh, "interpolation")?;
         let topology = Topology::new(mesh)?.into_owned();
         let triangles = topology.bad_triangles(&mesh.points)?;
         if !triangles.is_empty() {
-            return Err(MeshError::Infeasible { triangles });
+            return Err(MeshError::Infeasible { triangles, quadrilaterals: Vec::new() });
         }
         let seeds = Seeds::new(topology.triangles(), &mesh.points);
         Ok(Self { topology, points: mesh.points.clone(), seeds })
@@ -211,7 +213,7 @@ mod tests {
             let a = 7 * r + c;
             [[a, a + 1, a + 8], [a, a + 8, a + 7]]
         };
-        Mesh { points, triangles: fields.flat_map(of).collect(), fixed: vec![] }
+        Mesh { points, triangles: fields.flat_map(of).collect(), ..Mesh::default() }
     }
 
     #[test]

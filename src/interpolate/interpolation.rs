@@ -19,6 +19,7 @@ use crate::topology::Topology;
 ///     points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.5, 1.0]],
 ///     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 ///     fixed: vec![],
+///     ..Mesh::default(),
 /// };
 /// let mut moved = mesh.points.clone();
 /// moved[4] = [1.0, 1.0];
@@ -55,7 +56,7 @@ impl Interpolation {
         let triangles = topology.bad_triangles(old)?;
         topology.check_count(new)?;
         if !triangles.is_empty() {
-            return Err(MeshError::Infeasible { triangles });
+            return Err(MeshError::Infeasible { triangles, quadrilaterals: Vec::new() });
         }
         if let Some(vertex) = new.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });

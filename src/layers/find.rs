@@ -91,7 +91,8 @@ impl Elements<'_> {
 
     /// Returns the sectors of the elements, the seeds, and the front on given walls or on those with seeds.
     fn front(&self, walls: Option<&[u32]>) -> (Sectors, Vec<bool>, Vec<bool>) {
-        let sectors = Sectors::new(self.points, self.topology.triangles(), self.faces, self.lines);
+        let sectors =
+            Sectors::new(self.points, self.topology.triangles(), &self.all_faces(), self.lines);
         let seeds = front::seeds(&sectors);
         let front = match walls {
             None => front::front(&sectors, &seeds),

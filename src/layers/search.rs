@@ -20,8 +20,12 @@ pub(super) struct Search {
 impl Search {
     /// Searches the layers above the boundary and `lines`.
     pub(super) fn new(elements: &Elements<'_>, lines: &[[u32; 2]], walls: Option<&[u32]>) -> Self {
-        let sectors =
-            Sectors::new(elements.points, elements.topology.triangles(), elements.faces, lines);
+        let sectors = Sectors::new(
+            elements.points,
+            elements.topology.triangles(),
+            &elements.all_faces(),
+            lines,
+        );
         let seeds = front::seeds(&sectors);
         let mut front = front::front(&sectors, &seeds);
         if let Some(walls) = walls {

@@ -83,9 +83,10 @@ impl InnerNeighbors {
         walls.iter().for_each(|&v| is_near[v as usize] = true);
         let is_boundary = boundary(elements);
         let mut neighbors = vec![Vec::new(); row.len()];
+        let faces = elements.all_faces();
         let triangles = elements.topology.triangles().iter().map(<[u32; 3]>::as_slice);
         let near = triangles
-            .chain(elements.faces.iter().map(Vec::as_slice))
+            .chain(faces.iter().map(Vec::as_slice))
             .filter(|element| element.iter().any(|v| is_near[*v as usize]));
         for element in near {
             for i in 0..element.len() {

@@ -8,7 +8,7 @@ use crate::parallel::counting_sort::{atomics, plain};
 use crate::parallel::{collect, for_each_part, map_parts, map_ranges};
 use crate::topology::Topology;
 
-/// A coloring of the free vertices. No two vertices of equal color share a triangle, so all vertices of a color can be
+/// A coloring of the free vertices. No two vertices of equal color share an element, so all vertices of a color can be
 /// visited in parallel, with the same result as in any serial order.
 #[derive(Clone, Debug)]
 pub struct Coloring {
@@ -25,10 +25,13 @@ const MOST_BETWEEN: usize = 4;
 
 /// Largest number of colors that the smallest-last order needs on a planar graph.
 const PLANAR: u32 = 6;
+/// Largest number of colors that the order needs if vertices across a quadrilateral count as neighbors. Such a graph is
+/// 1-planar and has a vertex of at most 7 neighbors (Pach & Tóth, Combinatorica 17, 1997).
+const ONE_PLANAR: u32 = 8;
 
 impl Coloring {
     /// Colors the free vertices greedily in smallest-last order (Matula & Beck, J. ACM 30, 1983), which takes at most 6
-    /// colors on a planar graph.
+    /// colors on triangles, and 8 on meshes with quadrilaterals.
     ///
     /// Blocks of vertices with consecutive indices in the mesh are colored in parallel, after the vertices that have
     /// neighbors in several blocks.
@@ -77,11 +80,15 @@ impl Coloring {
             let same = |p: u32, q: u32| p == q && p != UNCOLORED;
             !same(a, b) && !same(b, c) && !same(c, a)
         };
+        let differ_across = |[a, b, c, d]: [u32; 4]| {
+            differs(&[a, b, c]) && differs(&[a, c, d]) && differs(&[a, b, d])
+        };
         let is_complete = |(&color, &free): (&u32, &bool)| free == (color < self.count);
         // The coloring may be of another mesh, with another number of vertices.
         self.colors.len() == topology.free().len()
             && self.colors.iter().zip(topology.free()).all(is_complete)
             && topology.triangles().iter().all(differs)
+            && topology.quadrilaterals().all(differ_across)
     }
 }
 
@@ -115,20 +122,29 @@ impl<'a> Places<'a> {
         self.topology.free()[self.curve[place as usize] as usize]
     }
 
-    /// Returns the places of the free neighbors of the free vertex at `place`, counter-clockwise.
+    /// Returns the places of the free vertices that share an element with the free vertex at `place`, counter-clockwise.
     fn neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
-        let ring = self.topology.ring_of(self.curve[place as usize]);
-        ring.map(|v| self.of[v as usize]).filter(|&place| place != NO_PLACE)
+        let around = self.topology.around(self.curve[place as usize]);
+        around.map(|(v, _)| self.of[v as usize]).filter(|&place| place != NO_PLACE)
     }
 
-    /// Returns the places of the free neighbors, in ascending order of the triangles that follow them around the
-    /// vertex.
+    /// Returns the places of the free vertices that share an element with the vertex, in ascending order of the elements.
     fn sorted_neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
         let vertex = self.curve[place as usize];
-        let mut ring: Vec<(u32, u32)> =
-            self.topology.star(vertex).iter().copied().zip(self.topology.ring_of(vertex)).collect();
+        let star = self.topology.star(vertex).iter();
+        let mut ring: Vec<(u32, u32)> = star.copied().zip(self.topology.ring_of(vertex)).collect();
         ring.sort_unstable();
-        ring.into_iter().map(|(_, v)| self.of[v as usize]).filter(|&place| place != NO_PLACE)
+        let corners = self.topology.corner_list();
+        let around = ring.into_iter().flat_map(|(c, v)| [v].into_iter().chain(corners.opposite(c)));
+        around.map(|v| self.of[v as usize]).filter(|&place| place != NO_PLACE)
+    }
+
+    /// Returns the largest number of colors that the smallest-last order needs on the mesh.
+    fn most_colors(&self) -> u32 {
+        match self.topology.corner_list().quadrilateral_count() {
+            0 => PLANAR,
+            _ => ONE_PLANAR,
+        }
     }
 
     /// Colors the vertices between blocks, then the inner vertices of each block in parallel. Returns the colors,
@@ -151,9 +167,9 @@ impl<'a> Places<'a> {
             block.graph.save_colors(&block.order, count, colors)
         });
         let count = count.max(counts.into_iter().max().unwrap_or(0));
-        // Vertices between blocks are colored first, so a vertex of a block may have more than five colored neighbors,
-        // and the coloring may take more than six colors.
-        if count <= PLANAR {
+        // Vertices between blocks are colored first, so a vertex of a block may have more colored neighbors than the order
+        // provides for, and the coloring may take more colors.
+        if count <= self.most_colors() {
             return (colors, count);
         }
         let (serial, serial_count) = self.color_serially();
@@ -249,7 +265,7 @@ mod tests {
             }
         });
         let points = points.map(|p| p.map(f64::from)).collect();
-        let mesh = Mesh { points, triangles: triangles.collect(), fixed: vec![] };
+        let mesh = Mesh { points, triangles: triangles.collect(), ..Mesh::default() };
         Topology::new(&mesh).unwrap().into_owned()
     }
 
@@ -297,7 +313,7 @@ mod tests {
         let around = (0..7).flat_map(|i| [[i, i + 1, i + 3], [i, i + 3, i + 2]]);
         let triangles = around.map(|t| t.map(|v| v % 7)).collect();
         let points = (0..7).map(|i| [f64::from(i), f64::from(i * i)]).collect();
-        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         assert_eq!(topology.free_count(), 7);
         let curve: Vec<u32> = (0..7).collect();

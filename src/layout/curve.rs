@@ -98,7 +98,7 @@ mod tests {
             points.push([x * shrink, y * shrink]);
         }
         let triangles: Vec<[u32; 3]> = (0..900).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         let found = along_curve(&mesh, &topology);
         let (low, high) = bounds(&mesh, &topology);

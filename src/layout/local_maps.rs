@@ -7,7 +7,8 @@
 
 use glam::DVec2;
 
-use crate::layout::Problem;
+use crate::layout::{OPPOSITE, Problem};
+use crate::metric::of_right_angle;
 use crate::parallel::paced;
 use crate::targets::{Tensor, shape_logarithm_of};
 
@@ -70,14 +71,25 @@ impl Problem {
     }
 }
 
-/// Returns the map, of determinant 1, under which the mean shape of the triangles around a free vertex is equilateral.
-/// `edges` returns the two edges of a triangle that start at its first corner, the free vertex.
+/// Returns the map, of determinant 1, under which the mean shape of the elements around a free vertex is ideal.
+/// `edges` returns the two edges of a corner that start at its first vertex, the free vertex.
 fn shape_at(problem: &Problem, v: usize, edges: impl Fn(&[u32; 3]) -> [[f64; 2]; 2]) -> Tensor {
+    let (mut sum, mut count) = (Tensor::default(), 0);
     let ring = problem.ring_of(v as u32);
-    let triangle = |i: usize| [v as u32, ring[i], ring[(i + 1) % ring.len()]];
-    let logarithms = (0..ring.len()).map(|i| shape_logarithm_of(edges(&triangle(i))));
-    let sum = logarithms.fold(Tensor::default(), Tensor::plus);
-    let Tensor([xx, xy, yy]) = sum.times(1.0 / ring.len() as f64);
+    for (i, &next) in ring.iter().enumerate().filter(|(_, k)| *k & OPPOSITE == 0) {
+        let last = ring[(i + 1) % ring.len()];
+        let (last, is_right) = match last & OPPOSITE {
+            0 => (last, false),
+            _ => (ring[(i + 2) % ring.len()], true),
+        };
+        let mut edges = edges(&[v as u32, next, last]);
+        if is_right {
+            edges = of_right_angle(edges);
+        }
+        sum = sum.plus(shape_logarithm_of(edges));
+        count += 1;
+    }
+    let Tensor([xx, xy, yy]) = sum.times(1.0 / f64::from(count));
     // Without the trace, the determinant of the exponential is 1.
     let half = 0.5 * (xx - yy);
     let most = 0.5 * MAX_RATIO.ln();

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::mesh::Mesh;
 use crate::metric::Dual;
+use crate::parallel::pace::now;
 use crate::topology::Topology;
 
 /// The Mercator projection of longitudes and latitudes. Images are in degrees of longitude at the equator. The projection
@@ -20,14 +21,13 @@ impl Mercator {
     /// straight edges in longitude and latitude have curved images, which a sliver does not survive.
     pub(crate) fn of(mesh: &Mesh, topology: &Topology<'_>) -> Option<(Self, Mesh)> {
         let (projection, projected) = Self::with_slivers(mesh, topology);
-        let is_valid = topology.bad_triangles(&projected.points).is_ok_and(|bad| bad.is_empty());
+        let is_valid = now(topology.infeasible(&projected.points)).is_none();
         is_valid.then_some((projection, projected))
     }
 
     /// Returns the projection of a mesh and the projected mesh, in which slivers may be inverted or flat.
     pub(crate) fn with_slivers(mesh: &Mesh, topology: &Topology<'_>) -> (Self, Mesh) {
-        let used =
-            || topology.triangles().as_flattened().iter().map(|&v| mesh.points[v as usize][1]);
+        let used = || topology.corners().as_flattened().iter().map(|&v| mesh.points[v as usize][1]);
         let near = used().map(f64::abs).filter(|y| *y < 90.0).fold(0.0, f64::max);
         // The image of a pole is infinitely far. Vertices at a pole do not move.
         let projection = Self { most: 0.5 * (near + 90.0) };
@@ -112,7 +112,7 @@ mod tests {
 
     fn square(south: f64, north: f64) -> Mesh {
         let points = vec![[0.0, south], [10.0, south], [10.0, north], [0.0, north]];
-        Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], fixed: vec![] }
+        Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
     }
 
     fn projected(mesh: &Mesh) -> Option<(Mercator, Mesh)> {
@@ -157,7 +157,7 @@ mod tests {
     fn a_sliver_that_the_projection_would_invert_prevents_the_projection() {
         // Vertex 1 is north of the edge from (0, 50) to (20, 70), but south of the straight edge between the images.
         let points = vec![[0.0, 50.0], [10.0, 60.01], [20.0, 70.0], [10.0, 40.0]];
-        let mesh = Mesh { points, triangles: vec![[0, 2, 1], [0, 3, 2]], fixed: vec![] };
+        let mesh = Mesh { points, triangles: vec![[0, 2, 1], [0, 3, 2]], ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         assert!(topology.bad_triangles(&mesh.points).unwrap().is_empty());
         assert!(Mercator::of(&mesh, &topology).is_none());

@@ -20,11 +20,12 @@ pub use coloring::Coloring;
 #[cfg(test)]
 pub(crate) use curve::along_curve;
 pub(crate) use mercator::{Mercator, MeshCoordinates};
-pub(crate) use numbering::DEGREE_BLOCK;
+pub(crate) use numbering::{DEGREE_BLOCK, OPPOSITE};
 pub use prepare::prepare;
 pub(crate) use prepare::{laid_out, prepare_to_slide};
 #[cfg(feature = "gpu")]
 pub(crate) use prepare::{prepare_like, prepare_to_untangle};
+pub(crate) use problem::CornerPart;
 #[cfg(feature = "gpu")]
 pub(crate) use problem::MapKind;
 pub use problem::Problem;

@@ -12,7 +12,7 @@ use crate::topology::{EnclosedArea, Topology};
 const TANGLED: f64 = 1e-3;
 
 /// Returns the center to subtract, the power of two that brings the mean area into [0.5, 2], and the mean area after
-/// scaling by this power. `used` lists the vertices that some triangle uses.
+/// scaling by this power. `used` lists the vertices that some element uses.
 pub(super) fn normalization(
     mesh: &Mesh,
     topology: &Topology<'_>,
@@ -24,17 +24,26 @@ pub(super) fn normalization(
     // overflow.
     let extent = (high * 0.5 - low * 0.5).max_element();
     let relative = |t: &[u32; 3]| 0.5 * orientation(&mesh.points, t) / extent / extent;
-    let areas = map_parts(topology.triangles().chunks(4096), |_, part| {
-        part.iter()
-            .map(relative)
-            .fold([0.0; 2], |[sum, size], area| [sum + area, size + area.abs()])
-    });
-    let [mut area, size] = [0, 1].map(|k| areas.iter().map(|part| part[k]).sum::<f64>());
+    let sums = |corners: &[[u32; 3]]| {
+        let areas = map_parts(corners.chunks(4096), |_, part| {
+            part.iter()
+                .map(relative)
+                .fold([0.0; 2], |[sum, size], area| [sum + area, size + area.abs()])
+        });
+        [0, 1].map(|k| areas.iter().map(|part| part[k]).sum::<f64>())
+    };
+    let corners = topology.corner_list();
+    let [mut area, mut size] = sums(corners.triangles());
+    if corners.quadrilateral_count() > 0 {
+        // The corners of a quadrilateral have twice its area.
+        let [of_quadrilaterals, sizes] = sums(corners.of_quadrilaterals());
+        (area, size) = (area + 0.5 * of_quadrilaterals, size + 0.5 * sizes);
+    }
     if area.is_nan() || area < TANGLED * size {
         let enclosed = EnclosedArea::of_edges(&mesh.points, topology.boundary_edges());
         area = 0.5 * enclosed / extent / extent;
     }
-    let mean = area / topology.triangles().len() as f64;
+    let mean = area / corners.equivalent_triangles();
     let length = mean.sqrt() * extent;
     let scale = (-length.log2().round()).exp2();
     (center, scale, (length * scale).powi(2))

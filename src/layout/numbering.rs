@@ -1,4 +1,4 @@
-//! The numbers of vertices and triangles in a `Problem`.
+//! The numbers of vertices and elements in a `Problem`.
 
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
@@ -6,12 +6,14 @@ use std::sync::atomic::Ordering::Relaxed;
 use crate::layout::{Coloring, UNCOLORED};
 use crate::parallel::counting_sort::{atomics, place, plain, running_sum, split};
 use crate::parallel::{collect, for_each_chunk, for_each_part, map_ranges};
-use crate::topology::Topology;
+use crate::topology::{Corners, Topology};
 
-/// Number of vertices or triangles that one task handles.
+/// Marks the vertex of a one-ring that is opposite to the visited vertex in a quadrilateral.
+pub(crate) const OPPOSITE: u32 = 1 << 31;
+/// Number of vertices or elements that one task handles.
 const CHUNK: usize = 1 << 12;
 /// Number of vertices in a block. Blocks are sorted by degree, so that vertices visited at once have equally many
-/// neighbors. Larger blocks let more vertices meet others of equal degree; smaller blocks keep vertices closer
+/// neighbors and elements of the same kinds. Larger blocks let more vertices meet others of equal degree; smaller blocks keep vertices closer
 /// together.
 pub(crate) const DEGREE_BLOCK: usize = 512;
 /// Number of vertices per task when vertices are sorted by color. Larger than [`CHUNK`], as every task has a counter
@@ -19,23 +21,31 @@ pub(crate) const DEGREE_BLOCK: usize = 512;
 const LONG: usize = 1 << 14;
 
 /// Returns the one-rings of the free `vertices`, by new indices, in compressed rows: the start of each row with the
-/// total length at the end, and the neighbors of all rows.
+/// total length at the end, and all rows; see [`Problem::ring`](super::Problem::ring).
 pub(super) fn rings(
     topology: &Topology<'_>,
     vertices: &[u32],
     curve: &[u32],
     number: &[u32],
 ) -> (Vec<u32>, Vec<u32>) {
-    let length = |i| vertices.get(i).map_or(0, |&v: &u32| topology.star(v).len() as u32);
+    let length = |i| vertices.get(i).map_or(0, |&v: &u32| key(topology, v).0 as u32);
     let mut start = collect(vertices.len() + 1, length);
     let end = running_sum(&mut start, |start| start);
     let ring = atomics(end as usize, 0);
-    // Rows are filled along the curve: most triangles around a vertex are also around the vertices before it, so they
+    let has_quadrilaterals = topology.corner_list().quadrilateral_count() > 0;
+    // Rows are filled along the curve: most elements around a vertex are also around the vertices before it, so they
     // are in the cache. No two tasks write the same entry; entries are atomic only because the rows of a task are
     // scattered.
     for_each_part(curve.chunks(CHUNK), |_, chunk| {
         for &v in chunk.iter().filter(|&&v| topology.free()[v as usize]) {
             let row = &ring[start[number[v as usize] as usize] as usize..];
+            if has_quadrilaterals {
+                for (to, (from, is_opposite)) in row.iter().zip(turned(topology, v)) {
+                    let mark = if is_opposite { OPPOSITE } else { 0 };
+                    to.store(number[from as usize] | mark, Relaxed);
+                }
+                continue;
+            }
             for (to, from) in row.iter().zip(topology.ring_of(v)) {
                 to.store(number[from as usize], Relaxed);
             }
@@ -44,23 +54,74 @@ pub(super) fn rings(
     (start, plain(ring))
 }
 
-/// Returns all triangles by the new indices of their `vertices` vertices, sorted by their least corner. Triangles so
+/// Returns the vertices around a free vertex, with marks of opposite vertices, from the neighbor at which the pattern of marks is
+/// least. Vertices of equal elements in another order then have equal patterns.
+fn turned(topology: &Topology<'_>, vertex: u32) -> Vec<(u32, bool)> {
+    let mut around: Vec<(u32, bool)> = topology.around(vertex).collect();
+    let marks = |turn: usize| {
+        let (before, after) = around.split_at(turn);
+        after.iter().chain(before).map(|&(_, is_opposite)| is_opposite)
+    };
+    let neighbors = (0..around.len()).filter(|&turn| !around[turn].1);
+    let least = neighbors.min_by(|&a, &b| marks(a).cmp(marks(b))).unwrap_or(0);
+    around.rotate_left(least);
+    around
+}
+
+/// Returns the length of the list of a free vertex in the rings, and its pattern: a bit for each of its first 64 entries, 1 for
+/// an opposite vertex. Only the number of elements counts for other vertices.
+fn key(topology: &Topology<'_>, vertex: u32) -> (usize, u64) {
+    let degree = topology.star(vertex).len();
+    if topology.corner_list().quadrilateral_count() == 0 || !topology.free()[vertex as usize] {
+        return (degree, 0);
+    }
+    let around = turned(topology, vertex);
+    let bits = around.iter().take(64).map(|&(_, is_opposite)| u64::from(is_opposite));
+    (around.len(), bits.fold(0, |pattern, bit| pattern << 1 | bit))
+}
+
+/// Returns all elements by the new indices of their `vertices` vertices, each kind sorted by the least vertex. Elements so
 /// follow the vertices along the curve, which keeps reads for the objective in the cache, and their order does not
 /// depend on that of the mesh.
-pub(super) fn triangles(topology: &Topology<'_>, vertices: usize, number: &[u32]) -> Vec<[u32; 3]> {
-    let given = topology.triangles();
-    let renumbered = |t: usize| given[t].map(|v| number[v as usize]);
-    let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
-    let all = atomics(3 * given.len(), 0);
-    let keys = |t| [least(&renumbered(t))];
-    place(given.len(), vertices, keys, |t, at| {
-        for (corner, to) in renumbered(t).into_iter().zip(&all[3 * at..]) {
+pub(super) fn elements(
+    topology: &Topology<'_>,
+    vertices: usize,
+    number: &[u32],
+) -> Corners<'static> {
+    let triangles = topology.triangles();
+    let triangles = sorted(triangles.len(), vertices, |t| triangles[t].map(|v| number[v as usize]));
+    let corners = topology.corner_list();
+    let quadrilateral = |index| {
+        let mut quadrilateral = corners.quadrilateral(index).map(|v| number[v as usize]);
+        let least = (0..4).min_by_key(|&k| quadrilateral[k]).unwrap_or(0);
+        quadrilateral.rotate_left(least);
+        quadrilateral
+    };
+    let count = corners.quadrilateral_count();
+    Corners::of_lists(triangles, &sorted(count, vertices, quadrilateral))
+}
+
+/// Returns `count` elements sorted by their least vertex. `vertices` is an upper limit of vertex numbers, exclusive.
+fn sorted<const N: usize>(
+    count: usize,
+    vertices: usize,
+    element: impl Fn(usize) -> [u32; N] + Sync,
+) -> Vec<[u32; N]> {
+    let least = |element: &[u32; N]| element[1..].iter().fold(element[0], |a, &b| a.min(b));
+    let all = atomics(N * count, 0);
+    let keys = |t| [least(&element(t))];
+    place(count, vertices, keys, |t, at| {
+        for (corner, to) in element(t).into_iter().zip(&all[N * at..]) {
             to.store(corner, Relaxed);
         }
     });
-    let mut all = collect(given.len(), |t| [0, 1, 2].map(|i| all[3 * t + i].load(Relaxed)));
-    // The list is cut into chunks whose triangles are then sorted. No chunk ends between two triangles with equal least
-    // corners.
+    let mut all = map_ranges(count, CHUNK, |range| {
+        let element = |t: usize| std::array::from_fn(|i| all[N * t + i].load(Relaxed));
+        range.map(element).collect::<Vec<[u32; N]>>()
+    })
+    .concat();
+    // The list is cut into chunks whose elements are then sorted. No chunk ends between two elements with equal least
+    // vertices.
     let mut rest = &mut all[..];
     let runs = std::iter::from_fn(|| {
         let mut end = rest.len().min(CHUNK);
@@ -115,12 +176,12 @@ pub(super) fn order(
         end += length as u32;
         let color = rest.split_off_mut(..length).unwrap_or_default();
         for_each_chunk(color, DEGREE_BLOCK, |_, block| {
-            let mut keyed = [(0, 0); DEGREE_BLOCK];
+            let mut keyed = [((0, 0), 0); DEGREE_BLOCK];
             let keyed = &mut keyed[..block.len()];
             for (keyed, &v) in keyed.iter_mut().zip(&*block) {
-                *keyed = (topology.star(v).len(), v);
+                *keyed = (key(topology, v), v);
             }
-            keyed.sort_by_key(|&(degree, _)| degree);
+            keyed.sort_by_key(|&(key, _)| key);
             for (vertex, &(_, v)) in block.iter_mut().zip(&*keyed) {
                 *vertex = v;
             }

@@ -11,23 +11,23 @@ use crate::layout::Coloring;
 use crate::layout::bounds::Bounds;
 use crate::layout::curve::along_curve;
 use crate::layout::mercator::Mercator;
-use crate::layout::numbering::{order, rings, triangles};
-use crate::layout::placement::{Placement, sum};
-use crate::mesh::Mesh;
+use crate::layout::numbering::{OPPOSITE, elements, order, rings};
+use crate::layout::placement::{Placement, mean_area};
+use crate::mesh::{Element, Mesh};
 use crate::metric::{Corner, Ideal, TargetMap};
 use crate::parallel::counting_sort::{atomics, plain};
 use crate::parallel::{collect, for_each_part, paced};
 use crate::targets::Targets;
-use crate::topology::Topology;
+use crate::topology::{Corners, Topology};
 
 /// Number of vertices or triangles that one task handles.
 const CHUNK: usize = 1 << 12;
 
 /// A mesh laid out for sweeping. Vertices are renumbered: first the free vertices, color by color, then the fixed
-/// vertices that some triangle uses. The vertices of a color are in blocks along a space-filling curve, and within a
-/// block they are ordered by the number of their neighbors.
+/// vertices that some element uses. The vertices of a color are in blocks along a space-filling curve, and within a
+/// block they are ordered by the number of their neighbors and by their elements.
 ///
-/// Positions are scaled by a power of two so that the mean area of the triangles is in [0.5, 2], and the center of a
+/// Positions are scaled by a power of two so that the mean area of triangles is in [0.5, 2], and the center of a
 /// mesh far from the origin is subtracted. Neither operation rounds, so even the smallest elements keep all digits of
 /// their coordinates. Single precision then suffices for meshes of any size and position, and areas far below or above
 /// the mean neither underflow nor overflow.
@@ -49,18 +49,42 @@ pub struct Problem {
     /// Whether coarse levels work in the coordinates of the plane even if a map is anisotropic.
     levels_in_plane: bool,
     ideal: Ideal,
-    /// Triangles over whose squared qualities the objective is the mean: all triangles, or those that can move.
+    /// Elements over whose squared qualities the objective is the mean: all elements, or those that can move.
     judged: Judged,
     /// Bounds on the free vertices. `None` without bounds.
     pub(super) bounds: Option<Arc<Bounds>>,
 }
 
-/// The triangles over which the objective is the mean: the first `count` of a list.
+/// The elements over which the objective is the mean: of each kind, the first `count` corners of a list.
 #[derive(Clone, Debug)]
 struct Judged {
     /// All triangles, with the judged triangles first. `None` if the list of the layout begins with them.
     reordered: Option<Arc<[[u32; 3]]>>,
     count: usize,
+    /// All corners of quadrilaterals, with those of judged quadrilaterals first. `None` if the list of the layout begins with
+    /// them.
+    reordered_corners: Option<Arc<[[u32; 3]]>>,
+    corner_count: usize,
+}
+
+/// Corners of one kind of element: triangles, or four corners of each quadrilateral.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CornerPart<'p> {
+    pub(crate) corners: &'p [[u32; 3]],
+    /// Whether the corners are of quadrilaterals, whose ideal has a right angle.
+    pub(crate) is_right: bool,
+}
+
+impl<'p> CornerPart<'p> {
+    /// Returns the weight of a corner in the objective: 1 for a triangle, 1/4 for a corner of a quadrilateral.
+    pub(crate) fn weight(self) -> f64 {
+        if self.is_right { 0.25 } else { 1.0 }
+    }
+
+    /// Splits the corners into parts of at most `size` corners.
+    pub(crate) fn chunks(self, size: usize) -> impl Iterator<Item = CornerPart<'p>> {
+        self.corners.chunks(size).map(move |corners| CornerPart { corners, ..self })
+    }
 }
 
 /// The linear maps that a device stores at the vertices of a problem. A problem with targets and local maps is for the
@@ -89,7 +113,7 @@ pub(super) struct Layout {
     colors: Vec<Range<u32>>,
     ring_start: Vec<u32>,
     ring: Vec<u32>,
-    triangles: Vec<[u32; 3]>,
+    corners: Corners<'static>,
     pub(super) vertices: Vec<u32>,
 }
 
@@ -99,7 +123,7 @@ impl Problem {
         Self::along(mesh, topology, coloring, &along_curve(mesh, topology))
     }
 
-    /// Lays out a mesh as [`Self::new`] does. `curve` lists the vertices that some triangle uses, in the order of a
+    /// Lays out a mesh as [`Self::new`] does. `curve` lists the vertices that some element uses, in the order of a
     /// curve.
     pub(crate) fn along(
         mesh: &Mesh,
@@ -118,22 +142,27 @@ impl Problem {
 
         let free = colors.last().map_or(0, |range| range.end) as usize;
         let (ring_start, ring) = rings(topology, &vertices[..free], curve, &number);
-        let triangles = triangles(topology, vertices.len(), &number);
+        let corners = elements(topology, vertices.len(), &number);
         drop(number);
-        let layout = Layout { colors, ring_start, ring, triangles, vertices };
+        let layout = Layout { colors, ring_start, ring, corners, vertices };
         Self::placed(Arc::new(layout), mesh, topology)
     }
 
-    /// Returns the problem of a mesh with other points. Colors, one-rings, triangles and the order of vertices are shared with
-    /// this problem. The returned problem has neither projection nor maps nor bounds, and is judged by all triangles.
+    /// Returns the problem of a mesh with other points. Colors, one-rings, elements and the order of vertices are shared with
+    /// this problem. The returned problem has neither projection nor maps nor bounds, and is judged by all elements.
     pub(crate) fn at_points(&self, mesh: &Mesh, topology: &Topology<'_>) -> Self {
         Self::placed(Arc::clone(&self.layout), mesh, topology)
     }
 
     fn placed(layout: Arc<Layout>, mesh: &Mesh, topology: &Topology<'_>) -> Self {
         let (placement, mean_area) =
-            Placement::of(mesh, topology, &layout.vertices, &layout.triangles);
-        let judged = Judged { reordered: None, count: layout.triangles.len() };
+            Placement::of(mesh, topology, &layout.vertices, &layout.corners);
+        let judged = Judged {
+            reordered: None,
+            count: layout.corners.triangles().len(),
+            reordered_corners: None,
+            corner_count: layout.corners.of_quadrilaterals().len(),
+        };
         Self {
             layout,
             placement: Arc::new(placement),
@@ -154,7 +183,7 @@ impl Problem {
     }
 
     /// Sets the target maps of all vertices of the mesh, in any unit, and the weight of sizes. A common factor scales the
-    /// maps so that the mean area of the triangles, after their maps are applied, is 1.
+    /// maps so that the mean area of triangles, after their maps are applied, is 1.
     pub(crate) fn set_targets(&mut self, targets: &Targets) {
         let placement = Arc::clone(&self.placement);
         self.set_targets_at(targets, &placement.positions);
@@ -170,8 +199,7 @@ impl Problem {
             let [a, b] = [q - p, r - p].map(|edge| map.apply(edge.to_array()));
             0.5 * (a[0] * b[1] - a[1] * b[0])
         };
-        let scale =
-            (sum(&self.layout.triangles, area) / self.layout.triangles.len() as f64).sqrt().recip();
+        let scale = mean_area(&self.layout.corners, area).sqrt().recip();
         let scaled = |v: u32| map(v).map(|x| (x * scale) as f32);
         let maps = collect(self.layout.vertices.len(), |i| scaled(self.layout.vertices[i]));
         let is_longer = |&[xx, xy, yy]: &[f32; 3]| xx != yy || xy != 0.0;
@@ -180,9 +208,9 @@ impl Problem {
         let transformed_area =
             |t: &[u32; 3]| 0.5 * self.corner(t, |v| positions[v as usize]).doubled_area();
         self.ideal = Ideal {
-            area: sum(&self.layout.triangles, transformed_area)
-                / self.layout.triangles.len() as f64,
+            area: mean_area(&self.layout.corners, transformed_area),
             size_weight: targets.size_weight(),
+            is_right: false,
         };
     }
 
@@ -238,18 +266,68 @@ impl Problem {
         &self.layout.ring_start
     }
 
-    /// Returns the neighbors of all free vertices, vertex by vertex, counter-clockwise around each vertex.
+    /// Returns the vertices of the elements around all free vertices, vertex by vertex, counter-clockwise around each vertex.
+    /// The list of a vertex starts with a neighbor along an edge. The vertex opposite to it in a quadrilateral stands between
+    /// the neighbors of that quadrilateral, with [`OPPOSITE`] added to its number.
     pub fn ring(&self) -> &[u32] {
         &self.layout.ring
     }
 
-    /// Returns the neighbors of a free vertex, counter-clockwise.
+    /// Returns whether the mesh has quadrilaterals.
+    #[inline(always)]
+    pub(crate) fn has_quadrilaterals(&self) -> bool {
+        !self.layout.corners.of_quadrilaterals().is_empty()
+    }
+
+    /// Returns whether the mean size of the elements, in the measure of the metrics, changes as vertices move. Target maps change
+    /// the areas of triangles, and where triangles and quadrilaterals meet, an area counts more in the triangle.
+    pub(crate) fn mean_varies(&self) -> bool {
+        self.targets.is_some() || self.has_quadrilaterals() && !self.triangles().is_empty()
+    }
+
+    /// Returns the neighbors along edges of a free vertex, counter-clockwise.
+    #[inline]
+    pub(crate) fn neighbors(&self, vertex: u32) -> impl Iterator<Item = u32> + Clone + '_ {
+        self.ring_of(vertex).iter().copied().filter(|&k| k & OPPOSITE == 0)
+    }
+
+    /// Returns all other vertices of the elements around a free vertex: neighbors along edges, and opposite vertices of
+    /// quadrilaterals.
+    #[inline]
+    pub(crate) fn companions(&self, vertex: u32) -> impl Iterator<Item = u32> + Clone + '_ {
+        self.ring_of(vertex).iter().map(|&k| k & !OPPOSITE)
+    }
+
+    /// Returns the corners that a free vertex has in the elements around it, counter-clockwise: its triangles, and three corners
+    /// of each quadrilateral. Corners of quadrilaterals are marked true. Triangles and own corners start with the vertex.
+    pub(crate) fn corners_around(
+        &self,
+        vertex: u32,
+    ) -> impl Iterator<Item = ([u32; 3], bool)> + Clone + '_ {
+        let ring = self.ring_of(vertex);
+        let at = move |i: usize| ring[i % ring.len()];
+        let neighbors = (0..ring.len()).filter(move |&i| at(i) & OPPOSITE == 0);
+        neighbors.flat_map(move |i| {
+            let (next, after) = (at(i), at(i + 1));
+            let (list, count) = match after & OPPOSITE {
+                0 => ([[vertex, next, after]; 3], 1),
+                _ => {
+                    let (opposite, last) = (after & !OPPOSITE, at(i + 2));
+                    let own = [vertex, next, last];
+                    ([own, [next, opposite, vertex], [last, vertex, opposite]], 3)
+                }
+            };
+            list.into_iter().take(count).map(move |corner| (corner, count == 3))
+        })
+    }
+
+    /// Returns the list of a free vertex in [`Self::ring`].
     #[inline]
     pub(crate) fn ring_of(&self, vertex: u32) -> &[u32] {
         &self.layout.ring[self.ring_range(vertex)]
     }
 
-    /// Returns the range of [`Problem::ring`] that has the neighbors of a free vertex.
+    /// Returns the range of [`Problem::ring`] that has the list of a free vertex.
     #[inline]
     pub(crate) fn ring_range(&self, vertex: u32) -> Range<usize> {
         let start = &self.layout.ring_start;
@@ -258,7 +336,35 @@ impl Problem {
 
     /// Returns all triangles, counter-clockwise, sorted by their least vertices.
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.layout.triangles
+        self.layout.corners.triangles()
+    }
+
+    /// Returns all corners, counter-clockwise: the triangles, then four for each quadrilateral; see
+    /// [`Topology`](crate::Topology).
+    pub(crate) fn corners(&self) -> &Corners<'static> {
+        &self.layout.corners
+    }
+
+    /// Returns all corners by the kinds of their elements.
+    pub(crate) fn corner_parts(&self) -> [CornerPart<'_>; 2] {
+        let corners = &self.layout.corners;
+        parts(corners.triangles(), corners.of_quadrilaterals())
+    }
+
+    /// Returns the corners of the elements over which the objective is the mean, by the kinds of their elements.
+    pub(crate) fn judged_parts(&self) -> [CornerPart<'_>; 2] {
+        parts(self.judged_triangles(), &self.judged_first_corners()[..self.judged.corner_count])
+    }
+
+    /// Returns the corners of the elements that are left out of the objective, by the kinds of their elements.
+    pub(crate) fn unjudged_parts(&self) -> [CornerPart<'_>; 2] {
+        let triangles = &self.judged_first()[self.judged.count..];
+        parts(triangles, &self.judged_first_corners()[self.judged.corner_count..])
+    }
+
+    /// Returns the number of elements over which the objective is the mean.
+    pub(crate) fn judged_count(&self) -> usize {
+        self.judged.count + self.judged.corner_count / 4
     }
 
     /// Returns the triangles over which the objective is the mean: all triangles, or those of [`Self::judged_by_movable`].
@@ -266,33 +372,36 @@ impl Problem {
         &self.judged_first()[..self.judged.count]
     }
 
-    /// Returns the triangles that are left out of the objective.
-    pub(crate) fn unjudged_triangles(&self) -> &[[u32; 3]] {
-        &self.judged_first()[self.judged.count..]
-    }
-
     fn judged_first(&self) -> &[[u32; 3]] {
         self.judged.reordered.as_deref().unwrap_or_else(|| self.triangles())
     }
 
-    /// Returns the problem with an objective that is the mean over the triangles with a corner that is free or listed in
-    /// `slides`, an ascending list. Other triangles never change, and may be flatter than all others by orders of
-    /// magnitude, for example in a boundary layer whose vertices are fixed. In a mean over all triangles, their values
-    /// would hide the gain of a run. If no triangle has such a corner, the mean stays over all triangles.
+    fn judged_first_corners(&self) -> &[[u32; 3]] {
+        let in_order = || self.layout.corners.of_quadrilaterals();
+        self.judged.reordered_corners.as_deref().unwrap_or_else(in_order)
+    }
+
+    /// Returns the problem with an objective that is the mean over the elements with a vertex that is free or listed in
+    /// `slides`, an ascending list. Other elements never change, and may be flatter than all others by orders of
+    /// magnitude, for example in a boundary layer whose vertices are fixed. In a mean over all elements, their values
+    /// would hide the gain of a run. If no element has such a vertex, the mean stays over all elements.
     pub(crate) fn judged_by_movable(&self, slides: &[u32]) -> Self {
-        // Free vertices have the lowest numbers, so the triangles with a free corner come first in the list of the layout.
-        let free = self.triangles().partition_point(|t| self.can_move(t));
-        let slides_along = |t: &&[u32; 3]| t.iter().any(|v| slides.binary_search(v).is_ok());
-        let (first, others) = self.triangles().split_at(free);
-        let (sliding, still): (Vec<&[u32; 3]>, _) = others.iter().partition(slides_along);
-        let is_in_order = sliding.is_empty() || still.is_empty();
-        let reordered = (!is_in_order)
-            .then(|| first.iter().chain(sliding.iter().copied()).chain(still).copied().collect());
-        let count = match free + sliding.len() {
-            0 => self.triangles().len(),
-            count => count,
+        let is_judged =
+            |&v: &u32| (v as usize) < self.free_count() || slides.binary_search(&v).is_ok();
+        let is_judged = |corners: &[[u32; 3]]| corners.as_flattened().iter().any(is_judged);
+        let (reordered, count) = judged_first(self.triangles(), 1, is_judged);
+        let of_quadrilaterals = self.layout.corners.of_quadrilaterals();
+        let (reordered_corners, corner_count) = judged_first(of_quadrilaterals, 4, is_judged);
+        let judged = match count + corner_count {
+            0 => Judged {
+                reordered: None,
+                count: self.triangles().len(),
+                reordered_corners: None,
+                corner_count: of_quadrilaterals.len(),
+            },
+            _ => Judged { reordered, count, reordered_corners, corner_count },
         };
-        Self { judged: Judged { reordered, count }, ..self.clone() }
+        Self { judged, ..self.clone() }
     }
 
     /// Returns the target map of each vertex, in the order of the positions, `None` if the mesh has no targets.
@@ -345,10 +454,11 @@ impl Problem {
     }
 
     /// Returns whether the vertices have both target maps and local maps, for which a device has no room, or bounds in the
-    /// coordinates of a sphere, which single precision does not test.
+    /// coordinates of a sphere, which single precision does not test, or whether the mesh has quadrilaterals, for which a
+    /// device has no kernels.
     pub(crate) fn is_for_cpu_alone(&self) -> bool {
         let has_two_maps = self.targets.is_some() && self.local_maps.is_some();
-        has_two_maps || self.is_bounded() && self.projection.is_some()
+        self.has_quadrilaterals() || has_two_maps || self.is_bounded() && self.projection.is_some()
     }
 
     /// Returns whether some map of the vertices is anisotropic. Coarse levels then work in coordinates transformed by
@@ -372,8 +482,23 @@ impl Problem {
     /// Returns a triangle in the form of the metrics, transformed by its target map if the mesh has targets.
     #[inline(always)]
     pub(crate) fn corner(&self, t: &[u32; 3], position: impl Fn(u32) -> DVec2) -> Corner<f64> {
+        self.corner_of(false, t, position)
+    }
+
+    /// Returns a corner in the form of the metrics, transformed by its target map if the mesh has targets. `is_right` tells
+    /// whether the corner is of a quadrilateral.
+    #[inline(always)]
+    pub(crate) fn corner_of(
+        &self,
+        is_right: bool,
+        t: &[u32; 3],
+        position: impl Fn(u32) -> DVec2,
+    ) -> Corner<f64> {
         let [p, q, r] = t.map(position);
-        let corner = Corner { a: (q - p).into(), b: (r - p).into(), ideal: self.ideal };
+        let mut corner = Corner { a: (q - p).into(), b: (r - p).into(), ideal: self.ideal };
+        if is_right {
+            corner = corner.of_right_angle();
+        }
         match self.target_map(t) {
             None => corner,
             Some(map) => map.transform(&corner),
@@ -387,7 +512,7 @@ impl Problem {
         Some(TargetMap::mean(t.map(|v| maps[v as usize].map(f64::from))))
     }
 
-    /// Returns the mean area of all triangles in normalized units, after target maps are applied if the mesh has any.
+    /// Returns the mean area of triangles in normalized units, after target maps are applied if the mesh has any.
     pub fn mean_area(&self) -> f64 {
         self.ideal.area
     }
@@ -413,9 +538,9 @@ impl Problem {
         numbers
     }
 
-    /// Returns the triangles for which the inverse mean ratio or its square overflows, computed in double precision
-    /// from any of the three corners. Metrics with a barrier cannot judge them: they are too flat, or too small beside
-    /// other triangles.
+    /// Returns the corners for which the inverse mean ratio or its square overflows, computed in double precision
+    /// from any of their three vertices. Metrics with a barrier cannot judge them: they are too flat, or too small beside
+    /// other elements.
     pub(crate) async fn beyond_precision(&self, positions: &[DVec2]) -> Vec<u32> {
         let position = |v: u32| positions[v as usize];
         let is_beyond = |&[p, q, r]: &[u32; 3]| {
@@ -425,27 +550,51 @@ impl Problem {
             })
         };
         let found =
-            paced::map_parts(self.layout.triangles.chunks(CHUNK), |chunk, part| -> Vec<u32> {
+            paced::map_parts(self.layout.corners.all().chunks(CHUNK), |chunk, part| -> Vec<u32> {
                 let beyond = part.iter().zip(chunk * CHUNK..).filter(|(t, _)| is_beyond(t));
                 beyond.map(|(_, t)| t as u32).collect()
             });
         found.await.concat()
     }
 
-    /// Returns the indices in the mesh, in ascending order, of the listed triangles. `given` are all triangles of the
-    /// mesh.
-    pub(crate) fn in_mesh(&self, triangles: &[u32], given: &[[u32; 3]]) -> Vec<usize> {
-        if triangles.is_empty() {
+    /// Returns the elements of the mesh, in ascending order, that have the listed corners of the problem. `given` is the topology
+    /// of the mesh.
+    pub(crate) fn in_mesh(&self, corners: &[u32], given: &Topology<'_>) -> Vec<Element> {
+        if corners.is_empty() {
             return Vec::new();
         }
         let sorted = |mut vertices: [u32; 3]| {
             vertices.sort_unstable();
             vertices
         };
-        let of = |&t: &u32| {
-            sorted(self.layout.triangles[t as usize].map(|v| self.layout.vertices[v as usize]))
-        };
-        let sought: HashSet<[u32; 3]> = triangles.iter().map(of).collect();
-        (0..given.len()).filter(|&t| sought.contains(&sorted(given[t]))).collect()
+        let all = self.layout.corners.all();
+        let of = |&c: &u32| sorted(all[c as usize].map(|v| self.layout.vertices[v as usize]));
+        let sought: HashSet<[u32; 3]> = corners.iter().map(of).collect();
+        let found = (0..).zip(given.corners()).filter(|&(_, &c)| sought.contains(&sorted(c)));
+        let mut elements: Vec<Element> = found.map(|(corner, _)| given.element(corner)).collect();
+        elements.dedup();
+        elements
     }
+}
+
+fn parts<'p>(triangles: &'p [[u32; 3]], of_quadrilaterals: &'p [[u32; 3]]) -> [CornerPart<'p>; 2] {
+    [
+        CornerPart { corners: triangles, is_right: false },
+        CornerPart { corners: of_quadrilaterals, is_right: true },
+    ]
+}
+
+/// Returns a list of corners with those of judged elements first, and the number of the latter. Elements have `size` corners
+/// each. The list is `None` if the given one is in this order.
+fn judged_first(
+    corners: &[[u32; 3]],
+    size: usize,
+    is_judged: impl Fn(&[[u32; 3]]) -> bool,
+) -> (Option<Arc<[[u32; 3]]>>, usize) {
+    let (judged, others): (Vec<&[[u32; 3]]>, Vec<_>) =
+        corners.chunks_exact(size).partition(|element| is_judged(element));
+    let count = size * judged.len();
+    let is_in_order = corners.chunks_exact(size).zip(&judged).all(|(a, b)| std::ptr::eq(a, *b));
+    let reordered = || judged.into_iter().chain(others).flatten().copied().collect();
+    ((!is_in_order).then(reordered), count)
 }

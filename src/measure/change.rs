@@ -80,7 +80,7 @@ impl Change {
     }
 }
 
-/// Returns the mean length of the edges at each vertex; NaN for vertices that no triangle uses.
+/// Returns the mean length of the edges at each vertex; NaN for vertices that no element uses.
 pub(crate) fn mean_edges(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<f64> {
     let (around, _) = around(topology, points);
     around.iter().enumerate().map(|(v, around)| mean_edge(topology, points, v, around)).collect()
@@ -92,7 +92,7 @@ fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Ar
     if topology.free()[v] {
         return around.lengths / f64::from(2 * around.triangles);
     }
-    let corners = |&t: &u32| topology.triangles()[t as usize];
+    let corners = |&t: &u32| topology.corners()[t as usize];
     let mut ends: Vec<u32> = topology.star(v as u32).iter().flat_map(corners).collect();
     ends.sort_unstable();
     ends.dedup();
@@ -108,7 +108,8 @@ fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Ar
 fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
     let mut around = vec![Around::default(); points.len()];
     let mut least = f64::INFINITY;
-    for t in topology.triangles() {
+    let triangles = topology.triangles().len();
+    for (index, t) in topology.corners().iter().enumerate() {
         let [p, q, r] = t.map(|v| points[v as usize]);
         let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
         let (a, b, c) = (edge(p, q), edge(p, r), edge(q, r));
@@ -116,7 +117,9 @@ fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
         let doubled = (a[0] * b[1] - a[1] * b[0]).abs();
         least = least.min(doubled / lengths.into_iter().fold(0.0, f64::max));
         let logarithm = (0.5 * doubled).max(f64::MIN_POSITIVE).ln();
-        for (v, [one, other]) in t.iter().zip([[0, 1], [0, 2], [1, 2]]) {
+        // A quadrilateral counts at each vertex once, by the corner of the vertex.
+        let vertices = if index < triangles { 3 } else { 1 };
+        for (v, [one, other]) in t.iter().zip([[0, 1], [0, 2], [1, 2]]).take(vertices) {
             let at = &mut around[*v as usize];
             at.logarithms += logarithm;
             at.lengths += lengths[one] + lengths[other];
@@ -142,7 +145,7 @@ mod tests {
         // The inner vertex of a square with side 2 moves from the center by half of 1.
         let points = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         let mut after = mesh.points.clone();
         after[4] = [0.5, 0.0];
@@ -160,7 +163,7 @@ mod tests {
         // The middle vertex of the lower side has three edges, of lengths 1, 1 and 2; the two along the side belong to
         // one triangle each.
         let points = vec![[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 2.0]];
-        let mesh = Mesh { points, triangles: vec![[0, 1, 3], [1, 2, 3]], fixed: vec![] };
+        let mesh = Mesh { points, triangles: vec![[0, 1, 3], [1, 2, 3]], ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         let mut after = mesh.points.clone();
         assert_eq!(Change::between(&topology, &mesh.points, &after).unwrap().moved.most, 0.0);

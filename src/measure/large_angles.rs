@@ -50,16 +50,16 @@ impl Measured<'_> {
         }
     }
 
-    /// Returns the angle of a triangle at a corner, in degrees.
+    /// Returns the angle of a corner at a vertex, in degrees.
     fn angle_at(&self, triangle: usize, vertex: u32) -> f64 {
-        let corners = self.topology().triangles()[triangle];
+        let corners = self.topology().corners()[triangle];
         let k = corners.iter().position(|&v| v == vertex).unwrap_or_default();
         self.angles(triangle)[k]
     }
 
-    /// Returns the three angles of a triangle in degrees, in the order of its corners.
+    /// Returns the three angles of a corner in degrees, in the order of its corners.
     fn angles(&self, triangle: usize) -> [f64; 3] {
-        let corners = self.topology().triangles()[triangle];
+        let corners = self.topology().corners()[triangle];
         let [x, y] = self.surface().lengths_in(self.points(), &corners);
         let doubled = orientation(self.points(), &corners).abs() * x * y;
         let at = corners.map(|v| self.points()[v as usize]);
@@ -77,7 +77,8 @@ mod tests {
     use crate::{Mesh, Topology};
 
     fn reasons(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<Option<WhyLarge>> {
-        let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: vec![] };
+        let mesh =
+            Mesh { points: points.to_vec(), triangles: triangles.to_vec(), ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         let measured = Measured::new(points, &topology).unwrap();
         (0..=triangles.len()).map(|t| measured.why_large(t)).collect()

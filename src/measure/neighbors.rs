@@ -2,7 +2,8 @@
 
 use crate::topology::Topology;
 
-/// Calls `visit` with the triangle across the edge from `start` to `end` of triangle `t`; not at all on the boundary.
+/// Calls `visit` with the triangle across the edge from `start` to `end` of triangle `t`; not at all on the boundary, and
+/// where a quadrilateral is across the edge.
 ///
 /// Searches the star of the vertex that has fewer triangles. For all edges of a mesh this takes linear time, however
 /// many triangles some vertices have.
@@ -13,6 +14,12 @@ pub(crate) fn for_each_across(
     [start, end]: [u32; 2],
     mut visit: impl FnMut(usize),
 ) {
+    let triangles = topology.triangles().len();
+    let mut visit_triangle = |other: usize| {
+        if other < triangles {
+            visit(other);
+        }
+    };
     let (at_start, at_end) = (topology.star(start), topology.star(end));
     let from_start = at_start.len() <= at_end.len();
     let (vertex, star) = if from_start { (start, at_start) } else { (end, at_end) };
@@ -21,12 +28,12 @@ pub(crate) fn for_each_across(
         // triangle, across an edge that ends there the next one.
         if let Some(at) = star.iter().position(|&other| other as usize == t) {
             let step = if from_start { star.len() - 1 } else { 1 };
-            visit(star[(at + step) % star.len()] as usize);
+            visit_triangle(star[(at + step) % star.len()] as usize);
         }
         return;
     }
     let far = if from_start { end } else { start };
-    let triangles = topology.triangles();
-    let across = |&other: &usize| other != t && triangles[other].contains(&far);
-    star.iter().map(|&other| other as usize).filter(across).for_each(visit);
+    let corners = topology.corners();
+    let across = |&other: &usize| other != t && corners[other].contains(&far);
+    star.iter().map(|&other| other as usize).filter(across).for_each(visit_triangle);
 }

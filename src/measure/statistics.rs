@@ -244,7 +244,8 @@ mod tests {
         });
         let squares = (0..30 * 30).map(|i| i / 30 * 31 + i % 30);
         let halves = squares.flat_map(|a| [[a, a + 1, a + 32], [a, a + 32, a + 31]]);
-        let mesh = Mesh { points: points.collect(), triangles: halves.collect(), fixed: vec![] };
+        let mesh =
+            Mesh { points: points.collect(), triangles: halves.collect(), ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         let measured = Measured::new(&mesh.points, &topology).unwrap();
         let all = Selection::All(measured.count());

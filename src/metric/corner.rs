@@ -1,7 +1,7 @@
 //! The arguments of metrics: the edges of a triangle from one vertex, and the invariants of the triangle.
 
 use crate::metric::dual::{Dual, Real};
-use crate::metric::edge_slopes::EdgeSlopes;
+use crate::metric::edge_slopes::{EdgeSlopes, HEIGHT};
 
 /// A triangle seen from one vertex: the edge vectors to the other two vertices, in counter-clockwise order, and the
 /// ideal of the mesh. The argument of a [`Metric`](crate::Metric).
@@ -24,19 +24,46 @@ pub struct Ideal {
     /// [`Metric::has_size_weight`](crate::Metric::has_size_weight) and
     /// [`Targets::size_weight`](crate::Targets::size_weight).
     pub size_weight: f64,
+    /// Whether the corner is of a quadrilateral, whose ideal is a square; see [`Corner::of_right_angle`].
+    pub is_right: bool,
 }
 
 impl Ideal {
     /// Returns the ideal of a mesh with triangles of the given mean area, with a size weight of 1.
     pub const fn of_area(area: f64) -> Self {
-        Self { area, size_weight: 1.0 }
+        Self { area, size_weight: 1.0, is_right: false }
     }
 }
 
 /// 1/√3. The target triangle W is equilateral, with W⁻¹ = [[1, -1/√3], [0, 2/√3]].
 const W: f64 = 0.577_350_269_189_625_8;
 
+/// Returns the edges of a corner of a quadrilateral after the shear that turns right isosceles triangles with legs a and b into
+/// equilateral ones: a, and a/2 + (√3/2) b. The corner of a square becomes equilateral, so metrics of triangles measure by how
+/// much a corner differs from that of a square (Knupp, SIAM J. Sci. Comput. 22, 2000).
+#[inline(always)]
+pub(crate) fn of_right_angle<T: Real>([a, b]: [[T; 2]; 2]) -> [[T; 2]; 2] {
+    [a, [a[0] * 0.5 + b[0] * HEIGHT, a[1] * 0.5 + b[1] * HEIGHT]]
+}
+
 impl<T: Real> Corner<T> {
+    /// Returns the corner of a quadrilateral in the form of the metrics, given its edges from the vertex; see
+    /// [`of_right_angle`].
+    #[inline(always)]
+    pub(crate) fn of_right_angle(&self) -> Self {
+        let [a, b] = of_right_angle([self.a, self.b]);
+        Self { a, b, ideal: Ideal { is_right: true, ..self.ideal } }
+    }
+
+    /// Returns the corner whose sheared form, [`of_right_angle`], this corner is.
+    #[inline(always)]
+    pub(crate) fn before_shear(&self) -> Self {
+        const INVERSE: f64 = 1.0 / HEIGHT;
+        let ([ax, ay], [bx, by]) = (self.a, self.b);
+        let b = [(bx - ax * 0.5) * INVERSE, (by - ay * 0.5) * INVERSE];
+        Self { b, ..*self }
+    }
+
     /// Returns the squared lengths of the edges a, b and b - a.
     #[inline(always)]
     pub(crate) fn squared_lengths(&self) -> [T; 3] {

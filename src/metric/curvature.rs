@@ -135,6 +135,19 @@ impl<T: Real> Curvature<T> {
     }
 }
 
+impl Curvature {
+    /// Returns the second derivatives of q² times a weight.
+    pub(crate) fn times(self, weight: f64) -> Self {
+        let root = weight.sqrt();
+        Self {
+            own: self.own.map(|x| x * weight),
+            mixed: self.mixed.map(|x| x * weight),
+            rows: self.rows.map(|row| row.map(|part| part.map(|x| x * root))),
+            ..self
+        }
+    }
+}
+
 /// A metric with Hessians of triangles by their corners.
 pub(crate) trait Curved: Copy + Send + Sync {
     /// Returns the derivatives of q² of a triangle in the form of the metrics.
@@ -180,7 +193,7 @@ mod tests {
 
     fn corner(z: Move) -> Corner<f64> {
         let edge = |k: usize| [z[k][0] - z[0][0], z[k][1] - z[0][1]];
-        Corner { a: edge(1), b: edge(2), ideal: Ideal { area: 0.7, size_weight: 1.3 } }
+        Corner { a: edge(1), b: edge(2), ideal: Ideal { size_weight: 1.3, ..Ideal::of_area(0.7) } }
     }
 
     /// Returns the changes of C and D by a displacement.

@@ -2,7 +2,7 @@
 
 use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
-use crate::metric::edge_slopes::EdgeSlopes;
+use crate::metric::edge_slopes::{EdgeSlopes, Given};
 use crate::metric::properties::Properties;
 
 pub(super) const PROPERTIES: Properties = Properties {
@@ -24,10 +24,24 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("edge.wgsl"),
 };
 
+/// Returns the squared lengths of the edges. For a corner of a quadrilateral, they are those of the two sides and of the
+/// diagonal divided by √2, which are equal in a square. The lengths of the sheared corner would depend on which side comes
+/// first.
+#[inline(always)]
+fn squared_lengths<T: Real>(t: &Corner<T>) -> [T; 3] {
+    match t.ideal.is_right {
+        true => {
+            let [a, b, c] = t.before_shear().squared_lengths();
+            [a, b, c * 0.5]
+        }
+        false => t.squared_lengths(),
+    }
+}
+
 /// Returns q² - 1 for q = Lmax / Lmin.
 #[inline(always)]
 pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
-    let [a, b, c] = t.squared_lengths();
+    let [a, b, c] = squared_lengths(t);
     let (least, most) = (a.min(b).min(c), a.max(b).max(c));
     (most - least) / least
 }
@@ -39,7 +53,7 @@ pub(super) fn model<T: Real>(t: &Corner<T>, sharpness: u32) -> T {
     // The p-norm over pairs of edges: (max/min) [mean A · mean B]^(1/k) with A = (L/max)^k and B = (min/L)^k, over
     // squared lengths L. Powers of ratios below 1 cannot overflow. The value does not depend on the factors max and
     // min, so both enter as constants.
-    let [la, lb, lc] = t.squared_lengths();
+    let [la, lb, lc] = squared_lengths(t);
     let most = la.max(lb).max(lc).fixed();
     let least = la.min(lb).min(lc).fixed();
     let (mut a0, mut a1, mut a2) = (la / most, lb / most, lc / most);
@@ -59,9 +73,28 @@ pub(super) fn model<T: Real>(t: &Corner<T>, sharpness: u32) -> T {
 /// Returns value, gradient and Hessian of [`model`] with respect to the visited vertex. `edges` has the slopes of the
 /// edges by the position of the vertex.
 #[inline(always)]
-pub(super) fn expansion<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes, sharpness: u32) -> Dual<T> {
+pub(super) fn expansion<E: EdgeSlopes, T: Real>(
+    t: &Corner<T>,
+    edges: E,
+    sharpness: u32,
+) -> Dual<T> {
+    if !E::IS_OWN && t.ideal.is_right {
+        return scaled_expansion(&t.before_shear(), Given::before_shear(edges), 0.5, sharpness);
+    }
+    scaled_expansion(t, edges, 1.0, sharpness)
+}
+
+/// Computes [`expansion`] with the squared length of the edge b - a times `scale`.
+#[inline(always)]
+fn scaled_expansion<T: Real>(
+    t: &Corner<T>,
+    edges: impl EdgeSlopes,
+    scale: f64,
+    sharpness: u32,
+) -> Dual<T> {
     let (alpha, beta, third) = (edges.alpha(), edges.beta(), edges.third());
     let [la, lb, lc] = t.squared_lengths();
+    let lc = if scale == 1.0 { lc } else { lc * scale };
     let (most, least) = (la.max(lb).max(lc), la.min(lb).min(lc));
     let one = la.constant(1.0);
     let (ia, ib, ic) = (one / la, one / lb, one / lc);
@@ -99,13 +132,13 @@ pub(super) fn expansion<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes, sharpnes
     // The edge b - a moves too, unless both edges start from the visited vertex.
     if third != 0.0 {
         let (wa2, wb2) = (a2 * wa, b2 * wb);
-        let tc = ic * (2.0 * third);
+        let tc = ic * (2.0 * third * scale);
         let w = [(t.b[0] - t.a[0]) * tc, (t.b[1] - t.a[1]) * tc];
         mean_a = [mean_a[0] + w[0] * wa2, mean_a[1] + w[1] * wa2];
         mean_b = [mean_b[0] + w[0] * wb2, mean_b[1] + w[1] * wb2];
         let net_c = wa2 - wb2;
         let more_c = (wa2 + wb2) * k - net_c;
-        own = own + net_c * ic * (2.0 * third * third);
+        own = own + net_c * ic * (2.0 * third * third * scale);
         xx = xx + w[0] * w[0] * more_c;
         xy = xy + w[0] * w[1] * more_c;
         yy = yy + w[1] * w[1] * more_c;

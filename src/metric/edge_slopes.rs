@@ -1,5 +1,8 @@
 //! Slopes of the edges of a triangle by the position of the visited vertex.
 
+/// √3/2, the height of an equilateral triangle.
+pub(super) const HEIGHT: f64 = 0.866_025_403_784_438_6;
+
 /// The slopes of the two edges of a [`Corner`](crate::metric::Corner): if the visited vertex moves by d, the edges a and b
 /// change by α d and β d.
 ///
@@ -7,6 +10,9 @@
 /// also the end of one edge of each neighboring corner, with the slopes (1, 0) and (0, 1). In an element of second
 /// order, slopes are derivatives of a shape function at a sample point.
 pub(crate) trait EdgeSlopes: Copy {
+    /// Whether the slopes are those of a triangle whose edges start from the visited vertex.
+    const IS_OWN: bool;
+
     /// Returns the slope α of the edge a.
     fn alpha(self) -> f64;
     /// Returns the slope β of the edge b.
@@ -25,6 +31,8 @@ pub(crate) trait EdgeSlopes: Copy {
 pub(crate) struct Own;
 
 impl EdgeSlopes for Own {
+    const IS_OWN: bool = true;
+
     #[inline(always)]
     fn alpha(self) -> f64 {
         -1.0
@@ -36,17 +44,32 @@ impl EdgeSlopes for Own {
     }
 }
 
-/// Any two slopes α and β, for tests.
-#[cfg(test)]
+/// Any two slopes α and β.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Given(pub(crate) f64, pub(crate) f64);
 
-#[cfg(test)]
+impl Given {
+    /// Returns the slopes of a sheared corner of a quadrilateral, given those of its edges; see
+    /// [`of_right_angle`](crate::metric::of_right_angle).
+    pub(crate) const fn of_right_angle(alpha: f64, beta: f64) -> Self {
+        Self(alpha, 0.5 * alpha + HEIGHT * beta)
+    }
+
+    /// Returns the slopes of the edges of a corner of a quadrilateral, given those of the sheared corner.
+    pub(crate) fn before_shear(edges: impl EdgeSlopes) -> Self {
+        Self(edges.alpha(), (edges.beta() - 0.5 * edges.alpha()) * (1.0 / HEIGHT))
+    }
+}
+
 impl EdgeSlopes for Given {
+    const IS_OWN: bool = false;
+
+    #[inline(always)]
     fn alpha(self) -> f64 {
         self.0
     }
 
+    #[inline(always)]
     fn beta(self) -> f64 {
         self.1
     }
@@ -58,18 +81,10 @@ mod tests {
     use crate::metric::table::Formulas;
     use crate::metric::{Corner, Dual, Ideal, Metric, Smoothing};
 
-    const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
-
-    /// Maps the two edges of a square's corner to two edges of an equilateral triangle. Slopes of edges are mapped like
-    /// the edges themselves.
-    fn from_right_angle([a, b]: [f64; 2]) -> [f64; 2] {
-        [a, 0.5 * a + HALF_ROOT * b]
-    }
-
     /// Returns the corner of a quadrilateral at p, with edges to q and r.
     fn corner_of_quadrilateral([p, q, r]: [[f64; 2]; 3]) -> Corner<f64> {
-        let [x, y] = [0, 1].map(|axis| from_right_angle([q[axis] - p[axis], r[axis] - p[axis]]));
-        Corner { a: [x[0], y[0]], b: [x[1], y[1]], ideal: Ideal::of_area(0.6) }
+        let [a, b] = [q, r].map(|end| [end[0] - p[0], end[1] - p[1]]);
+        Corner { a, b, ideal: Ideal::of_area(0.6) }.of_right_angle()
     }
 
     fn numbers(dual: Dual) -> [f64; 6] {
@@ -87,7 +102,12 @@ mod tests {
 
     #[test]
     fn derivatives_by_any_slopes_are_those_of_dual_numbers() {
-        let corner = Corner { a: [1.0, 0.2], b: [0.3, 1.4], ideal: Ideal::of_area(0.6) };
+        let triangle = Corner { a: [1.0, 0.2], b: [0.3, 1.4], ideal: Ideal::of_area(0.6) };
+        derivatives_by_any_slopes(triangle);
+        derivatives_by_any_slopes(triangle.of_right_angle());
+    }
+
+    fn derivatives_by_any_slopes(corner: Corner<f64>) {
         // Without a penalty, which has no effect on smooth metrics.
         let smoothings = [0, 1, 3].map(Smoothing::of);
         for slopes in [(-1.0, -1.0), (1.0, 0.0), (0.0, 1.0), (0.3, -1.7), (0.0, 0.0)] {
@@ -132,15 +152,14 @@ mod tests {
             [(&own, [-1.0, -1.0]), (&next, [0.0, 1.0]), (&last, [1.0, 0.0])];
         let (here, h) = ([0.1, -0.05], 1e-5);
         for (corner, slopes) in corners {
-            let [alpha, beta] = from_right_angle(slopes);
+            let slopes = Given::of_right_angle(slopes[0], slopes[1]);
             for &metric in Metric::ALL {
                 let smoothing = Smoothing::of(2);
                 let value = |x: f64, y: f64| {
                     let at = [here[0] + x * h, here[1] + y * h];
                     metric.formulas().model(&corner(at), smoothing)
                 };
-                let found =
-                    metric.formulas().expansion(&corner(here), Given(alpha, beta), smoothing);
+                let found = metric.formulas().expansion(&corner(here), slopes, smoothing);
                 let (mid, right, left) = (value(0.0, 0.0), value(1.0, 0.0), value(-1.0, 0.0));
                 let (up, down) = (value(0.0, 1.0), value(0.0, -1.0));
                 let cross =

@@ -25,15 +25,14 @@ mod target;
 mod tmop_80;
 mod tmop_94;
 
+pub(crate) use corner::of_right_angle;
 pub use corner::{Corner, Ideal};
 #[doc(hidden)]
 pub use corner::{InvariantSlopes, Invariants, Slopes};
 pub(crate) use curvature::{Curvature, Curved, H, OfImr};
 #[doc(hidden)]
 pub use dual::{Dual, Real};
-#[cfg(test)]
-pub(crate) use edge_slopes::Given;
-pub(crate) use edge_slopes::{EdgeSlopes, Own};
+pub(crate) use edge_slopes::{EdgeSlopes, Given, Own};
 pub(crate) use hinge::Hinge;
 #[doc(hidden)]
 pub use properties::Properties;

@@ -450,11 +450,10 @@ impl Metric {
         self.properties().is_corrected
     }
 
-    /// Returns the lower limit of f. With `has_targets`, target maps change the areas of triangles, so the sum of areas is
-    /// not that of the domain.
-    pub(crate) const fn least_objective(self, has_targets: bool) -> f64 {
+    /// Returns the lower limit of f. `mean_varies` tells whether the mean size of the elements changes in a run.
+    pub(crate) const fn least_objective(self, mean_varies: bool) -> f64 {
         let least = self.properties().least;
-        if has_targets { least * least } else { self.ideal_squared() }
+        if mean_varies { least * least } else { self.ideal_squared() }
     }
 
     /// Returns q² of the ideal triangle, which [`Self::excess`] subtracts.

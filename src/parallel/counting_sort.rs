@@ -26,7 +26,18 @@ impl Groups {
         groups: usize,
         keys: impl Fn(usize) -> [u32; N] + Sync,
     ) -> Self {
-        let grouped = atomics(items * N, 0);
+        Self::of_keys(items, items * N, groups, keys)
+    }
+
+    /// Groups the numbers below `items`. Number `i` is put into the groups `keys(i)`, each below `groups`. `total` is the
+    /// number of all keys.
+    pub(crate) fn of_keys<K: IntoIterator<Item = u32>>(
+        items: usize,
+        total: usize,
+        groups: usize,
+        keys: impl Fn(usize) -> K + Sync,
+    ) -> Self {
+        let grouped = atomics(total, 0);
         let put = |item: usize, at: usize| grouped[at].store(item as u32, Relaxed);
         let start = place(items, groups, keys, put);
         Self { start, items: plain(grouped) }
@@ -62,10 +73,10 @@ impl Groups {
 /// Groups the numbers below `items` by their keys without storing the groups. Calls `put(number, index)`, from any
 /// thread, with each of a number's indices in the grouped list. Returns the offset of each group in this list, and
 /// behind these offsets the length of the list.
-pub(crate) fn place<const N: usize>(
+pub(crate) fn place<K: IntoIterator<Item = u32>>(
     items: usize,
     groups: usize,
-    keys: impl Fn(usize) -> [u32; N] + Sync,
+    keys: impl Fn(usize) -> K + Sync,
     put: impl Fn(usize, usize) + Sync,
 ) -> Vec<u32> {
     let parts = rayon::current_num_threads().min(MAX_PARTS).min(items.div_ceil(SMALL)).max(1);

@@ -1,45 +1,54 @@
-//! The triangles around one vertex, for visits of single vertices on the host.
+//! The corners that one vertex has in the elements around it, for visits of single vertices on the host.
+
+use std::ops::Mul;
 
 use glam::DVec2;
 
 use crate::layout::{MeshCoordinates, Problem};
 use crate::measure::altitude;
-use crate::metric::{Corner, Dual, Ideal, Own, TargetMap};
+use crate::metric::{Corner, Dual, Given, Ideal, TargetMap};
 use crate::patch::corners::Corners;
+use crate::patch::role::Role;
 use crate::topology::Topology;
 use crate::topology::predicates::is_positive;
 
-/// Vertex numbers of the triangles around one vertex. Each triangle starts with the common vertex.
+/// Vertex numbers of the corners that one vertex has in the elements around it. Each corner is written with the common vertex
+/// first, and the other two counter-clockwise.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Fan(Vec<[u32; 3]>);
+pub(crate) struct Fan {
+    corners: Vec<[u32; 3]>,
+    /// The place of the common vertex in each corner.
+    roles: Vec<Role>,
+}
 
 impl Fan {
     pub(crate) fn new(topology: &Topology<'_>, vertex: u32) -> Self {
-        let own_first = |&t: &u32| {
-            let mut corners = topology.triangles()[t as usize];
-            let own = corners.iter().position(|&v| v == vertex).unwrap_or(0);
-            corners.rotate_left(own);
-            corners
+        let triangles = topology.triangles().len() as u32;
+        let own_first = |corner: u32| {
+            let vertices = topology.corners()[corner as usize];
+            let (role, [a, b]) = Role::of(vertices, corner >= triangles, vertex);
+            ([vertex, a, b], role)
         };
-        Self(topology.star(vertex).iter().map(own_first).collect())
+        let (corners, roles) = topology.corners_with(vertex).map(own_first).unzip();
+        Self { corners, roles }
     }
 
     /// Replaces every vertex index `v` by `number[v]`.
     pub(crate) fn renumber(&mut self, number: &[u32]) {
-        self.0.as_flattened_mut().iter_mut().for_each(|v| *v = number[*v as usize]);
+        self.corners.as_flattened_mut().iter_mut().for_each(|v| *v = number[*v as usize]);
     }
 
-    /// Returns the triangles, each with the common vertex first.
-    pub(crate) fn triangles(&self) -> &[[u32; 3]] {
-        &self.0
+    /// Returns the vertices of the corners, each with the common vertex first.
+    pub(crate) fn corners(&self) -> &[[u32; 3]] {
+        &self.corners
     }
 
-    /// Returns the common vertex of the triangles, 0 if there are none.
+    /// Returns the common vertex of the corners, 0 if there are none.
     pub(crate) fn own(&self) -> u32 {
-        self.0.first().map_or(0, |corners| corners[0])
+        self.corners.first().map_or(0, |corners| corners[0])
     }
 
-    /// Gathers positions and target maps of the triangles. Trials with an altitude below `min_altitude` (normalized; 0
+    /// Gathers positions and target maps of the corners. Trials with an altitude below `min_altitude` (normalized; 0
     /// for no limit) are infeasible.
     pub(crate) fn patch(
         &self,
@@ -47,53 +56,75 @@ impl Fan {
         positions: &[DVec2],
         min_altitude: f64,
     ) -> FanPatch {
-        let corner = |t: &[u32; 3]| FanCorner {
+        let corner = |(t, &role): (&[u32; 3], &Role)| FanCorner {
             ends: [t[1], t[2]].map(|v| positions[v as usize]),
             map: problem.target_map(t),
+            role,
         };
-        let corners = self.0.iter().map(corner).collect();
+        let corners = self.corners.iter().zip(&self.roles).map(corner).collect();
         let (ideal, coordinates) = (problem.ideal(), problem.coordinates());
         FanPatch { corners, ideal, coordinates, min_altitude }
     }
 }
 
-/// A triangle at the visited vertex.
+/// A corner with the visited vertex.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FanCorner {
-    /// Positions of the other two corners, counter-clockwise.
+    /// Positions of the other two vertices, counter-clockwise.
     pub(crate) ends: [DVec2; 2],
-    /// Target map of the triangle, `None` if the mesh has no targets.
+    /// Target map of the corner, `None` if the mesh has no targets.
     pub(crate) map: Option<TargetMap<f64>>,
+    /// The place of the visited vertex in the corner.
+    pub(crate) role: Role,
 }
 
 impl FanCorner {
-    /// Returns the triangle in the plane, with the visited vertex at `at`.
+    /// Returns the positions of the vertices, counter-clockwise, with the visited vertex at `at`.
+    pub(crate) fn vertices(&self, at: DVec2) -> [DVec2; 3] {
+        self.role.vertices(at, self.ends)
+    }
+
+    /// Returns the edges of the corner in the plane, with the visited vertex at `at`.
+    pub(crate) fn edges(&self, at: DVec2, ideal: Ideal) -> Corner<f64> {
+        let [p, q, r] = self.vertices(at);
+        Corner { a: (q - p).to_array(), b: (r - p).to_array(), ideal }
+    }
+
+    /// Returns the corner in the form of the metrics, with the visited vertex at `at`.
     pub(crate) fn in_plane(&self, at: DVec2, ideal: Ideal) -> Corner<f64> {
-        let [a, b] = self.ends.map(|end| (end - at).to_array());
-        Corner { a, b, ideal }
+        let corner = self.edges(at, ideal);
+        if self.role.is_right() { corner.of_right_angle() } else { corner }
     }
 }
 
-/// The triangles around one vertex in coordinates, for any position of the vertex.
+/// The corners around one vertex in coordinates, for any position of the vertex.
 #[derive(Clone, Debug)]
 pub(crate) struct FanPatch {
     pub(crate) corners: Vec<FanCorner>,
     pub(crate) ideal: Ideal,
     /// Coordinates in which altitudes are measured.
     pub(crate) coordinates: MeshCoordinates,
-    /// Lower limit of triangles' altitudes, normalized; 0 for no limit.
+    /// Lower limit of corners' altitudes, normalized; 0 for no limit.
     pub(crate) min_altitude: f64,
 }
 
 impl Corners<f64> for FanPatch {
-    type Slopes = Own;
+    type Slopes = Given;
 
     fn count(&self) -> usize {
         self.corners.len()
     }
 
-    fn slopes(&self, _: usize) -> Own {
-        Own
+    fn slopes(&self, i: usize) -> Given {
+        self.corners[i].role.slopes()
+    }
+
+    fn weighted<V: Mul<f64, Output = V>>(&self, i: usize, term: V) -> V {
+        self.corners[i].role.weighted(term)
+    }
+
+    fn total_weight(&self) -> f64 {
+        self.corners.iter().map(|corner| corner.role.weighted(1.0)).sum()
     }
 
     fn corner(&self, i: usize, at: [f64; 2]) -> Corner<f64> {
@@ -105,14 +136,13 @@ impl Corners<f64> for FanPatch {
         self.corners[i].map.map_or(transformed, |map| map.pull_back(transformed))
     }
 
-    /// Returns whether a triangle is counter-clockwise, by its exact sign and by its rounded area, and has at least the
+    /// Returns whether a corner is counter-clockwise, by its exact sign and by its rounded area, and has at least the
     /// minimum altitude.
     fn is_positive(&self, i: usize, at: [f64; 2], corner: &Corner<f64>) -> bool {
-        let [p, q] = self.corners[i].ends;
-        is_positive(&[at, p.into(), q.into()], &[0, 1, 2])
+        let vertices = self.corners[i].vertices(at.into());
+        is_positive(&vertices.map(|at| at.to_array()), &[0, 1, 2])
             && corner.doubled_area() > 0.0
             && (self.min_altitude <= 0.0
-                || altitude([at.into(), p, q].map(|at| self.coordinates.at(at)))
-                    >= self.min_altitude)
+                || altitude(vertices.map(|at| self.coordinates.at(at))) >= self.min_altitude)
     }
 }

@@ -8,9 +8,11 @@ mod corners;
 mod direction;
 mod fan;
 pub(crate) mod lanes;
+mod mixed_ring;
 mod newton_step;
 pub(crate) mod numbers;
 mod ring;
+mod role;
 pub(crate) mod search_rule;
 #[cfg(test)]
 mod tests;
@@ -20,11 +22,15 @@ pub(crate) use acceptance::{
     keeps_altitude,
 };
 pub(crate) use batch::{VertexBatch, batch_at, batches};
-pub(crate) use corners::{Corners, MetricObjective, is_acceptable};
+#[cfg(test)]
+pub(crate) use corners::Corners;
+pub(crate) use corners::{MetricObjective, is_acceptable};
 pub(crate) use direction::Direction;
 #[cfg(test)]
 pub(crate) use direction::newton_direction;
 pub(crate) use fan::{Fan, FanCorner, FanPatch};
+pub(crate) use mixed_ring::{MixedRings, MixedScratch};
 pub(crate) use newton_step::{Objective, newton_step, step_alone};
-pub(crate) use ring::{Rings, Scratch};
+pub(crate) use ring::{LanePatch, Rings, Scratch};
+pub(crate) use role::Role;
 pub(crate) use search_rule::SearchRule;

@@ -9,7 +9,19 @@ use crate::patch::corners::Corners;
 use crate::patch::direction::{Direction, newton_direction};
 use crate::patch::lanes::{LANES, Lanes, Points, points, vertex_maps};
 
-/// One-rings of four free vertices of equal degree. If `MAPPED`, the vertices have target maps or local maps.
+/// The patches of four visited vertices, one in each lane.
+pub(crate) trait LanePatch<S: Simd>: Corners<Lanes<S>> {
+    /// Returns the inverse of the target map or local map of each visited vertex. `None` if the vertices have no maps.
+    fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>>;
+
+    /// Returns the squared length of the edge from each vertex to its first neighbor.
+    fn squared_edge(&self, at: Points<S>) -> Lanes<S>;
+
+    /// Returns the positions of the vertices of a corner, counter-clockwise, with the visited vertices at `at`.
+    fn vertices(&self, i: usize, at: Points<S>) -> [Points<S>; 3];
+}
+
+/// One-rings of four free vertices of equal degree, without quadrilaterals. If `MAPPED`, the vertices have target maps or local maps.
 #[derive(Clone, Copy)]
 pub(crate) struct Rings<'a, S: Simd, const MAPPED: bool> {
     /// Positions of the neighbors, counter-clockwise, with the first repeated at the end.
@@ -73,25 +85,30 @@ impl<'a, S: Simd, const MAPPED: bool> Rings<'a, S, MAPPED> {
         }
         Self { ring, maps, inverse_map, ideal: problem.ideal() }
     }
+}
 
-    /// Returns the inverse of the target map or local map of each visited vertex, `None` if not `MAPPED`.
+impl<S: Simd, const MAPPED: bool> LanePatch<S> for Rings<'_, S, MAPPED> {
     #[inline(always)]
-    pub(crate) fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
+    fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
         &self.inverse_map
     }
 
-    /// Returns the positions of the neighbors, counter-clockwise, with the first repeated at the end.
     #[inline(always)]
-    pub(crate) fn neighbors(&self) -> &'a [Points<S>] {
-        self.ring
+    fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
+        squared_distance(self.ring[0], at)
     }
 
-    /// Returns the squared length of the edge from each vertex to its first neighbor.
     #[inline(always)]
-    pub(crate) fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
-        let (x, y) = (self.ring[0][0] - at[0], self.ring[0][1] - at[1]);
-        x * x + y * y
+    fn vertices(&self, i: usize, at: Points<S>) -> [Points<S>; 3] {
+        [at, self.ring[i], self.ring[i + 1]]
     }
+}
+
+/// Returns the squared distance of points.
+#[inline(always)]
+pub(super) fn squared_distance<S: Simd>(p: Points<S>, q: Points<S>) -> Lanes<S> {
+    let (x, y) = (p[0] - q[0], p[1] - q[1]);
+    x * x + y * y
 }
 
 impl<S: Simd, const MAPPED: bool> Corners<Lanes<S>> for Rings<'_, S, MAPPED> {
@@ -124,12 +141,20 @@ impl<S: Simd, const MAPPED: bool> Corners<Lanes<S>> for Rings<'_, S, MAPPED> {
     #[inline(always)]
     fn direction(&self, sum: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
         match &self.inverse_map {
-            Some(inverse) if MAPPED => {
-                // The floor is meant for nearly equilateral triangles, so it is applied in the coordinates of the map.
-                let mapped = newton_direction(&inverse.pull_back(*sum), eigenvalue_floor);
-                Direction { vector: inverse.apply(mapped.vector), ..mapped }
-            }
+            Some(inverse) if MAPPED => mapped_direction(inverse, sum, eigenvalue_floor),
             _ => newton_direction(sum, eigenvalue_floor),
         }
     }
+}
+
+/// Returns the Newton direction in the coordinates of maps, given their inverses. The floor of eigenvalues is meant for nearly
+/// ideal elements, and elements are nearly ideal in these coordinates.
+#[inline(always)]
+pub(super) fn mapped_direction<S: Simd>(
+    inverse: &TargetMap<Lanes<S>>,
+    sum: &Dual<Lanes<S>>,
+    eigenvalue_floor: f64,
+) -> Direction<Lanes<S>> {
+    let mapped = newton_direction(&inverse.pull_back(*sum), eigenvalue_floor);
+    Direction { vector: inverse.apply(mapped.vector), ..mapped }
 }

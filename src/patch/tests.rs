@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use super::lanes::{LANES, Lanes, Mask, with_instructions};
 use super::{
-    Corners, Direction, FanCorner, FanPatch, MetricObjective, Objective, Rings, Scratch,
+    Corners, Direction, FanCorner, FanPatch, MetricObjective, Objective, Rings, Role, Scratch,
     SearchRule, is_acceptable, is_kept, newton_step,
 };
 use crate::layout::{Problem, prepare};
@@ -22,7 +22,7 @@ fn hexagon() -> Problem {
     let mut points: Vec<[f64; 2]> = (0..6).map(corner).map(|(y, x)| [1.2 * x, y]).collect();
     points.push([0.1, 0.2]);
     let triangles = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
-    prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap().1
+    prepare(&Mesh { points, triangles, ..Mesh::default() }).unwrap().1
 }
 
 /// Returns the triangles around the first vertex, in the order of its one-ring.
@@ -32,6 +32,7 @@ fn fan(problem: &Problem) -> FanPatch {
     let corner = |(&p, &q): (&u32, &u32)| FanCorner {
         ends: [p, q].map(|v| problem.positions()[v as usize]),
         map: problem.target_map(&[0, p, q]),
+        role: Role::Triangle,
     };
     let corners = ring.iter().zip(next).map(corner).collect();
     let (ideal, coordinates) = (problem.ideal(), problem.coordinates());

@@ -27,17 +27,18 @@ pub(crate) async fn set_guards(
     }
 }
 
-/// Returns the largest inverse mean ratio among the triangles with a free vertex. Infinite if such a triangle is
+/// Returns the largest inverse mean ratio among the corners with a free vertex. Infinite if such a corner is
 /// inverted or flat.
 pub(crate) async fn worst_movable(problem: &Problem, positions: &[DVec2]) -> f64 {
-    let ratio = |t: &[u32; 3]| {
+    let ratio = |is_right: bool, t: &[u32; 3]| {
         if !problem.can_move(t) {
             return 1.0;
         }
-        problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()
+        problem.corner_of(is_right, t, |v| positions[v as usize]).inverse_mean_ratio()
     };
-    let worst = paced::map_parts(problem.triangles().chunks(4096), |_, chunk| {
-        chunk.iter().map(ratio).fold(1.0, f64::max)
+    let parts = problem.corner_parts().into_iter().flat_map(|part| part.chunks(4096));
+    let worst = paced::map_parts(parts.collect::<Vec<_>>(), |_, part| {
+        part.corners.iter().map(|t| ratio(part.is_right, t)).fold(1.0, f64::max)
     })
     .await;
     worst.into_iter().fold(1.0, f64::max)

@@ -103,7 +103,7 @@ impl<'c> Corners<'c> {
             agrees
                 && (self.partners.are_pair(from, to) || self.must_stay(from) && self.must_stay(to))
         };
-        let has_both = |&t: &u32| self.topology.triangles()[t as usize].contains(&partner);
+        let has_both = |&t: &u32| self.topology.corners()[t as usize].contains(&partner);
         match (self.neighbors(v), self.neighbors(partner)) {
             (Some([a, b]), Some([c, d])) => {
                 (goes_on(a, c) && goes_on(b, d) || goes_on(a, d) && goes_on(b, c))

@@ -13,7 +13,7 @@ pub(crate) struct Edges {
 impl Edges {
     pub(crate) fn of(topology: &Topology<'_>, slide: &Slide) -> Self {
         let is_edge = |&[a, b]: &[u32; 2]| {
-            let has_both = |&t: &u32| topology.triangles()[t as usize].contains(&b);
+            let has_both = |&t: &u32| topology.corners()[t as usize].contains(&b);
             a != b && topology.star(a).iter().any(has_both)
         };
         let is_held = |v: u32| !topology.free()[v as usize];

@@ -1,6 +1,6 @@
 //! The vertices that a Newton step moves: free vertices, followed by sliding vertices.
 
-use crate::layout::Problem;
+use crate::layout::{OPPOSITE, Problem};
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::{Members, Pattern};
 use crate::slide::on_curves::OnCurves;
@@ -25,7 +25,7 @@ impl<'a> Movers<'a> {
         for fan in curves.into_iter().flat_map(OnCurves::fans) {
             movers.slides.push(fan.own());
             let first = movers.neighbors.len();
-            movers.neighbors.extend(fan.triangles().iter().flat_map(|&[_, a, b]| [a, b]));
+            movers.neighbors.extend(fan.corners().iter().flat_map(|&[_, a, b]| [a, b]));
             movers.neighbors[first..].sort_unstable();
             let mut kept = first;
             for at in first..movers.neighbors.len() {
@@ -79,18 +79,24 @@ impl<'a> Movers<'a> {
         }
     }
 
-    /// Returns the neighbors of a vertex that moves, as indices in the problem.
-    pub(crate) fn neighbors(&self, mover: usize) -> &[u32] {
+    /// Returns the vertices that share an element with a vertex that moves, as indices in the problem. The highest bit of an
+    /// index is to be ignored.
+    fn marked_neighbors(&self, mover: usize) -> &[u32] {
         match mover.checked_sub(self.problem.free_count()) {
             None => self.problem.ring_of(mover as u32),
             Some(at) => &self.neighbors[self.start[at] as usize..self.start[at + 1] as usize],
         }
     }
 
+    /// Returns the vertices that share an element with a vertex that moves, as indices in the problem.
+    pub(crate) fn neighbors(&self, mover: usize) -> impl Iterator<Item = u32> + '_ {
+        self.marked_neighbors(mover).iter().map(|&v| v & !OPPOSITE)
+    }
+
     /// Joins the vertices that move to aggregates of neighbors. Returns the aggregates, and the pattern of their matrix.
     pub(crate) async fn joined(&self) -> (Members, Pattern) {
-        let degree = |mover: usize| self.neighbors(mover).len();
-        let near = |mover: usize| self.neighbors(mover).iter().map(|&v| self.of(v));
+        let degree = |mover: usize| self.marked_neighbors(mover).len();
+        let near = |mover: usize| self.neighbors(mover).map(|v| self.of(v));
         let members = Members::new(self.count(), degree, near).await;
         let pattern = members.pattern(|mover| near(mover as usize));
         (members, pattern)

@@ -72,7 +72,7 @@ impl Slide {
         let pairs = self.periodic.iter().flat_map(|periodic| periodic.pairs.as_flattened());
         let mut listed = self.held.iter().chain(self.lines.as_flattened()).chain(pairs);
         if let Some(&vertex) = listed.find(|&&v| v as usize >= vertices) {
-            return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }.into());
+            return Err(MeshError::IndexOutOfRange { element: None, vertex, vertices }.into());
         }
         OptionRange::CORNER_ANGLE.check(self.corner_angle)?;
         OptionRange::HAUSDORFF.check(self.hausdorff.unwrap_or(1.0))?;

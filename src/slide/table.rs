@@ -126,7 +126,7 @@ impl CurveTable {
 
     fn add_corners(&mut self, fan: Option<&Fan>) -> Range<u32> {
         let first = self.corners.len() as u32;
-        let triangles = fan.into_iter().flat_map(Fan::triangles);
+        let triangles = fan.into_iter().flat_map(Fan::corners);
         self.corners.extend(triangles.map(|&[_, a, b]| [a, b]));
         first..self.corners.len() as u32
     }

@@ -41,16 +41,28 @@ impl Aim for ToShapes {
         self.penalties.in_round(round)
     }
 
-    fn is_beyond(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
-        !WorstShapes::of(surface, points, triangle).is_within(self.penalties.limits())
+    fn is_beyond(
+        &self,
+        surface: Surface,
+        points: &[[f64; 2]],
+        corner: &[u32; 3],
+        is_right: bool,
+    ) -> bool {
+        !WorstShapes::of(surface, points, corner, is_right).is_within(self.penalties.limits())
     }
 
     fn heavy(&self, _: &Movable<'_>, _: &[[f64; 2]]) -> Vec<[u32; 3]> {
         Vec::new()
     }
 
-    fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
-        !WorstShapes::of(surface, points, triangle).is_within(self.aim)
+    fn demands_more(
+        &self,
+        surface: Surface,
+        points: &[[f64; 2]],
+        corner: &[u32; 3],
+        is_right: bool,
+    ) -> bool {
+        !WorstShapes::of(surface, points, corner, is_right).is_within(self.aim)
     }
 }
 
@@ -69,7 +81,11 @@ impl Smoother<'_> {
             && options.guard == usual.guard
             && options.improve_worst != Some(WorstBy::Altitude)
             && options.stopping.goal().is_none();
-        if !is_usual || self.problem.targets().is_some() || self.field.is_some() {
+        if !is_usual
+            || self.problem.has_quadrilaterals()
+            || self.problem.targets().is_some()
+            || self.field.is_some()
+        {
             return None;
         }
         let movable = Movable::new(self);
@@ -85,18 +101,23 @@ impl Movable<'_> {
         lists: [&[[f64; 2]]; LISTS],
     ) -> [WorstShapes; LISTS] {
         let none = [WorstShapes::NONE; LISTS];
-        let add = |worst: [WorstShapes; LISTS], t: &[u32; 3]| {
-            std::array::from_fn(|k| worst[k].and(WorstShapes::of(self.surface, lists[k], t)))
-        };
         let both = |a: [WorstShapes; LISTS], b: &[WorstShapes; LISTS]| {
             std::array::from_fn(|k| a[k].and(b[k]))
         };
-        let of_part = |_, triangles: &[[u32; 3]]| {
-            triangles.iter().filter(|t| self.can_move(t)).fold(none, add)
-        };
-        let parts = self.smoother.topology.triangles().chunks(CHUNK);
-        let parts = paced::map_parts(parts, of_part).await;
-        parts.iter().fold(none, both)
+        let corners = self.smoother.topology.corner_list();
+        let mut worst = none;
+        for (list, is_right) in [(corners.triangles(), false), (corners.of_quadrilaterals(), true)]
+        {
+            let add = |worst: [WorstShapes; LISTS], t: &[u32; 3]| {
+                let of = |k: usize| WorstShapes::of(self.surface, lists[k], t, is_right);
+                std::array::from_fn(|k| worst[k].and(of(k)))
+            };
+            let of_part =
+                |_, part: &[[u32; 3]]| part.iter().filter(|t| self.can_move(t)).fold(none, add);
+            let parts = paced::map_parts(list.chunks(CHUNK), of_part).await;
+            worst = parts.iter().fold(worst, both);
+        }
+        worst
     }
 }
 
@@ -163,26 +184,28 @@ impl Floor<'_> {
     ) -> Result<(), MeshError> {
         let Movable { smoother, surface, .. } = self.movable;
         let Smoother { mesh, topology, .. } = smoother;
-        let is_worse = |points: &[[f64; 2]], t: &[u32; 3]| {
-            !WorstShapes::of(surface, points, t).is_within(self.worst[0])
+        let corners = topology.corner_list();
+        let is_worse = |points: &[[f64; 2]], t: &[u32; 3], is_right: bool| {
+            !WorstShapes::of(surface, points, t, is_right).is_within(self.worst[0])
         };
         let before = &mesh.points;
         loop {
-            let mut worse = self.movable.chosen(|t| is_worse(points, t)).await;
+            let mut worse = self.movable.chosen(|t, is_right| is_worse(points, t, is_right)).await;
             while !worse.is_empty() {
                 let mut touched = Vec::new();
-                for &v in worse.iter().flat_map(|&t| &topology.triangles()[t as usize]) {
+                for &v in worse.iter().flat_map(|&t| &corners.all()[t as usize]) {
                     let (point, before) = (&mut points[v as usize], before[v as usize]);
                     if point.map(f64::to_bits) != before.map(f64::to_bits) {
                         *point = before;
-                        touched.extend_from_slice(topology.star(v));
+                        touched.extend(topology.corners_with(v));
                     }
                 }
                 touched.sort_unstable();
                 touched.dedup();
                 touched.retain(|&t| {
-                    let triangle = &topology.triangles()[t as usize];
-                    self.movable.can_move(triangle) && is_worse(points, triangle)
+                    let corner = &corners.all()[t as usize];
+                    let is_right = !corners.is_triangle(t);
+                    self.movable.can_move(corner) && is_worse(points, corner, is_right)
                 });
                 worse = touched;
             }

@@ -135,7 +135,7 @@ impl Smoother<'_> {
         let projection_error = self.projection_error(&stored.points).await;
         let best = if gains { stored.written } else { initial };
         let improved = self.improvement(&stored, over_all, base, best, gains).await;
-        let least = base.least_objective(stored.problem.targets().is_some());
+        let least = base.least_objective(stored.problem.mean_varies());
         let possible = (best - least).max(0.0) / best.max(MIN_SCALE);
         let (lost, error) = (stored.lost(initial), stored.error());
         let Stored { points, curves, returned, floored, large_angles, .. } = stored;
@@ -364,7 +364,10 @@ impl Smoother<'_> {
         let moved = (0..free.len()).filter(|&v| !free[v] && points[v] != before[v]).count();
         let area = |points: &[[f64; 2]]| {
             let of = |t: &[u32; 3]| orientation(points, t);
-            self.topology.triangles().iter().map(of).sum::<f64>()
+            let corners = self.topology.corner_list();
+            let of_triangles = corners.triangles().iter().map(of).sum::<f64>();
+            // The corners of a quadrilateral have twice its area.
+            of_triangles + 0.5 * corners.of_quadrilaterals().iter().map(of).sum::<f64>()
         };
         let sliding = curves.sliding();
         let [off, off_share] = sliding.off(&sliding.with_returned(curves.params(), before, points));

@@ -40,8 +40,15 @@ impl Aim for ToAcute {
         Penalties::on_large_angles(self.small, FIRST_WEIGHT * 2f64.powi(round as i32))
     }
 
-    fn is_beyond(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
-        WorstShapes::least_cotangent(surface, points, triangle) < LargeAngles::COTANGENT
+    fn is_beyond(
+        &self,
+        surface: Surface,
+        points: &[[f64; 2]],
+        corner: &[u32; 3],
+        is_right: bool,
+    ) -> bool {
+        // The right angles of quadrilaterals are no large angles.
+        !is_right && WorstShapes::least_cotangent(surface, points, corner) < LargeAngles::COTANGENT
     }
 
     /// Returns the triangles on both sides of edges with a short flow link, or far from orthogonal to it. Both triangles
@@ -57,8 +64,14 @@ impl Aim for ToAcute {
         bad.map(|t| topology.triangles()[t as usize]).collect()
     }
 
-    fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool {
-        self.is_beyond(surface, points, triangle)
+    fn demands_more(
+        &self,
+        surface: Surface,
+        points: &[[f64; 2]],
+        corner: &[u32; 3],
+        is_right: bool,
+    ) -> bool {
+        self.is_beyond(surface, points, corner, is_right)
     }
 }
 
@@ -89,7 +102,7 @@ impl Smoother<'_> {
         let [worst] = movable.worst_shapes([points]).await;
         let aim = ToAcute { small: worst.cotangent.max(LARGEST_SMALL) };
         let count = async |points: &[[f64; 2]]| {
-            movable.chosen(|t| aim.is_beyond(movable.surface, points, t)).await.len()
+            movable.chosen(|t, right| aim.is_beyond(movable.surface, points, t, right)).await.len()
         };
         let before = count(points).await;
         if before == 0 {

@@ -36,6 +36,7 @@ impl Smoother<'_> {
     ///     points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]],
     ///     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
     ///     fixed: vec![],
+    ///     ..Mesh::default(),
     /// };
     /// let mut smoother = Smoother::new(&mesh)?;
     /// let mut points = mesh.points.clone();
@@ -61,7 +62,7 @@ impl Smoother<'_> {
             Cow::Owned(mesh) => mesh.points = points,
             Cow::Borrowed(Mesh { triangles, fixed, .. }) => {
                 let (triangles, fixed) = (triangles.clone(), fixed.clone());
-                self.mesh = Cow::Owned(Mesh { points, triangles, fixed });
+                self.mesh = Cow::Owned(Mesh { points, triangles, fixed, ..Mesh::default() });
             }
         }
         self.problem = self.problem.at_points(&self.mesh, &self.topology);
@@ -106,7 +107,7 @@ mod tests {
         points.push([1e7, 0.0]);
         let cells = (0..side * side).map(|c| c % side + c / side * row);
         let triangles = cells.flat_map(|a| [[a, a + 1, a + row + 1], [a, a + row + 1, a + row]]);
-        Mesh { points, triangles: triangles.collect(), fixed: vec![3 * row + 4] }
+        Mesh { points, triangles: triangles.collect(), fixed: vec![3 * row + 4], ..Mesh::default() }
     }
 
     fn run(smoother: &Smoother<'_>) -> Outcome {
@@ -191,9 +192,11 @@ mod tests {
         assert_eq!(refusal(&|p| p[24][0] = 1e101), MeshError::OutOfRange { size: 1e101 });
         let flat = BadTriangle { triangle: 0, vertices: [0, 1, 6], flat: true };
         let bad = refusal(&|points| points[1] = points[0]);
-        assert!(matches!(&bad, MeshError::Infeasible { triangles } if triangles[0] == flat));
+        assert!(matches!(&bad, MeshError::Infeasible { triangles, .. } if triangles[0] == flat));
         let mirrored = refusal(&|points| points.iter_mut().for_each(|p| p[0] = -p[0]));
-        assert!(matches!(mirrored, MeshError::Infeasible { triangles } if triangles.len() == 32));
+        assert!(
+            matches!(mirrored, MeshError::Infeasible { triangles, .. } if triangles.len() == 32)
+        );
         assert_eq!(run(&smoother).points, first);
         assert_eq!(smoother.mesh(), &mesh);
     }

@@ -19,7 +19,7 @@ pub(super) struct OverAll<'p> {
 impl<'p> OverAll<'p> {
     /// Measures the triangles that are left out of the objective of `problem`, by each of `metrics`.
     pub(super) async fn new(problem: &'p Problem, metrics: &[Metric]) -> Self {
-        let [judged, all] = [problem.judged_triangles(), problem.triangles()].map(<[_]>::len);
+        let (judged, all) = (problem.judged_count(), problem.corners().element_count());
         let share = judged as f64 / all as f64;
         let mut constant = Objectives::empty();
         if judged < all {

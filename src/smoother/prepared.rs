@@ -12,7 +12,7 @@ use crate::cpu::objective;
 use crate::error::{MeshError, SmoothError};
 use crate::layers::{Elements, KeepLayers, Layers};
 use crate::layout::{Mercator, Problem, laid_out, prepare_to_slide};
-use crate::mesh::{Mesh, MeshSize};
+use crate::mesh::{Element, Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::options::{Guard, Options};
 use crate::parallel::pace::now;
@@ -194,7 +194,7 @@ impl<'a> Smoother<'a> {
     /// # Errors
     /// [`MeshError::Target`] if a vertex is not on the sphere.
     pub fn project_from_sphere(&mut self) -> Result<bool, MeshError> {
-        Surface::Sphere.check(&self.mesh.points, self.topology.triangles())?;
+        Surface::Sphere.check(&self.mesh.points, self.topology.corners())?;
         if let Some((projection, projected)) = Mercator::of(&self.mesh, &self.topology) {
             self.problem = laid_out(&projected, &self.topology).with_projection(projection);
             self.stop_sliding();
@@ -293,11 +293,12 @@ impl<'a> Smoother<'a> {
         self.sliding.is_some()
     }
 
-    /// Returns whether runs are on the CPU, whatever their backend is, because vertices slide in the projection of a sphere, or
-    /// because no vertex is free.
-    pub fn slides_on_cpu(&self) -> bool {
+    /// Returns whether runs are on the CPU, whatever their backend is, because the mesh has quadrilaterals, because vertices slide
+    /// in the projection of a sphere, or because no vertex is free.
+    pub fn stays_on_cpu(&self) -> bool {
         // Single precision has too few digits for curves in a projection.
-        self.slides() && (self.problem.is_projected() || self.problem.free_count() == 0)
+        let slides_on_cpu = self.problem.is_projected() || self.problem.free_count() == 0;
+        self.problem.has_quadrilaterals() || self.slides() && slides_on_cpu
     }
 
     pub(super) fn stop_sliding(&mut self) {
@@ -346,13 +347,13 @@ impl<'a> Smoother<'a> {
         &self.topology
     }
 
-    /// Returns the triangles that are neither inverted nor flat, but whose inverse mean ratio overflows in double
-    /// precision, computed from any of the three corners. Such triangles are too flat, or too small beside other
-    /// triangles. A mesh with such triangles may be refused by runs by EDGE or by metrics with a barrier
+    /// Returns the elements that are neither inverted nor flat, but whose inverse mean ratio overflows in double
+    /// precision, computed from any of their corners. Such elements are too flat, or too small beside other
+    /// elements. A mesh with such elements may be refused by runs by EDGE or by metrics with a barrier
     /// ([`MeshError::BeyondPrecision`]); [`Untangle`](crate::Untangle) opens those that have a free vertex.
-    pub fn beyond_precision(&self) -> Vec<usize> {
+    pub fn beyond_precision(&self) -> Vec<Element> {
         let beyond = now(self.problem.beyond_precision(self.problem.positions()));
-        self.problem.in_mesh(&beyond, self.topology.triangles())
+        self.problem.in_mesh(&beyond, &self.topology)
     }
 
     /// Returns the number of colors of the free vertices.
@@ -365,9 +366,10 @@ impl<'a> Smoother<'a> {
         self.prepare
     }
 
-    /// Returns the size of the mesh. Only vertices that some triangle uses are counted.
+    /// Returns the size of the mesh. Only vertices that some element uses are counted.
     pub fn size(&self) -> MeshSize {
-        let triangles = self.problem.triangles().len();
+        let corners = self.problem.corners();
+        let triangles = corners.triangles().len() + 2 * corners.quadrilateral_count();
         MeshSize { vertices: self.problem.positions().len(), triangles }
     }
 
@@ -448,7 +450,7 @@ mod tests {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.3, 0.6]];
         // The second triangle is wound clockwise.
         let triangles = vec![[0, 1, 4], [2, 1, 4], [2, 3, 4], [3, 0, 4]];
-        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
         let kept = Smoother::from_mesh(mesh.clone()).unwrap();
         assert_eq!(kept.mesh(), &mesh);
         let borrowed = Smoother::new(&mesh).unwrap();

@@ -32,14 +32,26 @@ pub(super) trait Aim: Sync {
     /// Returns the penalties of a round, counted from 0.
     fn penalties(&self, round: u32) -> Penalties;
 
-    /// Returns whether vertices around a triangle take steps in the rounds.
-    fn is_beyond(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool;
+    /// Returns whether vertices around a corner take steps in the rounds. The corner is of a quadrilateral if it `is_right`.
+    fn is_beyond(
+        &self,
+        surface: Surface,
+        points: &[[f64; 2]],
+        corner: &[u32; 3],
+        is_right: bool,
+    ) -> bool;
 
     /// Returns the triangles of the mesh on which penalties are larger from now on.
     fn heavy(&self, movable: &Movable<'_>, points: &[[f64; 2]]) -> Vec<[u32; 3]>;
 
-    /// Returns whether a triangle that is beyond the limits demands another round.
-    fn demands_more(&self, surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> bool;
+    /// Returns whether a corner that is beyond the limits demands another round.
+    fn demands_more(
+        &self,
+        surface: Surface,
+        points: &[[f64; 2]],
+        corner: &[u32; 3],
+        is_right: bool,
+    ) -> bool;
 }
 
 /// A mesh on which rounds move the free vertices, and the vertices that slide.
@@ -74,14 +86,18 @@ impl<'s> Movable<'s> {
         triangle.iter().any(|&v| self.may_move[v as usize])
     }
 
-    /// Returns the indices of the triangles that can move and satisfy `is_chosen`, ascending.
-    pub(super) async fn chosen(&self, is_chosen: impl Fn(&[u32; 3]) -> bool + Sync) -> Vec<u32> {
-        let triangles = self.smoother.topology.triangles();
-        let of = |t: &u32| {
-            let triangle = &triangles[*t as usize];
-            self.can_move(triangle) && is_chosen(triangle)
+    /// Returns the indices of the corners that can move and satisfy `is_chosen`, ascending. `is_chosen` is called with the
+    /// vertices of a corner, and with whether it is of a quadrilateral.
+    pub(super) async fn chosen(
+        &self,
+        is_chosen: impl Fn(&[u32; 3], bool) -> bool + Sync,
+    ) -> Vec<u32> {
+        let corners = self.smoother.topology.corner_list();
+        let of = |c: &u32| {
+            let corner = &corners.all()[*c as usize];
+            self.can_move(corner) && is_chosen(corner, !corners.is_triangle(*c))
         };
-        let chosen = paced::map_ranges(triangles.len(), CHUNK, |range| -> Vec<u32> {
+        let chosen = paced::map_ranges(corners.all().len(), CHUNK, |range| -> Vec<u32> {
             (range.start as u32..range.end as u32).filter(of).collect()
         });
         chosen.await.concat()
@@ -102,10 +118,12 @@ impl<'s> Movable<'s> {
         let floor = if options.keep_altitude { altitude::least_of(problem) } else { 0.0 };
         let mut heavy = TriangleSet::new();
         let topology = &self.smoother.topology;
-        let corners = |t: u32| topology.triangles()[t as usize];
+        let corners = |t: u32| topology.corners()[t as usize];
+        let is_right = |t: u32| !topology.corner_list().is_triangle(t);
         let number = problem.numbers(points.len());
         let mut positions = paced::copied(positions).await;
-        let mut beyond = self.chosen(|t| aim.is_beyond(self.surface, points, t)).await;
+        let mut beyond =
+            self.chosen(|t, right| aim.is_beyond(self.surface, points, t, right)).await;
         let [least, share] = MAX_VISITS;
         let mut visits = least.max(share * problem.free_count());
         for round in 0..A::ROUNDS {
@@ -130,28 +148,31 @@ impl<'s> Movable<'s> {
             let mut near = HashSet::new();
             if curves.is_some() {
                 near.extend(seeds());
-                near.extend(regions.iter().flatten().flat_map(|&v| problem.ring_of(v)));
+                near.extend(regions.iter().flatten().flat_map(|&v| problem.companions(v)));
             }
             let moves = rounds::round(problem, &rules, penalties, &positions, regions).await;
             for (v, to) in moves {
                 positions[v as usize] = to;
                 let at = problem.vertices()[v as usize];
                 points[at as usize] = problem.point(to).map(|x| options.stored.rounded(x));
-                beyond.extend_from_slice(topology.star(at));
+                beyond.extend(topology.corners_with(at));
             }
             let slid = curves.as_mut().map(|curves| {
                 curves.visit_by(&penalties, problem, &mut positions, |v| near.contains(&v))
             });
             for (at, point) in slid.into_iter().flatten() {
                 points[at as usize] = point.map(|x| options.stored.rounded(x));
-                beyond.extend_from_slice(topology.star(at));
+                beyond.extend(topology.corners_with(at));
             }
             beyond.sort_unstable();
             beyond.dedup();
             beyond.retain(|&t| {
-                self.can_move(&corners(t)) && aim.is_beyond(self.surface, points, &corners(t))
+                let corner = &corners(t);
+                self.can_move(corner) && aim.is_beyond(self.surface, points, corner, is_right(t))
             });
-            if !beyond.iter().any(|&t| aim.demands_more(self.surface, points, &corners(t))) {
+            let demands_more =
+                |&t: &u32| aim.demands_more(self.surface, points, &corners(t), is_right(t));
+            if !beyond.iter().any(demands_more) {
                 return;
             }
         }

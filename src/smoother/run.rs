@@ -26,7 +26,7 @@ use super::prepared::Smoother;
 ///
 /// let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.3, 0.6]];
 /// let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-/// let mesh = Mesh { points, triangles, fixed: vec![] };
+/// let mesh = Mesh { points, triangles, ..Mesh::default() };
 /// let smoother = Smoother::new(&mesh)?;
 /// let mut sweeps = 0;
 /// let mut observe = |progress: &Progress| {
@@ -148,8 +148,12 @@ pub fn smooth(
     options: &Options,
     backend: &Backend,
 ) -> Result<Vec<[f64; 2]>, SmoothError> {
-    let mesh =
-        Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: fixed.to_vec() };
+    let mesh = Mesh {
+        points: points.to_vec(),
+        triangles: triangles.to_vec(),
+        fixed: fixed.to_vec(),
+        ..Mesh::default()
+    };
     let smoother = Smoother::new(&mesh)?;
     Ok(smoother.run(options).on(backend).block()?.points)
 }
@@ -182,7 +186,7 @@ mod tests {
         let middle = |i| 0.5 * (points[q][i] + points[r][i]);
         let moved = [0, 1].map(|i| points[p][i] + (1.0 - 1e-7) * (middle(i) - points[p][i]));
         points[p] = moved;
-        Mesh { points, triangles, fixed: Vec::new() }
+        Mesh { points, triangles, ..Mesh::default() }
     }
 
     /// With a budget of zero, each thread does one task in a poll: at most [`DEGREE_BLOCK`] visits of a sweep.

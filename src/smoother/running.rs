@@ -38,11 +38,11 @@ async fn is_beyond_precision(problem: &Problem, metric: Metric, objective: f64) 
     let beyond = problem.beyond_precision(problem.positions());
     if metric.properties().barrier {
         // Some metrics are negative where the rounded area is negative.
-        let sum = objective.abs() * problem.judged_triangles().len() as f64;
+        let sum = objective.abs() * problem.judged_count() as f64;
         return sum > LEAST && !beyond.await.is_empty();
     }
     // The shape guard of EDGE would hold the vertices of such triangles.
-    let can_move = |&t: &u32| problem.can_move(&problem.triangles()[t as usize]);
+    let can_move = |&t: &u32| problem.can_move(&problem.corners().all()[t as usize]);
     !metric.is_smooth() && beyond.await.iter().any(can_move)
 }
 
@@ -68,7 +68,7 @@ impl Smoother<'_> {
         let began = Instant::now();
         options.check_with(&self.features())?;
         self.check_movable()?;
-        let is_for_device = self.problem.free_count() > 0 && !self.slides_on_cpu();
+        let is_for_device = self.problem.free_count() > 0 && !self.stays_on_cpu();
         let place = Place::given(device, is_for_device, self.size(), policy).await?;
         let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
         let about = self.about(problem, options).await;
@@ -115,7 +115,7 @@ impl Smoother<'_> {
 
     /// Returns the error of a run by a metric that cannot judge the mesh, with the metrics that can.
     async fn refusal(&self, problem: &Problem, metric: Metric) -> Result<MeshError, MeshError> {
-        let triangle = Quality::of(&self.mesh.points, &self.topology)?.worst_triangle;
+        let element = Quality::of(&self.mesh.points, &self.topology)?.worst;
         let mut usable = Vec::new();
         for &metric in Metric::ALL.iter() {
             let f = objective(metric, problem, problem.positions()).await;
@@ -123,7 +123,7 @@ impl Smoother<'_> {
                 usable.push(metric.name());
             }
         }
-        Ok(MeshError::BeyondPrecision { triangle, metric: metric.name(), usable })
+        Ok(MeshError::BeyondPrecision { element, metric: metric.name(), usable })
     }
 
     /// Returns the description of a run with these options that its checkpoints carry.
@@ -134,8 +134,8 @@ impl Smoother<'_> {
         let size_weight = self.problem.ideal().size_weight;
         let of_sizes = (size_weight != 1.0).then(|| vec![size_weight.to_bits()]);
         // Objectives in the checkpoints of earlier versions are means over all triangles.
-        let judged = problem.judged_triangles().len();
-        let of_judged = (judged < problem.triangles().len()).then(|| vec![judged as u64]);
+        let judged = problem.judged_count();
+        let of_judged = (judged < problem.corners().element_count()).then(|| vec![judged as u64]);
         let words = of_slide.into_iter().chain(of_field).chain(of_projection).chain(of_sizes);
         let words = words.chain(of_judged);
         let more: Vec<u64> = words.flatten().collect();

@@ -67,7 +67,7 @@ impl Adaptation {
         most: usize,
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
-        let triangles = topology.triangles();
+        let triangles = topology.corners();
         let free = topology.free();
         let count = free.iter().filter(|&&is_free| is_free).count();
         let free = (0..).zip(free).filter(|&(_, &is_free)| is_free).map(|(v, _)| v);
@@ -83,8 +83,8 @@ impl Adaptation {
                 near.sort_unstable();
                 near.dedup();
                 let logarithm = |&t: &u32| {
-                    let t = &triangles[t as usize];
-                    shape_logarithm(t, points, surface.lengths_in(points, t))
+                    let lengths = surface.lengths_in(points, &triangles[t as usize]);
+                    shape_logarithm(topology, t as usize, points, lengths)
                 };
                 let sum = near.iter().map(logarithm).fold(Tensor::default(), Tensor::plus);
                 sum.times(1.0 / near.len() as f64)
@@ -143,7 +143,7 @@ mod tests {
         let points = (0..441).map(|v| to([f64::from(v % 21), f64::from(v / 21)])).collect();
         let squares = (0..400).map(|k| 21 * (k / 20) + k % 20);
         let triangles = squares.flat_map(|a| [[a, a + 1, a + 22], [a, a + 22, a + 21]]).collect();
-        Mesh { points, triangles, fixed: vec![] }
+        Mesh { points, triangles, ..Mesh::default() }
     }
 
     fn of(mesh: &Mesh, surface: Surface) -> [f64; 2] {
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn a_mesh_without_free_vertices_is_not_adapted() {
         let points = vec![[0.0, 0.0], [9.0, 0.0], [0.0, 1.0]];
-        let mesh = Mesh { points, triangles: vec![[0, 1, 2]], fixed: vec![] };
+        let mesh = Mesh { points, triangles: vec![[0, 1, 2]], ..Mesh::default() };
         assert_eq!(of(&mesh, Surface::Plane), [1.0, 1.0]);
         let topology = Topology::new(&mesh).unwrap();
         assert!(Adaptation::of(&topology, &[], Surface::Plane).is_err());

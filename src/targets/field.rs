@@ -17,7 +17,7 @@ use crate::targets::tensor::Tensor;
 ///
 /// // Elements on the right are to be four times as large as on the left; in the middle twice.
 /// let points = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]];
-/// let background = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], fixed: vec![] };
+/// let background = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
 /// let field = TargetField::new(&background, &Targets::sizes(&[1.0, 4.0, 4.0, 1.0])?)?;
 /// let (targets, outside) = field.at(&[[0.0, 0.5], [2.0, 0.5]])?;
 /// assert_eq!(outside.count, 0);

@@ -1,5 +1,6 @@
-//! Targets from the mesh itself: sizes or shapes of its triangles, averaged over neighbors.
+//! Targets from the mesh itself: sizes or shapes of its elements, averaged over neighbors.
 
+use crate::metric::of_right_angle;
 use crate::parallel::collect;
 use crate::targets::surface::Surface;
 use crate::targets::tensor::Tensor;
@@ -8,21 +9,22 @@ use crate::topology::Topology;
 /// 1/√3. The equilateral triangle W has the inverse W⁻¹ = [[1, -1/√3], [0, 2/√3]].
 const W: f64 = 0.577_350_269_189_625_8;
 
-/// Returns the target maps of equilateral triangles with the sizes of the mesh's triangles on a surface.
+/// Returns the target maps of equilateral triangles and squares with the sizes of the mesh's elements on a surface.
 pub(super) fn sizes(
-    triangles: &[[u32; 3]],
+    topology: &Topology<'_>,
     points: &[[f64; 2]],
     surface: Surface,
     rings: u32,
 ) -> Vec<Tensor> {
     // The logarithm of a size is half the logarithm of the area.
-    let of = |t: &[u32; 3]| {
-        let [a, b] = edges(t, points);
-        let [x, y] = surface.lengths_in(points, t);
+    let triangles = topology.corners();
+    let of = |index: usize| {
+        let [a, b] = edges(topology, index, points);
+        let [x, y] = surface.lengths_in(points, &triangles[index]);
         let area = ((a[0] * b[1] - a[1] * b[0]) * x * y).abs().max(f64::MIN_POSITIVE);
         Tensor::isotropic(-0.5 * area.ln())
     };
-    let of_triangles: Vec<Tensor> = collect(triangles.len(), |t| of(&triangles[t]));
+    let of_triangles: Vec<Tensor> = collect(triangles.len(), of);
     let at = averaged(triangles, points.len(), rings, &of_triangles, |_| true);
     // The average flattens gradation, above all at the boundary. Its difference from the sizes of the triangles,
     // averaged and added, restores most of the gradation (twicing; Tukey, Exploratory Data Analysis, 1977).
@@ -45,21 +47,29 @@ pub(super) fn size_weight(stretching: f64) -> f64 {
     1.0 + 0.5 * (stretching - UNWEIGHTED).max(0.0)
 }
 
-/// Returns the maps under which the triangles of the mesh are equilateral and of equal size. Triangles without a free
+/// Returns the maps under which the elements of the mesh are equilateral or square, and of equal size. Elements without a free
 /// vertex, such as those of a kept boundary layer, do not count at the vertices of other triangles, so that the first
 /// triangles beyond a layer are not stretched like the layer.
 pub(super) fn shapes(topology: &Topology<'_>, points: &[[f64; 2]], rings: u32) -> Vec<Tensor> {
-    let triangles = topology.triangles();
-    let of = |t: usize| shape_logarithm(&triangles[t], points, [1.0; 2]);
+    let triangles = topology.corners();
+    let of = |index: usize| shape_logarithm(topology, index, points, [1.0; 2]);
     let of_triangles: Vec<Tensor> = collect(triangles.len(), of);
-    let at = averaged(triangles, points.len(), rings, &of_triangles, |t| topology.can_move(t));
+    let at = averaged(triangles, points.len(), rings, &of_triangles, |t| {
+        topology.can_move(topology.element(t as u32))
+    });
     collect(points.len(), |v| at[v].exp())
 }
 
-/// Returns the logarithm of the map under which a triangle is equilateral with edges of length 1. `lengths` are the
-/// lengths of a unit of each coordinate.
-pub(super) fn shape_logarithm(t: &[u32; 3], points: &[[f64; 2]], lengths: [f64; 2]) -> Tensor {
-    shape_logarithm_of(edges(t, points).map(|[x, y]| [x * lengths[0], y * lengths[1]]))
+/// Returns the logarithm of the map under which a corner is that of an equilateral triangle, or of a square, with edges of
+/// length 1. `lengths` are the lengths of a unit of each coordinate.
+pub(super) fn shape_logarithm(
+    topology: &Topology<'_>,
+    corner: usize,
+    points: &[[f64; 2]],
+    lengths: [f64; 2],
+) -> Tensor {
+    let edges = edges(topology, corner, points);
+    shape_logarithm_of(edges.map(|[x, y]| [x * lengths[0], y * lengths[1]]))
 }
 
 /// Returns the logarithm of the map under which a triangle is equilateral with edges of length 1, given the two edges
@@ -75,10 +85,14 @@ pub(crate) fn shape_logarithm_of([a, b]: [[f64; 2]; 2]) -> Tensor {
     }
 }
 
-/// Returns the two edges of a triangle that start at its first corner.
-fn edges(t: &[u32; 3], points: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let [p, q, r] = t.map(|v| points[v as usize]);
-    [[q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]]
+/// Returns the two edges of a corner that start at its first vertex, sheared if the corner is of a quadrilateral.
+fn edges(topology: &Topology<'_>, corner: usize, points: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let [p, q, r] = topology.corners()[corner].map(|v| points[v as usize]);
+    let edges = [[q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]];
+    match topology.corner_list().is_triangle(corner as u32) {
+        true => edges,
+        false => of_right_angle(edges),
+    }
 }
 
 /// Averages the values of triangles at each vertex. Then, `rings` times, averages vertex values in each triangle and

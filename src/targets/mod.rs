@@ -85,7 +85,7 @@ impl Targets {
         rings: u32,
     ) -> Result<Self, MeshError> {
         let stretching = Adaptation::stretching_for_weight(topology, points, surface)?;
-        let maps = keep::sizes(topology.triangles(), points, surface, rings);
+        let maps = keep::sizes(topology, points, surface, rings);
         Ok(Self { maps, size_weight: keep::size_weight(stretching) })
     }
 

@@ -1,6 +1,7 @@
 //! Surfaces on which mesh coordinates are defined: plane and sphere.
 
 use crate::error::MeshError;
+use crate::mesh::Element;
 
 /// Meaning of the two coordinates of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,8 +26,9 @@ impl Surface {
         }
         for (index, &vertex) in triangles.as_flattened().iter().enumerate() {
             let Some([_, y]) = points.get(vertex as usize) else {
-                let (triangle, vertices) = (Some(index / 3), points.len());
-                return Err(MeshError::IndexOutOfRange { triangle, vertex, vertices });
+                let element = Some(Element::Triangle(index / 3));
+                let vertices = points.len();
+                return Err(MeshError::IndexOutOfRange { element, vertex, vertices });
             };
             if y.is_nan() || y.abs() > 90.0 {
                 let problem = "its latitude is not between -90 and 90 degrees";

@@ -1,40 +1,49 @@
 //! The boundary of a mesh, as edges and as loops.
 
+use crate::mesh::Element;
 use crate::topology::Topology;
 use crate::topology::stars::others_at_edge;
 
-/// An edge of a triangle, from the vertex at `corner` to the vertex at the next corner.
+/// A side of an element: from the vertex at `place` of a corner to the vertex at the next place. Sides of a quadrilateral
+/// start at the first place of its corners.
 #[derive(Clone, Copy)]
 struct BoundaryEdge {
-    triangle: u32,
-    corner: usize,
+    corner: u32,
+    place: usize,
 }
 
 impl Topology<'_> {
-    /// Returns the boundary edges, those of exactly one triangle, in no particular order. Each edge is a pair of
+    /// Returns the boundary edges, those of exactly one element, in no particular order. Each edge is a pair of
     /// vertices, start and end, with the mesh on the left.
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
         self.boundary_sides().map(|side| self.ends(side)).collect()
     }
 
-    /// Returns the boundary edges as sides of triangles.
+    /// Returns the boundary edges as sides of elements.
     fn boundary_sides(&self) -> impl Iterator<Item = BoundaryEdge> + '_ {
-        let sides = |triangle| (0..3).map(move |corner| BoundaryEdge { triangle, corner });
-        let all = (0..self.triangles().len() as u32).flat_map(sides);
-        // Each edge of a free vertex has two triangles.
+        let all = (0..self.corners().len() as u32).flat_map(|corner| self.sides(corner));
+        // Each edge of a free vertex has two elements.
         let is_inside = |side| self.ends(side).iter().any(|&v| self.free()[v as usize]);
         all.filter(move |&side| !is_inside(side) && self.across(side).is_none())
     }
 
-    /// Returns the vertices at which an edge starts and ends, with its triangle on the left.
-    fn ends(&self, BoundaryEdge { triangle, corner }: BoundaryEdge) -> [u32; 2] {
-        let corners = self.triangles()[triangle as usize];
-        [corners[corner], corners[(corner + 1) % 3]]
+    /// Returns the sides of an element that belong to a corner: all three of a triangle, one of a quadrilateral.
+    fn sides(&self, corner: u32) -> impl Iterator<Item = BoundaryEdge> + use<> {
+        let count = if self.corner_list().is_triangle(corner) { 3 } else { 1 };
+        (0..count).map(move |place| BoundaryEdge { corner, place })
     }
 
-    /// Returns the neighboring triangle across an edge, `None` for a boundary edge.
+    /// Returns the vertices at which an edge starts and ends, with its element on the left.
+    fn ends(&self, BoundaryEdge { corner, place }: BoundaryEdge) -> [u32; 2] {
+        let vertices = self.corners()[corner as usize];
+        [vertices[place], vertices[(place + 1) % 3]]
+    }
+
+    /// Returns the first corner of the element across an edge, `None` for a boundary edge.
     fn across(&self, side: BoundaryEdge) -> Option<u32> {
-        others_at_edge(self.triangles(), self.stars(), side.triangle, self.ends(side)).next()
+        let corners = self.corner_list();
+        let element = corners.first(side.corner);
+        others_at_edge(corners, self.stars(), element, self.ends(side)).next()
     }
 
     /// Returns the boundary as closed loops of vertices, with the mesh on the left. A loop lists each vertex once; a
@@ -82,33 +91,39 @@ impl Topology<'_> {
         loops
     }
 
-    /// Returns the first triangle of an edge-connected part that has no boundary edge. `None` if every part has a
+    /// Returns the first element of an edge-connected part that has no boundary edge. `None` if every part has a
     /// boundary. A part without boundary edges is a closed surface, such as a sphere. However the vertices of a closed
-    /// surface are placed in the plane, some of its triangles are inverted or flat.
-    pub fn closed_part(&self) -> Option<usize> {
+    /// surface are placed in the plane, some of its elements are inverted or flat.
+    pub fn closed_part(&self) -> Option<Element> {
         let parts = self.edge_parts();
         let mut is_closed = vec![true; parts.len()];
         for side in self.boundary_sides() {
-            is_closed[parts[side.triangle as usize] as usize] = false;
+            is_closed[parts[side.corner as usize] as usize] = false;
         }
-        (0..parts.len()).find(|&t| parts[t] as usize == t && is_closed[t])
+        let found = (0..parts.len()).find(|&t| parts[t] as usize == t && is_closed[t]);
+        found.map(|first| self.element(first as u32))
     }
 
-    /// Labels the edge-connected parts: returns, per triangle, the index of the first triangle of its part.
+    /// Labels the edge-connected parts: returns, per corner, the first corner of the first element of its part.
     pub(super) fn edge_parts(&self) -> Vec<u32> {
-        let mut parts = vec![u32::MAX; self.triangles().len()];
+        let corners = self.corner_list();
+        let mut parts = vec![u32::MAX; self.corners().len()];
         let mut front = Vec::new();
         for first in 0..parts.len() as u32 {
             if parts[first as usize] != u32::MAX {
                 continue;
             }
-            parts[first as usize] = first;
+            let of = |element: u32| {
+                let count = if corners.is_triangle(element) { 1 } else { 4 };
+                element..element + count
+            };
+            of(first).for_each(|corner| parts[corner as usize] = first);
             front.push(first);
-            while let Some(triangle) = front.pop() {
-                for corner in 0..3 {
-                    let other = self.across(BoundaryEdge { triangle, corner });
+            while let Some(element) = front.pop() {
+                for side in of(element).flat_map(|corner| self.sides(corner)) {
+                    let other = self.across(side);
                     if let Some(other) = other.filter(|&other| parts[other as usize] == u32::MAX) {
-                        parts[other as usize] = first;
+                        of(other).for_each(|corner| parts[corner as usize] = first);
                         front.push(other);
                     }
                 }
@@ -117,23 +132,23 @@ impl Topology<'_> {
         parts
     }
 
-    /// Returns the boundary edge that follows `side`. The search turns around the end vertex of `side`, from triangle
-    /// to triangle, until it reaches the last edge of the fan. The fans of a vertex share no triangle, so each triangle
+    /// Returns the boundary edge that follows `side`. The search turns around the end vertex of `side`, from element
+    /// to element, until it reaches the last edge of the fan. The fans of a vertex share no element, so each element
     /// is visited once per corner.
     fn next_on_boundary(&self, side: BoundaryEdge) -> Option<BoundaryEdge> {
         let [mut before, pivot] = self.ends(side);
-        let mut triangle = side.triangle;
+        let mut element = side.corner;
         loop {
-            let corners = self.triangles()[triangle as usize];
-            let corner = corners.iter().position(|&v| v == pivot)?;
-            // If windings cannot be made consistent, as on a Möbius strip, neighboring triangles of a fan may have
+            let (corner, place) = self.corner_list().at(element, pivot)?;
+            let vertices = self.corners()[corner as usize];
+            // If windings cannot be made consistent, as on a Möbius strip, neighboring elements of a fan may have
             // opposite windings. The path then ends without closing a loop.
-            if corners[(corner + 2) % 3] != before {
+            if vertices[(place + 2) % 3] != before {
                 return None;
             }
-            let side = BoundaryEdge { triangle, corner };
+            let side = BoundaryEdge { corner, place };
             match self.across(side) {
-                Some(next) => (triangle, before) = (next, corners[(corner + 1) % 3]),
+                Some(next) => (element, before) = (next, vertices[(place + 1) % 3]),
                 None => return Some(side),
             }
         }
@@ -161,7 +176,7 @@ mod tests {
     const OCTAHEDRON: [[u32; 3]; 8] =
         [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]];
 
-    fn closed(triangles: &[[u32; 3]]) -> Option<usize> {
+    fn closed(triangles: &[[u32; 3]]) -> Option<Element> {
         let points = vec![
             [1.0, 0.0],
             [0.0, 1.0],
@@ -173,7 +188,7 @@ mod tests {
             [3.0, 1.0],
             [2.0, 0.0],
         ];
-        let mesh = Mesh { points, triangles: triangles.to_vec(), fixed: Vec::new() };
+        let mesh = Mesh { points, triangles: triangles.to_vec(), ..Mesh::default() };
         Topology::new(&mesh).unwrap().closed_part()
     }
 
@@ -202,7 +217,7 @@ mod tests {
                 }
             }
             let points = (0..9).map(|v| [f64::from(v), f64::from(v * v % 7)]).collect();
-            let mesh = Mesh { points, triangles, fixed: Vec::new() };
+            let mesh = Mesh { points, triangles, ..Mesh::default() };
             let Ok(topology) = Topology::new(&mesh) else { continue };
             let loops = topology.boundary_loops();
             for vertices in &loops {
@@ -221,11 +236,11 @@ mod tests {
 
     #[test]
     fn a_part_without_boundary_is_found_among_others() {
-        assert_eq!(closed(&OCTAHEDRON), Some(0));
+        assert_eq!(closed(&OCTAHEDRON), Some(Element::Triangle(0)));
         assert_eq!(closed(&OCTAHEDRON[..7]), None);
         assert_eq!(closed(&OCTAHEDRON[..4]), None);
         // A part with a boundary comes first and touches the octahedron in vertex 0.
         let both = [&[[6, 7, 8], [0, 6, 8]], &OCTAHEDRON[..]].concat();
-        assert_eq!(closed(&both), Some(2));
+        assert_eq!(closed(&both), Some(Element::Triangle(2)));
     }
 }

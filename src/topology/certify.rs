@@ -3,17 +3,17 @@
 use crate::error::MeshError;
 use crate::parallel::pace::now;
 use crate::topology::Topology;
-use crate::topology::predicates::{bad_triangles, is_positive, not_positive};
+use crate::topology::predicates::{is_positive, not_positive};
 
-/// Makes `points` feasible, in place: sets each vertex of an inverted or flat triangle back to its position in
-/// `before`, until no such triangle is left. Returns the number of vertices set back.
+/// Makes `points` feasible, in place: sets each vertex of an inverted or flat corner back to its position in
+/// `before`, until no such corner is left. Returns the number of vertices set back.
 ///
-/// Afterwards every triangle of `topology` is counter-clockwise by exact arithmetic on the values in `points`. A
-/// triangle with a coordinate that is not finite counts as inverted.
+/// Afterwards every triangle of `topology` is counter-clockwise, and every quadrilateral convex and counter-clockwise, by
+/// exact arithmetic on the values in `points`. A corner with a coordinate that is not finite counts as inverted.
 ///
 /// # Errors
 /// [`MeshError::PointCount`] if `before` or `points` does not have one entry per vertex; no vertex is then moved.
-/// [`MeshError::Infeasible`] if some triangle is inverted or flat in `before`, and remains inverted or flat when its
+/// [`MeshError::Infeasible`] if some corner is inverted or flat in `before`, and remains inverted or flat when its
 /// vertices are set back.
 pub fn certify(
     topology: &Topology<'_>,
@@ -31,36 +31,36 @@ pub(crate) async fn certified(
 ) -> Result<usize, MeshError> {
     topology.check_count(before)?;
     topology.check_count(points)?;
-    let triangles = topology.triangles();
-    let mut suspects = not_positive(points, triangles).await;
+    let corners = topology.corners();
+    let mut suspects = not_positive(points, corners).await;
     let is_certified = suspects.is_empty();
     let mut returned = 0;
-    // Each round sets back the moved vertices of every suspect, and then tests the triangles around these vertices.
+    // Each round sets back the moved vertices of every suspect, and then tests the corners with these vertices.
     while !suspects.is_empty() {
         let mut touched = Vec::new();
         for &t in &suspects {
-            for &v in &triangles[t as usize] {
+            for &v in &corners[t as usize] {
                 let v_index = v as usize;
                 // Coordinates are compared by bits: NaN differs from NaN by value, and the vertex would be set back
                 // forever.
                 if points[v_index].map(f64::to_bits) != before[v_index].map(f64::to_bits) {
                     points[v_index] = before[v_index];
                     returned += 1;
-                    touched.extend_from_slice(topology.star(v));
+                    touched.extend(topology.corners_with(v));
                 }
             }
         }
         touched.sort_unstable();
         touched.dedup();
-        touched.retain(|&t| !is_positive(points, &triangles[t as usize]));
+        touched.retain(|&t| !is_positive(points, &corners[t as usize]));
         suspects = touched;
     }
     if is_certified {
         return Ok(0);
     }
-    match bad_triangles(points, triangles).await {
-        left if left.is_empty() => Ok(returned),
-        triangles => Err(MeshError::Infeasible { triangles }),
+    match topology.infeasible(points).await {
+        None => Ok(returned),
+        Some(error) => Err(error),
     }
 }
 
@@ -93,7 +93,7 @@ mod tests {
                 [5, 4, 7],
                 [4, 1, 7],
             ],
-            fixed: vec![],
+            ..Mesh::default()
         };
         let topology = Topology::new(&mesh).unwrap();
         let mut points = mesh.points.clone();
@@ -114,7 +114,7 @@ mod tests {
     fn a_mesh_that_was_infeasible_before_is_not_certified() {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         for (bad, count) in [([1.5, 0.5], 1), ([f64::NAN, 0.5], 4)] {
             let mut before = mesh.points.clone();
@@ -122,7 +122,7 @@ mod tests {
             let mut points = before.clone();
             points[4] = [2.5, 0.5];
             let error = certify(&topology, &before, &mut points).unwrap_err();
-            let MeshError::Infeasible { triangles } = error else { panic!("{error}") };
+            let MeshError::Infeasible { triangles, .. } = error else { panic!("{error}") };
             assert_eq!(triangles.len(), count);
         }
     }
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn lists_of_points_of_another_length_are_errors() {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-        let mesh = Mesh { points, triangles: vec![[0, 1, 2]], fixed: vec![] };
+        let mesh = Mesh { points, triangles: vec![[0, 1, 2]], ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         let mut points = mesh.points.clone();
         for given in [0, 2] {

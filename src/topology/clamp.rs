@@ -1,4 +1,4 @@
-//! Moves vertices toward new positions, as far as no triangle inverts or exceeds a bound on its inverse mean ratio.
+//! Moves vertices toward new positions, as far as no element inverts or exceeds a bound on its inverse mean ratio.
 
 use crate::error::MeshError;
 use crate::metric::{Corner, Ideal};
@@ -17,7 +17,7 @@ impl Topology<'_> {
     /// `moves` are pairs of a vertex and its new position, in the unit of `points`. Fixed and boundary vertices can be
     /// moved like all others. If a vertex is listed twice, its last position counts.
     ///
-    /// No triangle inverts or becomes flat, neither during the move nor, by exact predicates on the values in `points`,
+    /// No triangle inverts or becomes flat, and no quadrilateral loses its convexity, neither during the move nor, by exact predicates on the values in `points`,
     /// at its end. No triangle gets an inverse mean ratio above `worst_imr`; a triangle whose ratio already exceeds
     /// `worst_imr` does not get worse. If `worst_imr` is [`f64::INFINITY`], triangles may become nearly flat; a bound
     /// of about 8 leaves room for sweeps, and for rounding `points` to single precision. Triangles that are inverted or
@@ -29,6 +29,7 @@ impl Topology<'_> {
     /// #     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
     /// #     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
     /// #     fixed: vec![],
+    /// #     ..Mesh::default(),
     /// # };
     /// // The middle vertex of a unit square, dragged out of it.
     /// let topology = Topology::new(&mesh)?;
@@ -55,7 +56,7 @@ impl Topology<'_> {
         }
         let vertices = points.len();
         if let Some(&(vertex, _)) = moves.iter().find(|&&(v, _)| v as usize >= vertices) {
-            return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices });
+            return Err(MeshError::IndexOutOfRange { element: None, vertex, vertices });
         }
         let is_finite = |[x, y]: [f64; 2]| x.is_finite() && y.is_finite();
         if let Some(&(vertex, _)) = moves.iter().find(|&&(_, to)| !is_finite(to)) {
@@ -63,32 +64,36 @@ impl Topology<'_> {
         }
 
         let ways = Paths::new(points, moves);
-        let mut triangles: Vec<u32> =
-            ways.0.iter().flat_map(|way| self.star(way.vertex)).copied().collect();
-        triangles.sort_unstable();
-        triangles.dedup();
-        let corners = || triangles.iter().map(|&t| self.triangles()[t as usize]);
-        // The vertices of the affected triangles, and moved vertices that no triangle uses.
+        let mut indices: Vec<u32> =
+            ways.0.iter().flat_map(|way| self.corners_with(way.vertex)).collect();
+        indices.sort_unstable();
+        indices.dedup();
+        let corners = || indices.iter().map(|&c| self.corners()[c as usize]);
+        // The vertices of the affected corners, and moved vertices that no element uses.
         let mut touched = ways.0.iter().map(|way| way.vertex).chain(corners().flatten());
         if let Some(vertex) = touched.find(|&v| !is_finite(points[v as usize])) {
             return Err(MeshError::NotFinite { vertex });
         }
-        let limited: Vec<([u32; 3], f64)> = corners()
-            .filter(|corners| predicates::is_positive(points, corners))
-            .map(|corners| (corners, worst_imr.max(imr(points, &corners) * (1.0 + ROUNDING))))
+        let limited: Vec<Limited> = indices
+            .iter()
+            .map(|&c| (self.corners()[c as usize], !self.corner_list().is_triangle(c)))
+            .filter(|(vertices, _)| predicates::is_positive(points, vertices))
+            .map(|(vertices, is_right)| {
+                let now = imr(points, &vertices, is_right) * (1.0 + ROUNDING);
+                Limited { vertices, is_right, limit: worst_imr.max(now) }
+            })
             .collect();
 
-        let gives_way =
-            |(corners, limit): &([u32; 3], f64)| ways.gives_way(points, corners, *limit);
+        let gives_way = |corner: &Limited| ways.gives_way(points, corner);
         let mut share = limited.iter().map(gives_way).fold(1.0, f64::min);
         // The share and the points are rounded, so a triangle may still exceed its limit. The share is lowered until no
         // triangle does.
         let mut less = f64::EPSILON;
         loop {
             ways.go(points, share);
-            let holds = |(corners, limit): &([u32; 3], f64)| {
-                predicates::is_positive(points, corners)
-                    && imr(points, corners) <= limit * (1.0 + ROUNDING)
+            let holds = |Limited { vertices, is_right, limit }: &Limited| {
+                predicates::is_positive(points, vertices)
+                    && imr(points, vertices, *is_right) <= limit * (1.0 + ROUNDING)
             };
             if share == 0.0 || limited.iter().all(holds) {
                 return Ok(share);
@@ -97,6 +102,15 @@ impl Topology<'_> {
             less *= 8.0;
         }
     }
+}
+
+/// A corner that limits a move.
+struct Limited {
+    vertices: [u32; 3],
+    /// Whether the corner is of a quadrilateral.
+    is_right: bool,
+    /// Largest inverse mean ratio after the move.
+    limit: f64,
 }
 
 /// The straight path of a vertex, from its position to its new position.
@@ -137,20 +151,23 @@ impl Paths {
         }
     }
 
-    /// Returns the share of the paths at which the inverse mean ratio of a triangle reaches `limit`, infinite if never.
-    /// The ratio is L / (2√3 D), with L the sum of the squared edge lengths and D the doubled area. So the share is the
-    /// least positive root of the quadratic D - L / (2√3 limit).
-    fn gives_way(&self, points: &[[f64; 2]], corners: &[u32; 3], limit: f64) -> f64 {
-        let [p, q, r] = corners.map(|v| points[v as usize]);
-        let [dp, dq, dr] = corners.map(|v| self.of(v));
+    /// Returns the share of the paths at which the inverse mean ratio of a corner reaches its limit, infinite if never.
+    /// The ratio of a triangle is L / (2√3 D), with L the sum of the squared edge lengths and D the doubled area, and that
+    /// of a corner of a quadrilateral L / (2 D), with L the sum over its two sides. So the share is the least positive
+    /// root of the quadratic D - L / (2√3 limit), or D - L / (2 limit).
+    fn gives_way(&self, points: &[[f64; 2]], corner: &Limited) -> f64 {
+        let &Limited { vertices, is_right, limit } = corner;
+        let [p, q, r] = vertices.map(|v| points[v as usize]);
+        let [dp, dq, dr] = vertices.map(|v| self.of(v));
         let edges = [minus(q, p), minus(r, p), minus(dq, dp), minus(dr, dp)];
         // Edges are divided by the largest difference of coordinates, so that no product overflows.
         let unit = edges.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let [e, f, de, df] = edges.map(|edge| edge.map(|x| x / unit));
         let [c, dc] = [minus(f, e), minus(df, de)];
-        let weight = 1.0 / (2.0 * 3f64.sqrt() * limit);
+        let (edges, factor) = if is_right { (2, 2.0) } else { (3, 2.0 * 3f64.sqrt()) };
+        let weight = 1.0 / (factor * limit);
         let lengths = |u: [[f64; 2]; 3], v: [[f64; 2]; 3]| {
-            (0..3).map(|i| u[i][0] * v[i][0] + u[i][1] * v[i][1]).sum::<f64>() * weight
+            (0..edges).map(|i| u[i][0] * v[i][0] + u[i][1] * v[i][1]).sum::<f64>() * weight
         };
         let (still, moving) = ([e, f, c], [de, df, dc]);
         least_root(
@@ -181,8 +198,13 @@ fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[1] - u[1] * v[0]
 }
 
-/// Returns the inverse mean ratio of a triangle that is neither inverted nor flat.
-fn imr(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
+/// Returns the inverse mean ratio of a corner that is neither inverted nor flat.
+fn imr(points: &[[f64; 2]], corners: &[u32; 3], is_right: bool) -> f64 {
     let [p, q, r] = corners.map(|v| points[v as usize]);
-    Corner { a: minus(q, p), b: minus(r, p), ideal: Ideal::of_area(1.0) }.inverse_mean_ratio()
+    let corner = Corner { a: minus(q, p), b: minus(r, p), ideal: Ideal::of_area(1.0) };
+    if is_right {
+        corner.of_right_angle().inverse_mean_ratio()
+    } else {
+        corner.inverse_mean_ratio()
+    }
 }

@@ -1,44 +1,49 @@
-//! The topology of a mesh: consistent windings, free vertices, and the triangles and neighbors around each vertex.
+//! The topology of a mesh: consistent windings, free vertices, and the elements and neighbors around each vertex.
 
-use std::borrow::Cow;
 use std::sync::OnceLock;
 
-use crate::error::{BadTriangle, MeshError};
-use crate::mesh::Mesh;
+use crate::error::{BadQuadrilateral, BadTriangle, MeshError};
+use crate::mesh::{Element, Mesh};
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::pace::now;
 use crate::parallel::{map_parts, map_ranges};
+use crate::topology::corners::Corners;
 use crate::topology::predicates;
-use crate::topology::stars::{close, outer_edge, stars};
+use crate::topology::stars::{close, doublet, outer_edge, stars as find_stars};
 use crate::topology::turns;
 use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
 
-/// The triangles of a mesh with consistent windings, and its free vertices. Borrows the triangles of the mesh if they
-/// already are consistent and counter-clockwise.
+/// The elements of a mesh with consistent windings, and its free vertices. Borrows the triangles of a mesh without
+/// quadrilaterals if they already are consistent and counter-clockwise.
+///
+/// The *corners* of a mesh are its triangles, followed by four triangles for each quadrilateral, one for each vertex in the
+/// order around it: the vertex, the next vertex and the previous vertex. A quadrilateral is convex and counter-clockwise if
+/// its four corners are counter-clockwise.
 #[derive(Clone, Debug)]
 pub struct Topology<'m> {
-    triangles: Cow<'m, [[u32; 3]]>,
+    corners: Corners<'m>,
     free: Vec<bool>,
     /// Boundary vertices that [`Mesh::fixed`] lists, ascending.
     fixed_on_boundary: Vec<u32>,
-    /// The triangles at each vertex. Empty after [`Self::forget_stars`], until [`Self::stars`] computes them again.
+    /// The corners at each vertex. Empty after [`Self::forget_stars`], until [`Self::stars`] computes them again.
     stars: OnceLock<Groups>,
 }
 
 impl<'m> Topology<'m> {
     /// Checks the mesh and finds its windings, boundary and free vertices.
     ///
-    /// Windings are made consistent across shared edges, so that most triangles of each edge-connected part are
-    /// counter-clockwise. If a part has equally many triangles of each orientation, the sum of their signed areas
+    /// Windings are made consistent across shared edges, so that most elements of each edge-connected part are
+    /// counter-clockwise. If a part has equally many elements of each orientation, the sum of their signed areas
     /// becomes positive. A vertex is free unless it is on the boundary, is listed in [`Mesh::fixed`], is used by no
-    /// triangle, or joins two fans of triangles.
+    /// element, or joins two fans of elements.
     ///
     /// # Errors
     /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
-    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`]. Inverted triangles
-    /// and a lack of free vertices are no errors here: [`check_smoothable`](Self::check_smoothable) finds both.
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`], [`MeshError::EdgeOfThree`] or
+    /// [`MeshError::Doublet`]. Inverted elements and a lack of free vertices are no errors here:
+    /// [`check_smoothable`](Self::check_smoothable) finds both.
     pub fn new(mesh: &'m Mesh) -> Result<Self, MeshError> {
-        Self::wound(mesh, Majority::OfTriangles)
+        Self::wound(mesh, Majority::OfElements)
     }
 
     /// Finds the topology of a mesh that may be tangled. Windings are consistent as in [`new`](Self::new), but the
@@ -47,27 +52,34 @@ impl<'m> Topology<'m> {
     ///
     /// # Errors
     /// [`MeshError::Empty`], [`MeshError::TooLarge`], [`MeshError::NotFinite`], [`MeshError::OutOfRange`],
-    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`] or [`MeshError::EdgeOfThree`].
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::RepeatedVertex`], [`MeshError::EdgeOfThree`] or
+    /// [`MeshError::Doublet`].
     pub fn by_area(mesh: &'m Mesh) -> Result<Self, MeshError> {
         Self::wound(mesh, Majority::OfArea)
     }
 
     fn wound(mesh: &'m Mesh, majority: Majority) -> Result<Self, MeshError> {
-        let Mesh { points, triangles, fixed } = mesh;
+        let Mesh { points, fixed, .. } = mesh;
         check_indices(mesh)?;
-        let mut stars = stars(points.len(), triangles);
+        let mut corners = Corners::of(mesh);
+        let mut stars = find_stars(points.len(), &corners);
         check_size(points.len(), |v| if stars.of(v).is_empty() { 0.0 } else { size(points[v]) })?;
         let mut free = vec![false; points.len()];
-        // Most meshes are consistent and counter-clockwise already, and the stars alone prove it. The triangle across
+        // Most meshes are consistent and counter-clockwise already, and the stars alone prove it. The element across
         // each edge is found only for other meshes.
-        let triangles =
-            if are_positive(points, triangles) && close(triangles, &mut stars, &mut free) {
-                Cow::Borrowed(triangles.as_slice())
-            } else {
-                let wound = wind(points, triangles, &neighbors(triangles, &stars)?, majority);
-                close(&wound, &mut stars, &mut free);
-                Cow::Owned(wound)
-            };
+        let is_wound =
+            are_positive(points, corners.all()) && close(corners.all(), &mut stars, &mut free);
+        if !is_wound {
+            corners = wind(points, &corners, &neighbors(&corners, &stars)?, majority);
+            if corners.quadrilateral_count() > 0 {
+                // A reversed quadrilateral lists its corners in another order.
+                stars = find_stars(points.len(), &corners);
+            }
+            close(corners.all(), &mut stars, &mut free);
+        }
+        if let Some((vertex, elements)) = doublet(&corners, &stars, &free) {
+            return Err(MeshError::Doublet { vertex, elements });
+        }
         let is_on_boundary = |v: &u32| !free[*v as usize];
         let mut fixed_on_boundary: Vec<u32> =
             fixed.iter().copied().filter(is_on_boundary).collect();
@@ -75,42 +87,79 @@ impl<'m> Topology<'m> {
         for &v in fixed {
             free[v as usize] = false;
         }
-        Ok(Self { triangles, free, fixed_on_boundary, stars: stars.into() })
+        Ok(Self { corners, free, fixed_on_boundary, stars: stars.into() })
     }
 
     /// Copies the triangles if they are borrowed, so that the topology no longer borrows the mesh.
     pub fn into_owned(self) -> Topology<'static> {
-        let Self { triangles, free, fixed_on_boundary, stars } = self;
-        let triangles = Cow::Owned(triangles.into_owned());
-        Topology { triangles, free, fixed_on_boundary, stars }
+        let Self { corners, free, fixed_on_boundary, stars } = self;
+        Topology { corners: corners.into_owned(), free, fixed_on_boundary, stars }
     }
 
-    /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, some vertex is free, and
-    /// the triangles around each free vertex wind around it once.
+    /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, every quadrilateral convex and
+    /// counter-clockwise, some vertex is free, and the elements around each free vertex wind around it once.
     ///
     /// Other overlaps pass the check, for example two parts of a mesh over one area.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex, [`MeshError::Infeasible`] if a
-    /// triangle is inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free,
-    /// [`MeshError::OverlappingStar`] if triangles wind more than once around a free vertex.
+    /// corner is inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free,
+    /// [`MeshError::OverlappingStar`] if elements wind more than once around a free vertex.
     pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
         self.check_count(points)?;
-        let is_feasible = turns::is_feasible(points, &self.triangles, &self.free);
+        let is_feasible = turns::is_feasible(points, &self.corners, &self.free);
         if is_feasible && self.free.contains(&true) {
             return Ok(());
         }
-        let triangles = self.bad_triangles(points)?;
-        if !triangles.is_empty() {
-            return Err(MeshError::Infeasible { triangles });
+        if let Some(error) = now(self.infeasible(points)) {
+            return Err(error);
         }
         if !self.free.contains(&true) {
             return Err(MeshError::NothingFree { vertices: points.len() });
         }
-        match turns::overlapping_star(points, &self.triangles, &self.free) {
+        match turns::overlapping_star(points, &self.corners, &self.free) {
             None => Ok(()),
             Some((vertex, turns)) => Err(MeshError::OverlappingStar { vertex, turns }),
         }
+    }
+
+    /// Returns the error that lists the corners that are inverted or flat at `points`, by exact predicates. `None` if there is
+    /// no such corner. `points` must have one entry per vertex.
+    pub(crate) async fn infeasible(&self, points: &[[f64; 2]]) -> Option<MeshError> {
+        let bad = predicates::not_positive(points, self.corners()).await;
+        (!bad.is_empty()).then(|| {
+            let (triangles, quadrilaterals) = self.described(points, &bad);
+            MeshError::Infeasible { triangles, quadrilaterals }
+        })
+    }
+
+    /// Describes corners that are inverted or flat, given in ascending order.
+    pub(crate) fn described(
+        &self,
+        points: &[[f64; 2]],
+        bad: &[u32],
+    ) -> (Vec<BadTriangle>, Vec<BadQuadrilateral>) {
+        let (mut triangles, mut quadrilaterals) = (Vec::new(), Vec::new());
+        for &index in bad {
+            let vertices = self.corners()[index as usize];
+            let flat = predicates::orientation(points, &vertices) == 0.0;
+            match self.corners.element(index) {
+                Element::Triangle(triangle) => {
+                    triangles.push(BadTriangle { triangle, vertices, flat });
+                }
+                Element::Quadrilateral(quadrilateral) => {
+                    let all = self.corners.quadrilateral(quadrilateral);
+                    let corner = all.iter().position(|&v| v == vertices[0]).unwrap_or(0);
+                    quadrilaterals.push(BadQuadrilateral {
+                        quadrilateral,
+                        vertices: all,
+                        corner,
+                        flat,
+                    });
+                }
+            }
+        }
+        (triangles, quadrilaterals)
     }
 
     /// Returns the triangles that are inverted or flat with the vertices at `points`, by exact predicates, in ascending
@@ -120,10 +169,27 @@ impl<'m> Topology<'m> {
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
     pub fn bad_triangles(&self, points: &[[f64; 2]]) -> Result<Vec<BadTriangle>, MeshError> {
         self.check_count(points)?;
-        Ok(now(predicates::bad_triangles(points, &self.triangles)))
+        let bad = now(predicates::not_positive(points, self.triangles()));
+        Ok(self.described(points, &bad).0)
     }
 
-    /// Checks new points of the vertices as [`Self::new`] checks those of a mesh. `used` lists the vertices that some triangle
+    /// Returns the corners of quadrilaterals that are not convex with the vertices at `points`, by exact predicates, in
+    /// ascending order. Corners with a coordinate that is not finite count as concave.
+    ///
+    /// # Errors
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
+    pub fn bad_quadrilaterals(
+        &self,
+        points: &[[f64; 2]],
+    ) -> Result<Vec<BadQuadrilateral>, MeshError> {
+        self.check_count(points)?;
+        let first = self.triangles().len() as u32;
+        let mut bad = now(predicates::not_positive(points, self.corners.of_quadrilaterals()));
+        bad.iter_mut().for_each(|corner| *corner += first);
+        Ok(self.described(points, &bad).1)
+    }
+
+    /// Checks new points of the vertices as [`Self::new`] checks those of a mesh. `used` lists the vertices that some element
     /// uses.
     pub(crate) fn check_points(&self, points: &[[f64; 2]], used: &[u32]) -> Result<(), MeshError> {
         self.check_count(points)?;
@@ -139,7 +205,39 @@ impl<'m> Topology<'m> {
 
     /// Returns the triangles in the order of the mesh, with consistent windings: counter-clockwise unless inverted.
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        self.corners.triangles()
+    }
+
+    /// Returns the vertices of the quadrilaterals in the order of the mesh, with consistent windings: counter-clockwise unless
+    /// inverted.
+    pub fn quadrilaterals(&self) -> impl ExactSizeIterator<Item = [u32; 4]> + '_ {
+        (0..self.corners.quadrilateral_count()).map(|index| self.corners.quadrilateral(index))
+    }
+
+    /// Returns the corners of the mesh: its triangles, then four for each quadrilateral, with consistent windings.
+    pub fn corners(&self) -> &[[u32; 3]] {
+        self.corners.all()
+    }
+
+    /// Returns the number of elements: triangles and quadrilaterals.
+    pub fn element_count(&self) -> usize {
+        self.corners.element_count()
+    }
+
+    /// Returns the element of a corner.
+    pub fn element(&self, corner: u32) -> Element {
+        self.corners.element(corner)
+    }
+
+    /// Returns the corners of the mesh with their elements.
+    pub(crate) fn corner_list(&self) -> &Corners<'m> {
+        &self.corners
+    }
+
+    /// Iterates over the indices of all corners with a vertex: the triangles of its star, and the three corners of each
+    /// quadrilateral of its star that have the vertex.
+    pub(crate) fn corners_with(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        self.star(vertex).iter().flat_map(|&own| self.corners.beside(own))
     }
 
     /// Returns for each vertex whether a run may move it.
@@ -147,10 +245,16 @@ impl<'m> Topology<'m> {
         &self.free
     }
 
-    /// Returns whether a triangle has a free vertex. A run changes no other triangle. False if the mesh has no triangle
-    /// of this index.
-    pub fn can_move(&self, triangle: usize) -> bool {
-        self.triangles.get(triangle).is_some_and(|t| t.iter().any(|&v| self.free[v as usize]))
+    /// Returns whether an element has a free vertex. A run changes no other element. False if the mesh has no such element.
+    pub fn can_move(&self, element: Element) -> bool {
+        let free = |vertices: &[u32]| vertices.iter().any(|&v| self.free[v as usize]);
+        match element {
+            Element::Triangle(index) => self.triangles().get(index).is_some_and(|t| free(t)),
+            Element::Quadrilateral(index) => {
+                let has = index < self.corners.quadrilateral_count();
+                has && free(&self.corners.quadrilateral(index))
+            }
+        }
     }
 
     /// Returns the number of free vertices.
@@ -158,8 +262,9 @@ impl<'m> Topology<'m> {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// Returns the indices of the triangles at a vertex. Around a free vertex, triangles are in counter-clockwise order
-    /// and start with the least index; around other vertices, indices ascend. Empty if the mesh has no such vertex.
+    /// Returns the indices of the corners at a vertex, one for each of its elements: its triangles, and the corners of
+    /// quadrilaterals whose first vertex it is. Around a free vertex, corners are in counter-clockwise order and start with
+    /// the least index; around other vertices, indices ascend. Empty if the mesh has no such vertex.
     pub fn star(&self, vertex: u32) -> &[u32] {
         match self.free.get(vertex as usize) {
             Some(_) => self.stars().of(vertex as usize),
@@ -172,7 +277,7 @@ impl<'m> Topology<'m> {
         &self.fixed_on_boundary
     }
 
-    /// Returns the triangles at each vertex, computed if [`Self::forget_stars`] has freed them.
+    /// Returns the corners at each vertex, computed if [`Self::forget_stars`] has freed them.
     pub(crate) fn stars(&self) -> &Groups {
         self.stars.get_or_init(|| self.find_stars())
     }
@@ -184,14 +289,13 @@ impl<'m> Topology<'m> {
 
     #[cold]
     fn find_stars(&self) -> Groups {
-        let mut stars = stars(self.free.len(), &self.triangles);
-        close(&self.triangles, &mut stars, &mut vec![false; self.free.len()]);
+        let mut stars = find_stars(self.free.len(), &self.corners);
+        close(self.corners(), &mut stars, &mut vec![false; self.free.len()]);
         stars
     }
 
-    /// Returns the one-ring of a free vertex: its neighbors in counter-clockwise order. Neighbor `i` is the next corner
-    /// after the vertex in triangle `i` of [`star`](Self::star); the third corner is the next neighbor of the ring,
-    /// cyclically. Empty if the vertex is not free or its index exceeds the mesh.
+    /// Returns the one-ring of a free vertex: its neighbors along edges in counter-clockwise order. Neighbor `i` is the next
+    /// vertex in corner `i` of [`star`](Self::star); the third vertex is the next neighbor of the ring, cyclically. Empty if the vertex is not free or its index exceeds the mesh.
     pub fn ring(&self, free_vertex: u32) -> Vec<u32> {
         self.ring_of(free_vertex).collect()
     }
@@ -203,43 +307,75 @@ impl<'m> Topology<'m> {
             Some(true) => self.stars().of(free_vertex as usize),
             _ => &[],
         };
-        star.iter().map(move |&t| outer_edge(&self.triangles[t as usize], free_vertex).0)
+        star.iter().map(move |&t| outer_edge(&self.corners()[t as usize], free_vertex).0)
+    }
+
+    /// Iterates over the vertices of the elements around a free vertex, counter-clockwise, from the first neighbor of
+    /// [`ring`](Self::ring): neighbors along edges, and the opposite vertex of each quadrilateral, which is marked true.
+    pub(crate) fn around(&self, free_vertex: u32) -> impl Iterator<Item = (u32, bool)> + '_ {
+        let star = match self.free.get(free_vertex as usize) {
+            Some(true) => self.stars().of(free_vertex as usize),
+            _ => &[],
+        };
+        star.iter().flat_map(move |&corner| {
+            let (next, _) = outer_edge(&self.corners()[corner as usize], free_vertex);
+            let opposite = self.corners.opposite(corner).map(|vertex| (vertex, true));
+            [(next, false)].into_iter().chain(opposite)
+        })
     }
 }
 
-/// Checks that the mesh has triangles, that indices fit 32 bits and are valid, that coordinates are finite, and that no
-/// triangle repeats a vertex.
+/// Upper limit of the number of vertices. One-rings mark vertices by the highest bit of their numbers.
+const MOST_VERTICES: usize = 1 << 31;
+
+/// Checks that the mesh has elements, that indices fit 32 bits and are valid, that coordinates are finite, and that no
+/// element repeats a vertex.
 fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
-    let Mesh { points, triangles, fixed } = mesh;
-    if triangles.is_empty() {
+    let Mesh { points, triangles, quadrilaterals, fixed } = mesh;
+    if triangles.is_empty() && quadrilaterals.is_empty() {
         return Err(MeshError::Empty);
     }
-    if points.len() >= NONE as usize || triangles.len() >= NONE as usize / 3 {
-        return Err(MeshError::TooLarge { vertices: points.len(), triangles: triangles.len() });
+    let vertices = points.len();
+    let corners = triangles.len() + 4 * quadrilaterals.len();
+    if vertices >= MOST_VERTICES || corners >= NONE as usize / 3 {
+        return Err(MeshError::TooLarge { vertices, triangles: mesh.size().triangles });
     }
     check_finite(points)?;
-    let count = points.len() as u32;
-    let is_bad = |t: &[u32; 3]| {
-        let outside = (t[0] >= count) | (t[1] >= count) | (t[2] >= count);
-        outside | (t[0] == t[1]) | (t[1] == t[2]) | (t[2] == t[0])
-    };
-    if let Some(t) = first(triangles, is_bad) {
-        let corners = &triangles[t];
-        for (i, &vertex) in corners.iter().enumerate() {
-            if vertex as usize >= points.len() {
-                let vertices = points.len();
-                return Err(MeshError::IndexOutOfRange { triangle: Some(t), vertex, vertices });
-            }
-            if vertex == corners[(i + 1) % 3] {
-                return Err(MeshError::RepeatedVertex { triangle: t, vertex });
+    check_elements(vertices, triangles, Element::Triangle)?;
+    check_elements(vertices, quadrilaterals, Element::Quadrilateral)?;
+    match fixed.iter().find(|&&v| v as usize >= vertices) {
+        Some(&vertex) => Err(MeshError::IndexOutOfRange { element: None, vertex, vertices }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that the vertices of elements exist, and that no element repeats one.
+fn check_elements<const N: usize>(
+    vertices: usize,
+    elements: &[[u32; N]],
+    element: impl Fn(usize) -> Element,
+) -> Result<(), MeshError> {
+    let count = vertices as u32;
+    let is_bad = |corners: &[u32; N]| {
+        let mut bad = false;
+        for i in 0..N {
+            bad |= corners[i] >= count;
+            for k in 0..i {
+                bad |= corners[i] == corners[k];
             }
         }
+        bad
+    };
+    let Some(index) = first(elements, is_bad) else { return Ok(()) };
+    let (corners, element) = (&elements[index], element(index));
+    if let Some(&vertex) = corners.iter().find(|&&v| v >= count) {
+        return Err(MeshError::IndexOutOfRange { element: Some(element), vertex, vertices });
     }
-    if let Some(&vertex) = fixed.iter().find(|&&v| v as usize >= points.len()) {
-        let vertices = points.len();
-        return Err(MeshError::IndexOutOfRange { triangle: None, vertex, vertices });
+    let is_repeated = |&i: &usize| corners[i + 1..].contains(&corners[i]);
+    match (0..N).find(is_repeated) {
+        Some(i) => Err(MeshError::RepeatedVertex { element, vertex: corners[i] }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Checks that all coordinates are finite.
@@ -265,7 +401,7 @@ fn size(point: [f64; 2]) -> f64 {
     point[0].abs().max(point[1].abs())
 }
 
-/// Checks that the largest coordinate of a vertex that some triangle uses is from 1e-100 to 1e100 in absolute value.
+/// Checks that the largest coordinate of a vertex that some element uses is from 1e-100 to 1e100 in absolute value.
 /// Unused vertices may be anywhere. `size` returns the larger coordinate of each of `count` vertices, 0 for an unused
 /// vertex.
 fn check_size(count: usize, size: impl Fn(usize) -> f64 + Sync) -> Result<(), MeshError> {
@@ -286,7 +422,7 @@ mod tests {
         Mesh {
             points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.9]],
             triangles: vec![[0, 1, 4], [1, 2, 4], [2, 4, 3], [3, 0, 4]],
-            fixed: vec![],
+            ..Mesh::default()
         }
     }
 
@@ -318,7 +454,8 @@ mod tests {
         for (place, flat) in [([1.0, -0.5], false), ([1.0, 0.0], true)] {
             mesh.points[4] = place;
             let triangles = vec![BadTriangle { triangle: 0, vertices: [0, 1, 4], flat }];
-            assert_eq!(refusal(&mesh), MeshError::Infeasible { triangles });
+            let quadrilaterals = Vec::new();
+            assert_eq!(refusal(&mesh), MeshError::Infeasible { triangles, quadrilaterals });
         }
     }
 
@@ -328,7 +465,7 @@ mod tests {
         mesh.triangles.push([0, 4, 2]);
         let error = Topology::new(&mesh).unwrap_err();
         assert!(
-            matches!(error, MeshError::EdgeOfThree { ref triangles, .. } if triangles.len() == 3)
+            matches!(error, MeshError::EdgeOfThree { ref elements, .. } if elements.len() == 3)
         );
     }
 
@@ -337,11 +474,15 @@ mod tests {
         let mut mesh = fan();
         mesh.triangles[1][2] = 9;
         let error = Topology::new(&mesh).unwrap_err();
-        let expected = MeshError::IndexOutOfRange { triangle: Some(1), vertex: 9, vertices: 5 };
+        let expected = MeshError::IndexOutOfRange {
+            element: Some(Element::Triangle(1)),
+            vertex: 9,
+            vertices: 5,
+        };
         assert_eq!(error, expected);
         mesh.triangles[1] = [1, 2, 1];
         let error = Topology::new(&mesh).unwrap_err();
-        assert_eq!(error, MeshError::RepeatedVertex { triangle: 1, vertex: 1 });
+        assert_eq!(error, MeshError::RepeatedVertex { element: Element::Triangle(1), vertex: 1 });
         mesh = fan();
         mesh.points[3][1] = 1e200;
         assert_eq!(Topology::new(&mesh).unwrap_err(), MeshError::OutOfRange { size: 1e200 });

@@ -56,7 +56,9 @@ impl Topology<'_> {
     /// Returns the edges of which neither end is free, each once, ascending.
     fn held_edges(&self) -> Vec<[u32; 2]> {
         let is_held = |edge: &[u32; 2]| edge.iter().all(|&v| !self.free()[v as usize]);
-        let sides = self.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let corners = self.corner_list();
+        let sides = (0..self.corners().len()).flat_map(|corner| corners.sides(corner));
+        let sides = sides.map(|(_, ends)| ends);
         let ascending = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
         let mut edges: Vec<[u32; 2]> = sides.filter(is_held).map(ascending).collect();
         edges.sort_unstable();

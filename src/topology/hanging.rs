@@ -47,7 +47,7 @@ impl Topology<'_> {
         Ok(nodes)
     }
 
-    /// Returns the boundary edges, each with the third corner of its triangle. Needs no stars: sorts the edges that
+    /// Returns the boundary edges, each with the third vertex of its corner. Needs no stars: sorts the edges that
     /// join two fixed or boundary vertices, and keeps edges that occur once.
     fn outer_edges(&self) -> Vec<[u32; 3]> {
         let is_held = |&[a, b, _]: &[u32; 3]| !self.free()[a as usize] && !self.free()[b as usize];
@@ -56,6 +56,8 @@ impl Topology<'_> {
             edges.filter(is_held).collect::<Vec<_>>()
         };
         let mut edges = map_parts(self.triangles().chunks(1 << 14), of_part).concat();
+        // The corner of a quadrilateral begins with a side, and ends with a vertex beside that side.
+        edges.extend(self.corner_list().of_quadrilaterals().iter().filter(|t| is_held(t)));
         let ends = |&[a, b, _]: &[u32; 3]| [a.min(b), a.max(b)];
         edges.sort_unstable_by_key(ends);
         let of_one = edges.chunk_by(|a, b| ends(a) == ends(b)).filter(|same| same.len() == 1);

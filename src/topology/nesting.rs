@@ -43,11 +43,11 @@ impl Topology<'_> {
         }))
     }
 
-    /// Returns the triangle at the first edge of a boundary loop.
+    /// Returns the corner at the first edge of a boundary loop.
     fn beside(&self, vertices: &[u32]) -> Option<u32> {
         let &[from, to, ..] = vertices else { return None };
         let has_edge = |t: &u32| {
-            let corners = self.triangles()[*t as usize];
+            let corners = self.corners()[*t as usize];
             (0..3).any(|k| [corners[k], corners[(k + 1) % 3]] == [from, to])
         };
         self.star(from).iter().copied().find(has_edge)
@@ -118,7 +118,7 @@ mod tests {
             let is_corner = (4.0..=5.0).contains(&p[1]) && [2.0, 3.0, 6.0, 7.0].contains(&p[0]);
             if is_corner { to(p) } else { p }
         };
-        Mesh { points: (0..100).map(point).collect(), triangles, fixed: vec![] }
+        Mesh { points: (0..100).map(point).collect(), triangles, ..Mesh::default() }
     }
 
     fn misplaced(mesh: &Mesh) -> Option<Vec<u32>> {

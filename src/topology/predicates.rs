@@ -2,7 +2,8 @@
 
 use robust::Coord;
 
-use crate::error::{BadTriangle, MeshError};
+use crate::error::MeshError;
+use crate::mesh::Element;
 use crate::parallel::pace::now;
 use crate::parallel::paced;
 
@@ -110,7 +111,11 @@ pub fn infeasible(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Result<Vec<u32
     if let Some(t) = bad
         && let Some(&vertex) = triangles[t].iter().find(|v| missing(v))
     {
-        return Err(MeshError::IndexOutOfRange { triangle: Some(t), vertex, vertices });
+        return Err(MeshError::IndexOutOfRange {
+            element: Some(Element::Triangle(t)),
+            vertex,
+            vertices,
+        });
     }
     Ok(now(not_positive(points, triangles)))
 }
@@ -126,17 +131,6 @@ pub(crate) async fn not_positive(points: &[[f64; 2]], triangles: &[[u32; 3]]) ->
         bad.map(|(_, index)| index as u32).collect()
     });
     found.await.concat()
-}
-
-/// Returns the triangles that are not counter-clockwise, in ascending order. Each [`BadTriangle`] tells flat triangles
-/// from inverted ones.
-pub(crate) async fn bad_triangles(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<BadTriangle> {
-    let describe = |t: u32| {
-        let vertices = triangles[t as usize];
-        let flat = orientation(points, &vertices) == 0.0;
-        BadTriangle { triangle: t as usize, vertices, flat }
-    };
-    not_positive(points, triangles).await.into_iter().map(describe).collect()
 }
 
 #[cfg(test)]
@@ -240,7 +234,11 @@ mod tests {
     fn a_triangle_of_a_missing_vertex_is_an_error() {
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let error = infeasible(&points, &[[0, 1, 2], [0, 3, 1]]);
-        let expected = MeshError::IndexOutOfRange { triangle: Some(1), vertex: 3, vertices: 3 };
+        let expected = MeshError::IndexOutOfRange {
+            element: Some(Element::Triangle(1)),
+            vertex: 3,
+            vertices: 3,
+        };
         assert_eq!(error, Err(expected));
     }
 }

@@ -1,32 +1,45 @@
-//! Stars: the triangles at each vertex, and whether these triangles form a cycle around the vertex.
+//! Stars: the corners at each vertex, and whether their elements form a cycle around the vertex.
 
+use crate::mesh::Element;
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_parts;
+use crate::topology::corners::Corners;
 
-/// Returns the triangles at each vertex, as ascending indices.
-pub(crate) fn stars(vertices: usize, triangles: &[[u32; 3]]) -> Groups {
-    Groups::new(triangles.len(), vertices, |t| triangles[t])
+/// Returns the corners at each vertex as ascending indices: the triangles with the vertex, and the corners of quadrilaterals
+/// whose first vertex it is.
+pub(crate) fn stars(vertices: usize, corners: &Corners<'_>) -> Groups {
+    let (all, triangles) = (corners.all(), corners.triangles().len());
+    if all.len() == triangles {
+        return Groups::new(triangles, vertices, |t| all[t]);
+    }
+    let keys = |corner: usize| {
+        let count = if corner < triangles { 3 } else { 1 };
+        all[corner].into_iter().take(count)
+    };
+    Groups::of_keys(all.len(), 2 * triangles + all.len(), vertices, keys)
 }
 
-/// Returns the triangles other than `triangle` at the edge between the vertices `a` and `b`.
+/// Returns the elements at the edge between the vertices `a` and `b`, other than that with the first corner `element`, by
+/// their first corners.
 ///
-/// Searches the star of the vertex that has fewer triangles. For all edges of a planar mesh this takes linear time,
-/// however many triangles some vertices have (Chiba & Nishizeki, SIAM J. Comput. 14, 1985).
+/// Searches the star of the vertex that has fewer elements. For all edges of a planar mesh this takes linear time,
+/// however many elements some vertices have (Chiba & Nishizeki, SIAM J. Comput. 14, 1985).
 pub(crate) fn others_at_edge<'a>(
-    triangles: &'a [[u32; 3]],
+    corners: &'a Corners<'_>,
     stars: &'a Groups,
-    triangle: u32,
+    element: u32,
     [a, b]: [u32; 2],
 ) -> impl Iterator<Item = u32> + 'a {
     let (at_a, at_b) = (stars.of(a as usize), stars.of(b as usize));
     let (star, end) = if at_a.len() <= at_b.len() { (at_a, b) } else { (at_b, a) };
-    let is_other = move |&t: &u32| t != triangle && triangles[t as usize].contains(&end);
-    star.iter().copied().filter(is_other)
+    let has_edge = move |&&corner: &&u32| corners.all()[corner as usize].contains(&end);
+    let firsts = star.iter().filter(has_edge).map(|&corner| corners.first(corner));
+    firsts.filter(move |&first| first != element)
 }
 
-/// Sets `closed` for the vertices around which the triangles form one cycle, and sorts the stars of these vertices in
-/// the order of the cycle. Returns false if two triangles have an edge in the same direction: either windings are
-/// inconsistent, or more than two triangles share the edge. `closed` is then not valid.
+/// Sets `closed` for the vertices around which the elements form one cycle, and sorts the stars of these vertices in
+/// the order of the cycle. Returns false if two elements have an edge in the same direction: either windings are
+/// inconsistent, or more than two elements share the edge. `closed` is then not valid. `triangles` are all corners.
 pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bool]) -> bool {
     const CHUNK: usize = 1 << 12;
     let parts = stars.chunks_mut(CHUNK).into_iter().zip(closed.chunks_mut(CHUNK));
@@ -51,6 +64,28 @@ pub(crate) fn close(triangles: &[[u32; 3]], stars: &mut Groups, closed: &mut [bo
         consistent
     });
     !consistent.contains(&false)
+}
+
+/// Returns the first vertex inside a mesh with two elements alone, and these elements. Two triangles with two common edges have
+/// opposite windings, so one of the elements is a quadrilateral.
+pub(crate) fn doublet(
+    corners: &Corners<'_>,
+    stars: &Groups,
+    closed: &[bool],
+) -> Option<(u32, [Element; 2])> {
+    if corners.of_quadrilaterals().is_empty() {
+        return None;
+    }
+    let at = |vertex: usize| match stars.of(vertex) {
+        &[one, other] if !closed[vertex] => {
+            let edge = |corner: u32| outer_edge(&corners.all()[corner as usize], vertex as u32);
+            let ((from, to), back) = (edge(one), edge(other));
+            let elements = [one, other].map(|corner| corners.element(corner));
+            (back == (to, from)).then_some((vertex as u32, elements))
+        }
+        _ => None,
+    };
+    (0..closed.len()).find_map(at)
 }
 
 /// The edge of a triangle opposite to one of its vertices, in the direction of the triangle's winding.
@@ -169,6 +204,7 @@ fn are_different(edges: &[OuterEdge]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Mesh;
 
     #[test]
     fn a_vertex_joining_two_fans_stays() {
@@ -176,7 +212,8 @@ mod tests {
         // either half.
         let ring_of = |triangles: &[[u32; 3]]| {
             let mut edges = Vec::new();
-            outer_edges(triangles, stars(7, triangles).of(0), 0, &mut edges);
+            let mesh = Mesh { triangles: triangles.to_vec(), ..Mesh::default() };
+            outer_edges(triangles, stars(7, &Corners::of(&mesh)).of(0), 0, &mut edges);
             chain(&mut edges).then(|| edges.iter().map(|e| e.from).collect::<Vec<_>>())
         };
         let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5], [0, 5, 6], [0, 6, 4]];

@@ -4,6 +4,7 @@
 //! in a pentagram. Counting needs only comparisons of coordinates, so the number of turns is exact.
 
 use crate::parallel::map_parts;
+use crate::topology::corners::Corners;
 use crate::topology::predicates::{is_positive, is_surely_positive};
 
 /// Returns whether `p` has a greater y coordinate than `q`, or the same y and a greater x.
@@ -23,9 +24,9 @@ fn ahead(points: &[[f64; 2]], corners: &[u32; 3]) -> [bool; 3] {
     [falls[2] & falls[0], falls[0] & falls[1], falls[1] & falls[2]]
 }
 
-/// Returns whether every triangle is counter-clockwise and the triangles of every free vertex wind once around it.
+/// Returns whether every corner is counter-clockwise and the elements of every free vertex wind once around it.
 /// Tests both in a single pass, as nearly all meshes are feasible.
-pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[bool]) -> bool {
+pub(crate) fn is_feasible(points: &[[f64; 2]], corners: &Corners<'_>, free: &[bool]) -> bool {
     let count = |_, chunk: &[[u32; 3]]| -> Option<usize> {
         let (mut sure, mut turns) = (true, 0);
         for t in chunk {
@@ -34,27 +35,43 @@ pub(crate) fn is_feasible(points: &[[f64; 2]], triangles: &[[u32; 3]], free: &[b
         }
         (sure || chunk.iter().all(|t| is_positive(points, t))).then_some(turns)
     };
-    let turns: Option<usize> = map_parts(triangles.chunks(1 << 10), count).into_iter().sum();
-    turns == Some(count_of(free))
+    let of_triangles: Option<usize> =
+        map_parts(corners.triangles().chunks(1 << 10), count).into_iter().sum();
+    let count = |_, chunk: &[[u32; 3]]| -> Option<usize> {
+        let are_positive = chunk.iter().all(|t| is_positive(points, t));
+        are_positive.then(|| chunk.iter().filter(|t| turns_at_own(points, t, free)).count())
+    };
+    let of_others: Option<usize> =
+        map_parts(corners.of_quadrilaterals().chunks(1 << 10), count).into_iter().sum();
+    matches!((of_triangles, of_others), (Some(a), Some(b)) if a + b == count_of(free))
 }
 
-/// Returns the first free vertex around which triangles wind more than once, and the number of turns. `None` if there
-/// is no such vertex. All triangles must be counter-clockwise.
+/// Returns the first free vertex around which elements wind more than once, and the number of turns. `None` if there
+/// is no such vertex. All corners must be counter-clockwise.
 pub(crate) fn overlapping_star(
     points: &[[f64; 2]],
-    triangles: &[[u32; 3]],
+    corners: &Corners<'_>,
     free: &[bool],
 ) -> Option<(u32, u32)> {
     let count = |_, chunk: &[[u32; 3]]| -> usize {
         chunk.iter().map(|t| turns_at_free(points, t, free)).sum()
     };
-    let turns: usize = map_parts(triangles.chunks(1 << 12), count).into_iter().sum();
+    let of_triangles: usize =
+        map_parts(corners.triangles().chunks(1 << 12), count).into_iter().sum();
+    let count = |_, chunk: &[[u32; 3]]| -> usize {
+        chunk.iter().filter(|t| turns_at_own(points, t, free)).count()
+    };
+    let of_others: usize =
+        map_parts(corners.of_quadrilaterals().chunks(1 << 12), count).into_iter().sum();
     // Each star winds at least once, so equal sums mean that every star winds exactly once.
-    if turns == count_of(free) {
+    if of_triangles + of_others == count_of(free) {
         return None;
     }
     let mut turns = vec![0; free.len()];
-    for t in triangles {
+    for t in corners.of_quadrilaterals().iter().filter(|t| turns_at_own(points, t, free)) {
+        turns[t[0] as usize] += 1;
+    }
+    for t in corners.triangles() {
         let counts = ahead(points, t).into_iter().zip(t).find(|(ahead, _)| *ahead);
         if let Some((_, &v)) = counts
             && free[v as usize]
@@ -73,6 +90,12 @@ fn turns_at_free(points: &[[f64; 2]], corners: &[u32; 3], free: &[bool]) -> usiz
     let is_ahead = ahead(points, corners);
     let counts = |corner: usize| is_ahead[corner] & free[corners[corner] as usize];
     usize::from(counts(0) | counts(1) | counts(2))
+}
+
+/// Returns whether the first vertex of a corner of a quadrilateral is free, and the corner counts as a turn around it; see
+/// [`ahead`].
+fn turns_at_own(points: &[[f64; 2]], corner: &[u32; 3], free: &[bool]) -> bool {
+    free[corner[0] as usize] && ahead(points, corner)[0]
 }
 
 /// Returns the number of free vertices.
@@ -102,7 +125,7 @@ mod tests {
                 let (points, triangles) = fan(around, turns, angle);
                 let mut free = vec![false; points.len()];
                 free[around as usize] = true;
-                let found = overlapping_star(&points, &triangles, &free);
+                let found = overlapping_star(&points, &Corners::of_lists(triangles, &[]), &free);
                 let expected = (turns > 1).then_some((around, turns));
                 assert_eq!(found, expected, "{around} triangles, {turns} turns, at {angle}");
             }
@@ -114,6 +137,9 @@ mod tests {
         let points = vec![[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 0.0]];
         let triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
         let free = [false, false, false, false, true];
-        assert_eq!(overlapping_star(&points, &triangles, &free), None);
+        assert_eq!(
+            overlapping_star(&points, &Corners::of_lists(triangles.to_vec(), &[]), &free),
+            None
+        );
     }
 }

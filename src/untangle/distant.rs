@@ -81,7 +81,7 @@ mod tests {
         Mesh {
             points: vec![[1e6, 0.0], [1e6 + 2.0, 0.0], [1e6 + 2.0, 2.0], [1e6, 2.0], center],
             triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
-            fixed: vec![],
+            ..Mesh::default()
         }
     }
 

@@ -11,7 +11,7 @@ use crate::parallel::pace::now;
 use crate::precision::Precision;
 use crate::topology::Topology;
 use crate::topology::overlapping_star;
-use crate::topology::predicates::bad_triangles;
+use crate::topology::predicates::not_positive;
 
 /// A mesh with the precision in which exact predicates judge its triangles.
 pub(super) struct Judge<'m> {
@@ -28,12 +28,14 @@ impl Judge<'_> {
     /// flat for double precision are in the list too.
     pub(super) fn bad_triangles(&self, points: &[[f64; 2]]) -> (Vec<BadTriangle>, usize) {
         let triangles = self.topology.triangles();
-        let mut bad = now(bad_triangles(points, triangles));
+        let exact = now(not_positive(points, triangles));
+        let (mut bad, _) = self.topology.described(points, &exact);
         let exact: HashSet<usize> = bad.iter().map(|bad| bad.triangle).collect();
         let beyond =
             now(self.problem.beyond_precision(&now(self.problem.normalized(points, Vec::new()))));
-        for triangle in self.problem.in_mesh(&beyond, triangles) {
-            if !exact.contains(&triangle) && self.topology.can_move(triangle) {
+        for element in self.problem.in_mesh(&beyond, self.topology) {
+            let triangle = element.index();
+            if !exact.contains(&triangle) && self.topology.can_move(element) {
                 bad.push(BadTriangle { triangle, vertices: triangles[triangle], flat: true });
             }
         }
@@ -47,10 +49,12 @@ impl Judge<'_> {
         for x in points.as_flattened_mut() {
             *x = self.stored.rounded(*x);
         }
-        let triangles = self.topology.triangles();
         let (left, exactly_bad) = self.bad_triangles(&points);
         let overlapping = match left.is_empty() {
-            true => overlapping_star(&points, triangles, self.topology.free()).map(|(v, _)| v),
+            true => {
+                let (corners, free) = (self.topology.corner_list(), self.topology.free());
+                overlapping_star(&points, corners, free).map(|(v, _)| v)
+            }
             false => None,
         };
         Judgment { points, left, exactly_bad, overlapping }

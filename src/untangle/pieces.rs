@@ -209,7 +209,7 @@ mod tests {
         let cells = (0..72u32).filter(|k| k % 9 < 8 && *k != 4 * 9 + 4);
         let triangles = cells.flat_map(|k| [[k, k + 1, k + 10], [k, k + 10, k + 9]]).collect();
         let fixed = if lone { vec![2 * 9 + 2] } else { Vec::new() };
-        prepare(&Mesh { points, triangles, fixed }).unwrap().1
+        prepare(&Mesh { points, triangles, fixed, ..Mesh::default() }).unwrap().1
     }
 
     /// Returns twice the area that a boundary encloses, negative if the boundary runs clockwise.

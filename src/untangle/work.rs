@@ -13,6 +13,7 @@ use super::stages::{DESCENTS, Descent, NEWTON, STAGES, Stage, Start};
 use super::state::{Region, State};
 use crate::error::{BadTriangle, MeshError};
 use crate::layout::{Coloring, Problem, target_areas};
+use crate::mesh::Element;
 use crate::mesh::Mesh;
 use crate::parallel::pace::now;
 use crate::precision::Precision;
@@ -42,6 +43,7 @@ pub(super) fn untangled(
     stored: Precision,
     observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
 ) -> Result<Untangled, MeshError> {
+    MeshError::check_triangles_alone(mesh, "untangling")?;
     let topology = Topology::by_area(mesh)?;
     let distant = distant_vertices(mesh, &topology);
     let start = match distant.is_empty() {
@@ -57,15 +59,16 @@ pub(super) fn untangled(
         !bad.vertices.iter().any(is_distant) || !is_positive(&mesh.points, &bad.vertices)
     });
     if !before.is_empty()
-        && let Some(triangle) = topology.closed_part()
+        && let Some(element) = topology.closed_part()
     {
-        return Err(MeshError::Closed { triangle });
+        return Err(MeshError::Closed { element });
     }
     let is_hopeless = |bad: &BadTriangle| {
         let [p, q, r] =
             bad.vertices.map(|v| (!topology.free()[v as usize], mesh.points[v as usize]));
         let coincide = |(a, b): ((bool, [f64; 2]), (bool, [f64; 2]))| a.0 && a == b;
-        !topology.can_move(bad.triangle) || [(p, q), (q, r), (r, p)].into_iter().any(coincide)
+        !topology.can_move(Element::Triangle(bad.triangle))
+            || [(p, q), (q, r), (r, p)].into_iter().any(coincide)
     };
     let hopeless: Vec<BadTriangle> = before.iter().copied().filter(is_hopeless).collect();
     let mut result = Untangled {

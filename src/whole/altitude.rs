@@ -19,7 +19,7 @@ fn least(triangles: &[[u32; 3]], at: impl Fn(u32) -> DVec2) -> f64 {
 /// problem's positions.
 pub(crate) fn least_of(problem: &Problem) -> f64 {
     let (coordinates, positions) = (problem.coordinates(), problem.positions());
-    least(problem.triangles(), |v| coordinates.at(positions[v as usize]))
+    least(problem.corners().all(), |v| coordinates.at(positions[v as usize]))
 }
 
 /// Undoes moves until no triangle for which `is_bad` is true has a moved vertex. Returns every vertex whose move was
@@ -58,7 +58,7 @@ pub(crate) fn restore(
 ) -> usize {
     let vectors = |points: &[[f64; 2]]| points.iter().map(|&p| p.into()).collect::<Vec<DVec2>>();
     let (old, mut new) = (vectors(before), vectors(points));
-    let triangles = topology.triangles();
+    let triangles = topology.corners();
     let floor = least(triangles, |v| old[v as usize]);
     // An altitude of NaN counts as below the floor.
     let is_low = |t: &[u32; 3], at: &[DVec2]| {

@@ -158,7 +158,7 @@ async fn exceeds_single_precision(problem: &Problem, plan: &Plan, positions: &[D
     let mut metrics = plan.tracked();
     metrics.extend(plan.scheme.metrics());
     metrics.retain(|metric| !metric.properties().is_inverse_mean_ratio);
-    let count = problem.judged_triangles().len() as f64;
+    let count = problem.judged_count() as f64;
     for metric in metrics {
         let sum = mean_excess(metric, problem, positions).await * count;
         // A sum of NaN counts as too large.

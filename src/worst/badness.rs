@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::layout::{MeshCoordinates, Problem};
-use crate::metric::{Corner, Dual, Ideal, Real};
+use crate::metric::{Corner, Dual, EdgeSlopes, Given, Ideal, Real};
 use crate::options::WorstBy;
 use crate::patch::{FanCorner, FanPatch};
 use crate::topology::predicates::is_positive;
@@ -25,6 +25,12 @@ impl Badness {
         let area = corner.doubled_area();
         let per_area = area.constant(1.0) / (area * area);
         match self.0 {
+            // A quadrilateral has the angle between the two sides, and none at its diagonals.
+            WorstBy::MinAngle if corner.ideal.is_right => {
+                let corner = corner.before_shear();
+                let ([a, b, _], area) = (corner.squared_lengths(), corner.doubled_area());
+                ([a * b / (area * area); 3], 1)
+            }
             WorstBy::Imr => {
                 let sum = (a + b + c) * IDEAL;
                 ([sum * sum * per_area; 3], 1)
@@ -51,7 +57,7 @@ impl Badness {
     ) -> Corner<f64> {
         if !self.is_of_targets() {
             let ends = triangle.ends.map(|end| coordinates.at(end));
-            return FanCorner { ends, map: None }.in_plane(coordinates.at(at), ideal);
+            return FanCorner { ends, ..*triangle }.edges(coordinates.at(at), ideal);
         }
         let corner = triangle.in_plane(at, ideal);
         triangle.map.map_or(corner, |map| map.transform(&corner))
@@ -81,16 +87,26 @@ impl Badness {
         terms[..count].iter().map(|term| power(term / unit, doublings)).sum()
     }
 
-    /// Returns the sum of [`power`](Self::power) with its derivatives by the vertex at which the edges of the triangle
-    /// start.
+    /// Returns the slopes of the edges of a corner as [`seen`](Self::seen) returns it, by the position of the visited vertex.
+    pub(crate) fn slopes(self, corner: &FanCorner) -> Given {
+        match self.is_of_targets() {
+            true => corner.role.slopes(),
+            false => corner.role.plane_slopes(),
+        }
+    }
+
+    /// Returns the sum of [`power`](Self::power) with its derivatives by the visited vertex. `edges` has the slopes of the
+    /// edges by the position of the vertex.
     pub(crate) fn power_derivatives(
         self,
         corner: &Corner<f64>,
+        edges: Given,
         unit: f64,
         doublings: u32,
     ) -> Dual<f64> {
-        let vertex = |edge: [f64; 2]| [0, 1].map(|axis| Dual::variable(edge[axis], axis, -1.0));
-        let (a, b) = (vertex(corner.a), vertex(corner.b));
+        let vertex =
+            |edge: [f64; 2], slope| [0, 1].map(|axis| Dual::variable(edge[axis], axis, slope));
+        let (a, b) = (vertex(corner.a, edges.alpha()), vertex(corner.b, edges.beta()));
         let (terms, count) = self.terms(&Corner { a, b, ideal: corner.ideal });
         let k = 2f64.powi(doublings as i32);
         terms[..count].iter().fold(Dual::default(), |sum, term| {
@@ -127,12 +143,13 @@ fn is_sound(corner: &Corner<f64>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::patch::Role;
 
     const POINTS: [[f64; 2]; 3] = [[0.1, 0.2], [1.3, 0.1], [0.4, 0.9]];
 
     fn seen_from(at: [f64; 2]) -> Corner<f64> {
         let ends = [POINTS[1], POINTS[2]].map(DVec2::from);
-        FanCorner { ends, map: None }.in_plane(at.into(), Ideal::of_area(1.0))
+        FanCorner { ends, map: None, role: Role::Triangle }.in_plane(at.into(), Ideal::of_area(1.0))
     }
 
     #[test]
@@ -169,7 +186,12 @@ mod tests {
                     let [px, py] = POINTS[0];
                     badness.power(&seen_from([px + x * h, py + y * h]), unit, doublings)
                 };
-                let found = badness.power_derivatives(&seen_from(POINTS[0]), unit, doublings);
+                let found = badness.power_derivatives(
+                    &seen_from(POINTS[0]),
+                    Given(-1.0, -1.0),
+                    unit,
+                    doublings,
+                );
                 let here = value(0.0, 0.0);
                 assert!((found.value - here).abs() < 1e-12 * here);
                 let size = found.hessian.iter().fold(0.0, |m: f64, x| m.max(x.abs()));

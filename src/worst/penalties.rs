@@ -1,7 +1,7 @@
 //! The penalties that bring triangles back within limits of angle and inverse mean ratio.
 
-use crate::metric::{Corner, Dual, Hinge, OfEdges, Real};
-use crate::patch::{FanCorner, FanPatch, Objective, is_acceptable};
+use crate::metric::{Corner, Dual, EdgeSlopes, Given, Hinge, OfEdges, Real};
+use crate::patch::{FanCorner, FanPatch, Objective, Role, is_acceptable};
 use crate::slide::OfPatch;
 use crate::worst::shapes::WorstShapes;
 
@@ -79,21 +79,35 @@ impl Penalties {
         (a * a + b * b + c * c + 2.0) * (1.0 / 3.0)
     }
 
+    /// Returns the cotangents of the angles: three of a triangle, and one of a corner of a quadrilateral.
+    fn angles<T: Real>(corner: &Corner<T>, cotangents: [T; 3]) -> impl Iterator<Item = T> {
+        let (list, count) = match corner.ideal.is_right {
+            true => ([corner.before_shear().cotangents()[0]; 3], 1),
+            false => (cotangents, 3),
+        };
+        list.into_iter().take(count)
+    }
+
     fn of(&self, corner: &Corner<f64>) -> f64 {
         let cotangents = corner.cotangents();
         let square = Self::square(cotangents);
-        let small: f64 = cotangents.iter().map(|&x| self.small.of(x)).sum();
-        let large: f64 = cotangents.iter().map(|&x| self.large.of(-x)).sum();
+        let angles = || Self::angles(corner, cotangents);
+        let small: f64 = angles().map(|x| self.small.of(x)).sum();
+        let large: f64 = angles().map(|x| self.large.of(-x)).sum();
         square + self.weight * (small * self.small_share + large + self.square.of(square))
     }
 
-    /// Returns the function with its derivatives by the vertex at which the edges of the triangle start.
-    fn expansion(&self, corner: &Corner<f64>) -> Dual {
-        let vertex = |edge: [f64; 2]| [0, 1].map(|axis| Dual::variable(edge[axis], axis, -1.0));
-        let (a, b) = (vertex(corner.a), vertex(corner.b));
-        let cotangents = Corner { a, b, ideal: corner.ideal }.cotangents();
+    /// Returns the function with its derivatives by the visited vertex. `edges` has the slopes of the edges by the position of
+    /// the vertex.
+    fn expansion(&self, corner: &Corner<f64>, edges: Given) -> Dual {
+        let vertex =
+            |edge: [f64; 2], slope| [0, 1].map(|axis| Dual::variable(edge[axis], axis, slope));
+        let (a, b) = (vertex(corner.a, edges.alpha()), vertex(corner.b, edges.beta()));
+        let corner = Corner { a, b, ideal: corner.ideal };
+        let cotangents = corner.cotangents();
         let square = Self::square(cotangents);
-        let penalties = cotangents.into_iter().fold(self.square.expansion(square), |sum, x| {
+        let angles = Self::angles(&corner, cotangents);
+        let penalties = angles.fold(self.square.expansion(square), |sum, x| {
             let small = self.small.expansion(x) * self.small_share;
             sum + small + self.large.expansion(x * -1.0)
         });
@@ -110,13 +124,14 @@ pub(crate) struct PenaltyObjective<'a> {
 }
 
 impl PenaltyObjective<'_> {
-    /// Returns the triangles of the patch with their penalties.
-    fn corners(&self, at: [f64; 2]) -> impl Iterator<Item = (Corner<f64>, Penalties)> {
+    /// Returns the corners of the patch with their penalties and places of the visited vertex.
+    fn corners(&self, at: [f64; 2]) -> impl Iterator<Item = (Corner<f64>, Penalties, Role)> {
         let Self { patch, penalties, ref heavy } = *self;
         let of = move |(k, triangle): (usize, &FanCorner)| {
             let is_heavy = heavy.get(k).copied().unwrap_or_default();
             let weight = if is_heavy { HEAVY * penalties.weight } else { penalties.weight };
-            (triangle.in_plane(at.into(), patch.ideal), Penalties { weight, ..penalties })
+            let corner = triangle.in_plane(at.into(), patch.ideal);
+            (corner, Penalties { weight, ..penalties }, triangle.role)
         };
         patch.corners.iter().enumerate().map(of)
     }
@@ -124,12 +139,16 @@ impl PenaltyObjective<'_> {
 
 impl Objective<f64> for PenaltyObjective<'_> {
     fn expansion(&self, at: [f64; 2]) -> Dual {
-        let add = |sum, (corner, penalties): (_, Penalties)| sum + penalties.expansion(&corner);
+        let add = |sum, (corner, penalties, role): (_, Penalties, Role)| {
+            sum + role.weighted(penalties.expansion(&corner, role.slopes()))
+        };
         self.corners(at).fold(Dual::default(), add)
     }
 
     fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
-        (self.corners(to).map(|(corner, penalties)| penalties.of(&corner)).sum(), true)
+        let of =
+            |(corner, penalties, role): (_, Penalties, Role)| role.weighted(penalties.of(&corner));
+        (self.corners(to).map(of).sum(), true)
     }
 }
 
@@ -170,14 +189,15 @@ mod tests {
         assert_eq!([0, 1, 2, 8, 9, 99].map(weight), [1e3, 1e3, 3e3, 8.1e4, 8.1e5, 1e12]);
         let penalties = Penalties::new(worst).in_round(3);
         let ends = [[1.3, 0.1], [0.4, 0.9]].map(DVec2::from);
+        let role = Role::Triangle;
         let corner = |x: f64, y: f64| {
-            FanCorner { ends, map: None }.in_plane(DVec2::new(x, y), Ideal::of_area(1.0))
+            FanCorner { ends, map: None, role }.in_plane(DVec2::new(x, y), Ideal::of_area(1.0))
         };
         // Both penalties act at the first place, and neither at the second.
         let (h, mut sizes) = (1e-5, Vec::new());
         for [x, y] in [[0.1, 0.4], [0.15, 0.0]] {
             let value = |i: f64, j: f64| penalties.of(&corner(x + i * h, y + j * h));
-            let found = penalties.expansion(&corner(x, y));
+            let found = penalties.expansion(&corner(x, y), role.slopes());
             let here = value(0.0, 0.0);
             assert!((found.value - here).abs() < 1e-12 * here);
             let size = found.hessian.iter().fold(1.0, |m: f64, x| m.max(x.abs()));

@@ -8,7 +8,8 @@ use crate::layout::{MeshCoordinates, Problem};
 use crate::metric::{Dual, Ideal, Smoothing, TargetMap};
 use crate::parallel::pace::pause;
 use crate::patch::{
-    Circle, FanCorner, FanPatch, MetricObjective, Objective, SearchRule, is_acceptable, step_alone,
+    Circle, FanCorner, FanPatch, MetricObjective, Objective, Role, SearchRule, is_acceptable,
+    step_alone,
 };
 use crate::run::SweepParams;
 use crate::worst::badness::Badness;
@@ -47,22 +48,23 @@ pub(crate) fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
     triangle
 }
 
-/// A triangle at a vertex: the other two corners, counter-clockwise, and the target map of the triangle.
-struct PatchTriangle {
+/// A corner with a vertex: its other two vertices, counter-clockwise, and its target map.
+struct PatchCorner {
     ends: [u32; 2],
     map: Option<TargetMap<f64>>,
+    role: Role,
     /// Whether penalties on the triangle are larger.
     is_heavy: bool,
 }
 
-/// Free vertices that move together, with the triangles around each. Indices within the region begin with the moving
+/// Free vertices that move together, with the corners around each. Indices within the region begin with the moving
 /// vertices, and their fixed neighbors follow.
 pub(crate) struct Region<'a> {
     rules: &'a MoveConstraints<'a>,
     /// Indices of the moving vertices in the problem.
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
-    stars: Vec<Vec<PatchTriangle>>,
+    stars: Vec<Vec<PatchCorner>>,
     /// For each moving vertex, the circle that limits its coordinates of the mesh.
     bounds: Vec<Circle>,
     ideal: Ideal,
@@ -80,19 +82,18 @@ impl<'a> Region<'a> {
         let mut number: HashMap<u32, u32> = vertices.iter().copied().zip(0..).collect();
         let mut stars = Vec::new();
         for &v in &vertices {
-            let ring = problem.ring_of(v);
-            let next = ring.iter().skip(1).chain(ring.first());
-            let side = |(&a, &b): (&u32, &u32)| {
-                let ends = [a, b].map(|end| {
+            let corner = |(corner, is_right): ([u32; 3], bool)| {
+                let (role, ends) = Role::of(corner, is_right, v);
+                let ends = ends.map(|end| {
                     *number.entry(end).or_insert_with(|| {
                         places.push(positions[end as usize]);
                         places.len() as u32 - 1
                     })
                 });
-                let is_heavy = rules.heavy.is_some_and(|heavy| heavy.contains(&sorted([v, a, b])));
-                PatchTriangle { ends, map: problem.target_map(&[v, a, b]), is_heavy }
+                let is_heavy = rules.heavy.is_some_and(|heavy| heavy.contains(&sorted(corner)));
+                PatchCorner { ends, map: problem.target_map(&corner), role, is_heavy }
             };
-            stars.push(ring.iter().zip(next).map(side).collect());
+            stars.push(problem.corners_around(v).map(corner).collect());
         }
         let coordinates = problem.coordinates();
         let bound = |&v: &u32| {
@@ -167,9 +168,10 @@ impl<'a> Region<'a> {
 
     /// Returns the triangles around a vertex, with the positions of their corners.
     fn patch(&self, v: usize) -> FanPatch {
-        let corner = |side: &PatchTriangle| FanCorner {
-            ends: side.ends.map(|end| self.positions[end as usize]),
-            map: side.map,
+        let corner = |corner: &PatchCorner| FanCorner {
+            ends: corner.ends.map(|end| self.positions[end as usize]),
+            map: corner.map,
+            role: corner.role,
         };
         let corners = self.stars[v].iter().map(corner).collect();
         let Self { ideal, coordinates, rules, .. } = *self;
@@ -238,7 +240,8 @@ impl Objective<f64> for PowerObjective<'_> {
         patch.corners.iter().fold(Dual::default(), |sum, triangle| {
             let coordinates = patch.coordinates;
             let seen = badness.seen(triangle, at.into(), patch.ideal, coordinates);
-            let transformed = badness.power_derivatives(&seen, unit, doublings);
+            let slopes = badness.slopes(triangle);
+            let transformed = badness.power_derivatives(&seen, slopes, unit, doublings);
             sum + match triangle.map {
                 Some(map) if badness.is_of_targets() => map.pull_back(transformed),
                 None if badness.is_of_targets() => transformed,

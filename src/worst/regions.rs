@@ -21,7 +21,7 @@ pub(crate) fn around(
     let mut ring = 0..found.len();
     for _ in 0..rings {
         for at in ring.clone() {
-            problem.ring_of(found[at]).iter().for_each(|&v| add(v, &mut found));
+            problem.companions(found[at]).for_each(|v| add(v, &mut found));
         }
         ring = ring.end..found.len();
     }
@@ -34,7 +34,7 @@ pub(crate) fn around(
         let (mut region, mut done) = (vec![start], 0);
         while let Some(&v) = region.get(done) {
             done += 1;
-            for &next in problem.ring_of(v) {
+            for next in problem.companions(v) {
                 if next < free && std::mem::replace(&mut is_in[next as usize], false) {
                     region.push(next);
                 }

@@ -26,10 +26,24 @@ impl WorstShapes {
 
     const FLAT: Self = Self { cotangent: f64::INFINITY, imr: f64::INFINITY };
 
-    /// Returns the shape of a triangle with vertices at `points`, as seen on `surface`.
+    /// Returns the shape of a corner with vertices at `points`, as seen on `surface`. `is_right` tells whether the corner is of
+    /// a quadrilateral, which has its first angle alone.
     #[inline]
-    pub(crate) fn of(surface: Surface, points: &[[f64; 2]], triangle: &[u32; 3]) -> Self {
-        let Products { dots, squares, doubled_area } = Products::of(surface, points, triangle);
+    pub(crate) fn of(
+        surface: Surface,
+        points: &[[f64; 2]],
+        corner: &[u32; 3],
+        is_right: bool,
+    ) -> Self {
+        let Products { dots, squares, sides, doubled_area } = Products::of(surface, points, corner);
+        if is_right {
+            let (cotangent, imr) = (dots[0] / doubled_area, sides / (2.0 * doubled_area));
+            return if doubled_area > 0.0 && imr > 0.0 {
+                Self { cotangent, imr }
+            } else {
+                Self::FLAT
+            };
+        }
         let most = dots[0].max(dots[1]).max(dots[2]);
         let (cotangent, imr) = (most / doubled_area, squares / (TWO_SQRT_3 * doubled_area));
         // The comparisons are false for NaN.
@@ -78,6 +92,8 @@ struct Products {
     dots: [f64; 3],
     /// Sum of the squared edge lengths.
     squares: f64,
+    /// Sum of the squared lengths of the two edges at the first vertex.
+    sides: f64,
     /// Twice the signed area.
     doubled_area: f64,
 }
@@ -91,8 +107,9 @@ impl Products {
         let to = |from: [f64; 2], to: [f64; 2]| [(to[0] - from[0]) * x, (to[1] - from[1]) * y];
         let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
         let (a, b, c) = (to(p, q), to(p, r), to(q, r));
-        let squares = dot(a, a) + dot(b, b) + dot(c, c);
-        Self { dots: [dot(a, b), -dot(a, c), dot(b, c)], squares, doubled_area }
+        let sides = dot(a, a) + dot(b, b);
+        let squares = sides + dot(c, c);
+        Self { dots: [dot(a, b), -dot(a, c), dot(b, c)], squares, sides, doubled_area }
     }
 }
 
@@ -101,7 +118,7 @@ mod tests {
     use super::*;
 
     fn shape(points: [[f64; 2]; 3]) -> WorstShapes {
-        WorstShapes::of(Surface::Plane, &points, &[0, 1, 2])
+        WorstShapes::of(Surface::Plane, &points, &[0, 1, 2], false)
     }
 
     #[test]
@@ -115,7 +132,7 @@ mod tests {
         assert!((equilateral.imr - 1.0).abs() < 1e-15, "{equilateral:?}");
         // At a latitude of 60 degrees, a degree of longitude is half as long as a degree of latitude.
         let turn = [[0.0, 60.0], [2.0, 60.0], [0.0, 61.0]].map(|[x, y]| [x, y - 1.0 / 3.0]);
-        let seen = WorstShapes::of(Surface::Sphere, &turn, &[0, 1, 2]);
+        let seen = WorstShapes::of(Surface::Sphere, &turn, &[0, 1, 2], false);
         assert!((seen.least_angle() - 45.0).abs() < 1e-9, "{seen:?}");
     }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::parallel::paced;
-use crate::patch::FanCorner;
+use crate::patch::{FanCorner, Role};
 use crate::worst::badness::Badness;
 use crate::worst::region::{MoveConstraints, Region};
 use crate::worst::regions::around;
@@ -42,7 +42,7 @@ async fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
         let movable = triangles.iter().zip(badness).filter(|(t, _)| problem.can_move(t));
         movable.map(|(_, badness)| *badness).fold(0.0, f64::max)
     };
-    let parts = problem.triangles().chunks(CHUNK).zip(badness.chunks(CHUNK));
+    let parts = problem.corners().all().chunks(CHUNK).zip(badness.chunks(CHUNK));
     paced::map_parts(parts, worst).await.into_iter().fold(0.0, f64::max)
 }
 
@@ -62,16 +62,19 @@ pub(crate) async fn stuck(
         let pairs = triangles.iter().zip(badness);
         pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
     };
-    let parts = problem.triangles().chunks(CHUNK).zip(all.chunks(CHUNK));
+    let parts = problem.corners().all().chunks(CHUNK).zip(all.chunks(CHUNK));
     paced::map_parts(parts, count).await.into_iter().sum()
 }
 
 /// Returns the badness of every triangle of the problem.
 async fn all(problem: &Problem, badness: Badness, positions: &[DVec2]) -> Vec<f64> {
-    paced::collect(problem.triangles().len(), |t| {
-        let t = problem.triangles()[t];
+    let corners = problem.corners();
+    paced::collect(corners.all().len(), |index| {
+        let t = corners.all()[index];
+        let is_right = !corners.is_triangle(index as u32);
         let [p, q, r] = t.map(|v| positions[v as usize]);
-        let triangle = FanCorner { ends: [q, r], map: problem.target_map(&t) };
+        let role = if is_right { Role::Own } else { Role::Triangle };
+        let triangle = FanCorner { ends: [q, r], map: problem.target_map(&t), role };
         badness.of(&badness.seen(&triangle, p, problem.ideal(), problem.coordinates()))
     })
     .await
@@ -106,10 +109,11 @@ impl<'a> Passes<'a> {
     /// Does a pass. Returns whether another pass may improve more.
     pub(crate) async fn next(&mut self, positions: &mut [DVec2]) -> bool {
         let Self { problem, rules, badness, worst, has_moved, done } = self;
-        let count = (problem.triangles().len() / SHARE).clamp(FEWEST, MAX_WORST);
+        let all = problem.corners().all();
+        let count = (all.len() / SHARE).clamp(FEWEST, MAX_WORST);
         let bad = worst_triangles(problem, badness, count).await;
         let here = &*positions;
-        let corners = bad.iter().flat_map(|&t| problem.triangles()[t as usize]);
+        let corners = bad.iter().flat_map(|&t| all[t as usize]);
         let regions = around(problem, corners, RINGS);
         let improved = paced::map_futures(regions, |vertices| async {
             Region::new(problem, rules, here, vertices).improve().await
@@ -118,7 +122,7 @@ impl<'a> Passes<'a> {
         let moves: Vec<(u32, DVec2)> = improved.into_iter().flatten().flatten().collect();
         let from: Vec<DVec2> = moves.iter().map(|&(v, _)| positions[v as usize]).collect();
         moves.iter().for_each(|&(v, to)| positions[v as usize] = to);
-        *badness = all(problem, rules.badness, positions).await;
+        *badness = self::all(problem, rules.badness, positions).await;
         let last = std::mem::replace(worst, worst_of(problem, badness).await);
         let least = MIN_KEPT[usize::from(*done > 0)];
         let is_kept = *worst < last * (1.0 - least);
@@ -153,7 +157,7 @@ async fn worst_triangles(problem: &Problem, badness: &[f64], count: usize) -> Ve
         triangles
     };
     // The worst triangles of the mesh are among the worst of each part.
-    let can_move = |&t: &u32| problem.can_move(&problem.triangles()[t as usize]);
+    let can_move = |&t: &u32| problem.can_move(&problem.corners().all()[t as usize]);
     let of_parts = paced::map_ranges(badness.len(), SORTED, |part| {
         worst((part.start as u32..part.end as u32).filter(can_move).collect())
     });

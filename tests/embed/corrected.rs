@@ -251,7 +251,7 @@ fn meshes_without_coarser_levels_are_swept() {
     let square = Mesh {
         points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.7, 0.4]],
         triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
-        fixed: vec![],
+        ..Mesh::default()
     };
     let (_, points) = frames(&square, &corrected(Metric::Imr), 20);
     assert!(points[4].iter().all(|x| (x - 0.5).abs() < 1e-4), "{points:?}");

@@ -61,7 +61,7 @@ fn clean(mesh: &Mesh) -> Mesh {
     let is_clean = |t: &&[u32; 3]| t.iter().all(|&v| !at_broken[v as usize]);
     let triangles: Vec<_> = mesh.triangles.iter().filter(is_clean).copied().collect();
     assert!(triangles.len() > mesh.triangles.len() / 2 && triangles.len() < mesh.triangles.len());
-    Mesh { points: mesh.points.clone(), triangles, fixed: vec![] }
+    Mesh { points: mesh.points.clone(), triangles, ..Mesh::default() }
 }
 
 #[test]

@@ -183,7 +183,7 @@ fn equilateral_triangles_are_named_too() {
     let points = around.into_iter().chain([[0.5, -height], [0.0, 0.0]]).collect();
     let triangles = (0..6).map(|i| [i, (i + 1) % 6, 6]).collect();
     let app = App::new();
-    let device_mesh = app.mesh(&Mesh { points, triangles, fixed: vec![] });
+    let device_mesh = app.mesh(&Mesh { points, triangles, ..Mesh::default() });
     let found = app.objective(&Sweeps::new(&device_mesh, &Options::default()).block().unwrap());
     assert!((found.worst_imr - 1.0).abs() < 1e-6);
     assert!(device_mesh.corners(found.worst_triangle).unwrap().contains(&6));

@@ -230,7 +230,7 @@ fn holding_a_vertex_that_does_not_exist_is_refused_and_changes_nothing() {
         let mesh = &held.device_mesh;
         for refused in [mesh.set_pinned(&list), mesh.unpin(&list), mesh.pin(&list)] {
             let error = refused.unwrap_err();
-            let SmoothError::Mesh(MeshError::IndexOutOfRange { triangle: None, vertex, vertices }) =
+            let SmoothError::Mesh(MeshError::IndexOutOfRange { element: None, vertex, vertices }) =
                 error
             else {
                 panic!("{error}");
@@ -246,7 +246,7 @@ fn a_fixed_vertex_that_does_not_exist_is_refused() {
     let app = App::new();
     let mesh = Mesh { fixed: vec![5, 100_000], ..bad_plate(300) };
     let error = DeviceMesh::new(&app.gpu, &mesh).err().unwrap();
-    let SmoothError::Mesh(MeshError::IndexOutOfRange { triangle: None, vertex: 100_000, .. }) =
+    let SmoothError::Mesh(MeshError::IndexOutOfRange { element: None, vertex: 100_000, .. }) =
         error
     else {
         panic!("{error}");

@@ -24,7 +24,7 @@ fn channel() -> Mesh {
     Mesh {
         points: (0..17 * 9).map(at).collect(),
         triangles: (0..16 * 8).flat_map(cell).collect(),
-        fixed: Vec::new(),
+        ..Mesh::default()
     }
 }
 

@@ -30,7 +30,7 @@ fn lattice() -> Mesh {
             triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
         }
     }
-    Mesh { points, triangles, fixed: vec![] }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 fn on_sphere(mesh: &Mesh) -> Smoother<'_> {

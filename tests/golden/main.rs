@@ -56,7 +56,7 @@ fn shipped(name: &str) -> Mesh {
             .iter()
             .map(|row| [1, 2, 3].map(|corner| (row[corner] - first) as u32))
             .collect(),
-        fixed: vec![],
+        ..Mesh::default()
     }
 }
 

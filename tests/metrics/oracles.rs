@@ -12,7 +12,7 @@ pub(crate) const SHARPNESS: u32 = 4;
 
 /// Returns q by the simplest formula in the lengths and the area of a triangle, and in the ideal of the mesh.
 pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, ideal: Ideal) -> f64 {
-    let Ideal { area: mean_area, size_weight } = ideal;
+    let Ideal { area: mean_area, size_weight, .. } = ideal;
     let squares = a * a + b * b + c * c;
     // For T = A W⁻¹, with W the equilateral triangle of mean area: |T|² and τ = det T.
     let (norm, det) = (squares / (12f64.sqrt() * mean_area), area / mean_area);

@@ -88,7 +88,7 @@ fn rows() -> Vec<Row> {
 /// Returns the triangle as rounded for the device.
 fn triangle(row: &Row) -> Corner<f64> {
     let [ax, ay, bx, by, area, size_weight, _] = row.map(f64::from);
-    Corner { a: [ax, ay], b: [bx, by], ideal: Ideal { area, size_weight } }
+    Corner { a: [ax, ay], b: [bx, by], ideal: Ideal { size_weight, ..Ideal::of_area(area) } }
 }
 
 fn parts(d: &Dual) -> [&[f64]; 3] {

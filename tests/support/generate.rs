@@ -232,7 +232,7 @@ fn refine(outline: &Outline, size: f64, limit: usize, boxed: bool) -> Result<Opt
         .filter(|edge| edge.is_constraint_edge())
         .flat_map(|edge| edge.vertices().map(|v| v.fix()));
     let fixed = lone.into_iter().chain(on_lines).map(|v| v.index() as u32).collect();
-    let mesh = compacted(Mesh { points, triangles, fixed });
+    let mesh = compacted(Mesh { points, triangles, fixed, ..Mesh::default() });
     // The triangles fill the area enclosed by the loops, so no loop was lost.
     let fills = (area(&mesh) / outline.area() - 1.0).abs() < 1e-9;
     if is_ccw(&mesh) && is_valid(&mesh) && fills {
@@ -270,7 +270,7 @@ fn compacted(mesh: Mesh) -> Mesh {
     let renamed = |v: &u32| new_index[*v as usize];
     let triangles = mesh.triangles.iter().map(|t| t.each_ref().map(renamed)).collect();
     let fixed = mesh.fixed.iter().map(renamed).filter(|&v| v != UNUSED).collect();
-    let mut mesh = Mesh { points, triangles, fixed };
+    let mut mesh = Mesh { points, triangles, fixed, ..Mesh::default() };
     let on_boundary = boundary(&mesh);
     mesh.fixed.retain(|&v| !on_boundary[v as usize]);
     mesh.fixed.sort_unstable();

@@ -62,5 +62,10 @@ pub fn read_mesh(path: &std::path::Path) -> Mesh {
 /// Returns the mesh of a file. Vertices of elements other than triangles and vertices between regions are fixed.
 pub fn mesh_of(file: &mesh_io::MeshFile) -> Mesh {
     let fixed = [file.constraints().vertices.clone(), file.interface_vertices()].concat();
-    Mesh { points: file.points().to_vec(), triangles: file.triangles().to_vec(), fixed }
+    Mesh {
+        points: file.points().to_vec(),
+        triangles: file.triangles().to_vec(),
+        fixed,
+        ..Mesh::default()
+    }
 }

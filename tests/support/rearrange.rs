@@ -31,7 +31,7 @@ pub fn renumbered(mesh: &Mesh, seed: u64) -> (Mesh, Vec<u32>) {
     let mut triangles: Vec<_> = mesh.triangles.iter().map(|t| t.each_ref().map(renamed)).collect();
     rng.shuffle(&mut triangles);
     let fixed = mesh.fixed.iter().map(renamed).collect();
-    (Mesh { points, triangles, fixed }, new_index)
+    (Mesh { points, triangles, fixed, ..Mesh::default() }, new_index)
 }
 
 /// Returns the mesh scaled relative to the origin, then translated.

@@ -21,7 +21,7 @@ pub(crate) fn fields(count: u32) -> Mesh {
         [[a, a + 1, a + across + 1], [a, a + across + 1, a + across]]
     };
     let triangles = (0..count * count).flat_map(of).collect();
-    Mesh { points: points.collect(), triangles, fixed: vec![] }
+    Mesh { points: points.collect(), triangles, ..Mesh::default() }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use gpu_smooth::{
 /// Makes a square of two triangles, with target sizes four times larger on the right than on the left.
 fn background(width: f64, height: f64) -> (Mesh, Targets) {
     let points = vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
-    let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], fixed: vec![] };
+    let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
     (mesh, Targets::sizes(&[1.0, 4.0, 4.0, 1.0]).unwrap())
 }
 
@@ -109,7 +109,7 @@ fn places_around_the_globe_are_found_whichever_way_longitudes_are_written() {
         }
     }
     let sizes: Vec<f64> = points.iter().map(|[x, _]| (0.1 * (x - 170.0)).exp()).collect();
-    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     let field = TargetField::new(&mesh, &Targets::sizes(&sizes).unwrap()).unwrap();
     let places = [[171.0, 1.0], [179.5, 4.0], [180.5, 2.0], [189.0, 3.0]];
     let written = places.map(|[x, y]| [if x > 180.0 { x - 360.0 } else { x }, y]);

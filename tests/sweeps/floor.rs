@@ -45,7 +45,7 @@ fn alternating(n: u32) -> Mesh {
     Mesh {
         points: all(n + 1).map(|(i, j)| [f64::from(i), f64::from(j)]).collect(),
         triangles: all(n).flat_map(cut).collect(),
-        fixed: vec![],
+        ..Mesh::default()
     }
 }
 

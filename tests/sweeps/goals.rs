@@ -53,7 +53,7 @@ fn the_optimum_is_reached_from_the_start_on_an_optimal_mesh() {
     let points = (0..9).map(|i| [f64::from(i % 3) / 2.0, f64::from(i / 3) / 2.0]).collect();
     let cells = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
     let halves = cells.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    let mesh = Mesh { points, triangles: halves.collect(), fixed: Vec::new() };
+    let mesh = Mesh { points, triangles: halves.collect(), ..Mesh::default() };
     let smoother = Smoother::new(&mesh).unwrap();
     for name_of_scheme in ["imr", "rms", "area+imr"] {
         let stopping = Stopping::Goal(Goal { fraction: 0.95, desired: None });

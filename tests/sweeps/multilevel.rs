@@ -170,7 +170,7 @@ fn tiny_and_scattered_meshes_converge() {
     let fan = Mesh {
         points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.3, 0.2]],
         triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
-        fixed: vec![],
+        ..Mesh::default()
     };
     let mut pieces = fan.clone();
     for k in 1..300u32 {

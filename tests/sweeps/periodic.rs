@@ -42,7 +42,7 @@ fn lattice(to: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     for column in 0..=COLUMNS {
         places[at(ROWS, column) as usize][0] = places[at(0, column) as usize][0];
     }
-    Mesh { points: places.into_iter().map(to).collect(), triangles, fixed: vec![] }
+    Mesh { points: places.into_iter().map(to).collect(), triangles, ..Mesh::default() }
 }
 
 fn sides() -> Vec<[u32; 2]> {
@@ -276,7 +276,7 @@ fn partners_of_one_triangle_stay() {
         triangles.extend(field(k, k + 1, k + 3, k + 4));
     }
     triangles.extend([field(9, 10, 11, 12), field(11, 12, 13, 14)].concat());
-    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     let mut slide = Slide::default();
     assert_eq!(slide.pair_by(&topology, &mesh.points, translation(1.0, 0.0)), 6);

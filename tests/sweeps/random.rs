@@ -50,7 +50,7 @@ pub(crate) fn scattered(rng: &mut SplitMix64) -> Mesh {
             .inner_faces()
             .map(|f| f.vertices().map(|v| v.fix().index() as u32))
             .collect(),
-        fixed: vec![],
+        ..Mesh::default()
     }
 }
 

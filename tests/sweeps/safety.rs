@@ -175,7 +175,7 @@ fn points_that_rounding_makes_worse_than_the_start_are_not_returned() {
     let mesh = Mesh {
         points: vec![at(1.0, 3.0), at(0.0, 1.0), at(3.0, 0.0), at(1.0, 2.0)],
         triangles: vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]],
-        fixed: vec![],
+        ..Mesh::default()
     };
     let smoother = Smoother::new(&mesh).unwrap();
     for backend in backends() {

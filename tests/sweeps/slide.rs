@@ -36,7 +36,7 @@ fn halves() -> (Mesh, Vec<[u32; 2]>) {
     let middle = |row: u32| row * (columns + 1) + columns / 2;
     let lines: Vec<[u32; 2]> = (0..rows).map(|row| [middle(row), middle(row + 1)]).collect();
     let fixed = lines.as_flattened().to_vec();
-    (Mesh { points, triangles, fixed }, lines)
+    (Mesh { points, triangles, fixed, ..Mesh::default() }, lines)
 }
 
 fn sliding<'m>(mesh: &'m Mesh, slide: &Slide) -> (Smoother<'m>, usize) {
@@ -172,7 +172,7 @@ fn vertices_slide_around_a_circle() {
     };
     let triangles = (0..n).flat_map(of).collect();
     // The inner vertices are fixed, so that only the outer ones slide.
-    let mesh = Mesh { points, triangles, fixed: (n..2 * n).collect() };
+    let mesh = Mesh { points, triangles, fixed: (n..2 * n).collect(), ..Mesh::default() };
     let (smoother, slides) = sliding(&mesh, &Slide::default());
     assert_eq!(slides, 40);
     let outcome = run(&smoother, &Options::default(), &Backend::Cpu);
@@ -297,7 +297,7 @@ fn twisted() -> Mesh {
     Mesh {
         points: (0..around * (rings + 1)).map(at).collect(),
         triangles: (0..around * rings).flat_map(cell).collect(),
-        fixed: Vec::new(),
+        ..Mesh::default()
     }
 }
 
@@ -371,7 +371,7 @@ fn a_run_on_a_ring_reports_what_a_turn_gains() {
 /// A strip of triangles has no inner vertex. Vertices on its sides slide, with identical bits on both engines.
 #[test]
 fn a_strip_slides_without_a_free_vertex() {
-    let mut mesh = Mesh { points: Vec::new(), triangles: Vec::new(), fixed: Vec::new() };
+    let mut mesh = Mesh { points: Vec::new(), triangles: Vec::new(), ..Mesh::default() };
     let mut random = SplitMix64::new(8);
     for k in 0..=12_u32 {
         let mut off = || if k % 12 == 0 { 0.0 } else { random.range(-0.4, 0.4) };

@@ -28,7 +28,7 @@ fn lattice(noise: f64) -> Mesh {
             }
         }
     }
-    Mesh { points, triangles, fixed: vec![] }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 /// Returns a lattice with a sliver that is inverted in the projection: a vertex inside is near the middle of the

@@ -42,7 +42,7 @@ fn on_a_layer(ratio: f64) -> (Mesh, Mesh, Vec<u32>) {
         .map(|t| t.map(|v| v - first))
         .collect();
     let points = kept.iter().map(|&v| mesh.points[v as usize]).collect();
-    let alone = Mesh { points, triangles: above, fixed: Vec::new() };
+    let alone = Mesh { points, triangles: above, ..Mesh::default() };
     (mesh, alone, kept)
 }
 

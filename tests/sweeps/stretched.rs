@@ -22,7 +22,7 @@ fn stretched_lattice(free: usize, ratio: f64) -> Mesh {
     let squares = (0..(side - 1) * (side - 1)).map(|k| k / (side - 1) * side + k % (side - 1));
     let halves = |a: usize| [[a, a + 1, a + side + 1], [a, a + side + 1, a + side]];
     let triangles = squares.flat_map(halves).map(|t| t.map(|v| v as u32)).collect();
-    Mesh { points, triangles, fixed: vec![] }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 /// Makes a vertex of `degree` neighbors with two rings of free vertices and a ring of fixed vertices around it. Free
@@ -47,7 +47,7 @@ fn wheel(degree: usize) -> Mesh {
         };
         [vec![[0, at(0, i), at(0, i + 1)]], between(0).to_vec(), between(1).to_vec()].concat()
     };
-    Mesh { points, triangles: (0..degree).flat_map(around).collect(), fixed: vec![] }
+    Mesh { points, triangles: (0..degree).flat_map(around).collect(), ..Mesh::default() }
 }
 
 /// The regular lattice is the optimum. All its triangles are right, with legs of lengths `ratio` and 1.

@@ -2,8 +2,8 @@
 
 use crate::{backends, history, is_of_angles, name, perturbed, plate, run};
 use gpu_smooth::{
-    Backend, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother, Stop,
-    Targets, Topology,
+    Backend, Element, Mesh, MeshError, Method, Metric, OptionError, Options, SmoothError, Smoother,
+    Stop, Targets, Topology,
     options::{Derivatives, Feature, Paper},
     targets::Surface,
 };
@@ -332,7 +332,11 @@ fn sizes_and_tensors_that_are_no_targets_are_refused() {
     refused(seen(&points, &mesh.triangles), 4);
     let elsewhere: Vec<_> = mesh.triangles.iter().copied().filter(|t| !t.contains(&4)).collect();
     assert!(seen(&points, &elsewhere).is_ok(), "a vertex of no triangle may be anywhere");
-    let missing = MeshError::IndexOutOfRange { triangle: Some(0), vertex: 9999, vertices: count };
+    let missing = MeshError::IndexOutOfRange {
+        element: Some(Element::Triangle(0)),
+        vertex: 9999,
+        vertices: count,
+    };
     assert_eq!(seen(&points, &[[0, 1, 9999]]).unwrap_err(), missing);
 
     let mut smoother = Smoother::new(&mesh).unwrap();

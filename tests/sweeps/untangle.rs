@@ -2,7 +2,7 @@
 
 use crate::{plate, with_points};
 use gpu_smooth::{
-    Backend, Mesh, MeshError, Metric, Options, SmoothError, Smoother, Topology,
+    Backend, Element, Mesh, MeshError, Metric, Options, SmoothError, Smoother, Topology,
     options::Precision,
     untangle::{Untangle, Untangled, Untangling},
 };
@@ -332,7 +332,7 @@ fn a_sound_mesh_is_left_alone_and_a_broken_one_refused() {
     assert!(result.points == mesh.points && result.sweeps == 0 && result.bad_before == 0);
     let broken = Mesh { triangles: vec![[0, 1, 1]], ..mesh };
     let error = Untangle::new(&broken).run().err();
-    assert_eq!(error, Some(MeshError::RepeatedVertex { triangle: 0, vertex: 1 }));
+    assert_eq!(error, Some(MeshError::RepeatedVertex { element: Element::Triangle(0), vertex: 1 }));
 }
 
 #[test]
@@ -347,10 +347,10 @@ fn triangles_that_double_precision_cannot_judge_are_opened() {
         for backend in crate::backends() {
             let options = Options::default().scheme((*metric).into());
             let run = smoother.run(&options).on(backend).block();
-            let Err(SmoothError::Mesh(MeshError::BeyondPrecision { triangle, .. })) = run else {
+            let Err(SmoothError::Mesh(MeshError::BeyondPrecision { element, .. })) = run else {
                 panic!("a mesh that double precision cannot judge was smoothed by {metric}")
             };
-            assert_eq!(triangle, smoother.beyond_precision()[0]);
+            assert_eq!(element, smoother.beyond_precision()[0]);
         }
     }
 
@@ -375,9 +375,9 @@ fn a_surface_without_boundary_is_refused_at_once() {
     // A tetrahedron, seen from above.
     let points = vec![[0.0, 0.0], [3.0, 0.0], [0.0, 3.0], [1.0, 1.0]];
     let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]];
-    let closed = Mesh { points, triangles, fixed: Vec::new() };
+    let closed = Mesh { points, triangles, ..Mesh::default() };
     let error = Untangle::new(&closed).run();
-    assert_eq!(error.err(), Some(MeshError::Closed { triangle: 0 }));
+    assert_eq!(error.err(), Some(MeshError::Closed { element: Element::Triangle(0) }));
 }
 
 /// Exact predicates find no triangle of the meshes inverted, but some triangles are too flat for double precision. After

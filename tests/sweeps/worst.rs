@@ -134,7 +134,7 @@ fn triangles_that_cannot_be_improved_stay() {
     points.extend([[0.0, 0.0], [3.0, 0.4]]);
     let mut triangles: Vec<[u32; 3]> = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
     triangles.push([0, 7, 1]);
-    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     let smoother = Smoother::new(&mesh).unwrap();
     let outcome = improved(&smoother, WorstBy::Imr, Options::default(), &Backend::Cpu);
     let told = outcome.improved.unwrap();
@@ -218,7 +218,7 @@ fn a_triangle_whose_corners_may_slide_is_not_stuck() {
     points.extend([out, far]);
     triangles.extend([[0, 7, 1], [7, 8, 1]]);
     assert!(b[1] > 0.0);
-    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     let mut smoother = Smoother::new(&mesh).unwrap();
     let stuck = |smoother: &Smoother| {
         let options = Options::default().max_sweeps(0);

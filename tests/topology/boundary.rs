@@ -74,7 +74,7 @@ fn without(side: u32, squares: &[[u32; 2]]) -> Mesh {
     };
     let points = (0..=side).flat_map(|y| (0..=side).map(move |x| [f64::from(x), f64::from(y)]));
     let triangles = all.filter(|square| !squares.contains(square)).flat_map(split).collect();
-    Mesh { points: points.collect(), triangles, fixed: vec![] }
+    Mesh { points: points.collect(), triangles, ..Mesh::default() }
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn loops_that_touch_are_apart() {
 #[test]
 fn one_triangle_is_its_own_loop() {
     let points = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-    let mesh = Mesh { points, triangles: vec![[1, 0, 2]], fixed: vec![] };
+    let mesh = Mesh { points, triangles: vec![[1, 0, 2]], ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     assert_eq!(topology.boundary_loops(), [[0, 1, 2]]);
 }
@@ -244,7 +244,7 @@ fn a_move_of_no_vertex_succeeds_and_one_to_nan_is_an_error() {
     }
     let vertices = points.len();
     let error = topology.move_clamped(&mut points, &[(16, [0.0; 2])], 8.0);
-    assert_eq!(error, Err(MeshError::IndexOutOfRange { triangle: None, vertex: 16, vertices }));
+    assert_eq!(error, Err(MeshError::IndexOutOfRange { element: None, vertex: 16, vertices }));
     let huge = [(5, [f64::MAX, -f64::MAX]), (6, [-f64::MAX, f64::MAX])];
     let share = topology.move_clamped(&mut points.clone(), &huge, 8.0).unwrap();
     assert!((0.0..1e-200).contains(&share), "{share}");

@@ -12,7 +12,7 @@ fn square() -> Mesh {
     let points = (0..25).map(|k| [f64::from(k % 5), f64::from(k / 5)]).collect();
     let cells = (0..20u32).filter(|k| k % 5 < 4);
     let triangles = cells.flat_map(|k| [[k, k + 1, k + 6], [k, k + 6, k + 5]]).collect();
-    Mesh { points, triangles, fixed: Vec::new() }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use gpu_smooth::{Mesh, Topology, topology::HangingNode};
 use support::SplitMix64;
 
 fn found(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<HangingNode> {
-    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: vec![] };
+    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), ..Mesh::default() };
     Topology::new(&mesh).unwrap().hanging_nodes(points).unwrap()
 }
 
@@ -96,7 +96,7 @@ fn slits_and_interfaces_have_none() {
     points[4][1] = 0.0;
     assert_eq!(found(&points, &triangles).len(), 1);
     assert!(
-        Topology::new(&Mesh { points: points.clone(), triangles, fixed: vec![] })
+        Topology::new(&Mesh { points: points.clone(), triangles, ..Mesh::default() })
             .unwrap()
             .hanging_nodes(&points[1..])
             .is_err()

@@ -109,7 +109,7 @@ fn a_strip_turned_once_has_loops_that_end() {
         let [c, d] = if i + 1 == count { [1, 0] } else { [2 * i + 2, 2 * i + 3] };
         triangles.extend([[a, c, b], [b, c, d]]);
     }
-    let mesh = Mesh { points, triangles, fixed: vec![] };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     assert_eq!(topology.boundary_edges().len(), 2 * count as usize);
     let on_loops: usize = topology.boundary_loops().iter().map(Vec::len).sum();

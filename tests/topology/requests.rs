@@ -1,7 +1,7 @@
 //! Invalid requests of an application are answered with an error, not a panic.
 
 use gpu_smooth::{
-    Mesh, MeshError, Quality, Smoother, Topology,
+    Element, Mesh, MeshError, Quality, Smoother, Topology,
     internal::Coloring,
     topology::{certify, infeasible},
 };
@@ -32,7 +32,8 @@ fn lists_of_points_that_are_too_short_or_too_long_are_errors() {
 #[test]
 fn triangles_of_vertices_that_do_not_exist_are_an_error() {
     let error = infeasible(&[[0.0, 0.0], [1.0, 0.0]], &[[0, 1, 2]]);
-    let expected = MeshError::IndexOutOfRange { triangle: Some(0), vertex: 2, vertices: 2 };
+    let expected =
+        MeshError::IndexOutOfRange { element: Some(Element::Triangle(0)), vertex: 2, vertices: 2 };
     assert_eq!(error, Err(expected));
     assert_eq!(infeasible(&[], &[]), Ok(vec![]));
 }

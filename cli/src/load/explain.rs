@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::load::fixed::nothing_free;
 use gpu_smooth::{
-    MeshError, Topology,
+    Element, MeshError, Topology,
     topology::{BadTriangle, Crossing, HangingNode},
 };
 use mesh_io::{Location, SourceLocation};
@@ -105,9 +105,9 @@ pub(crate) fn are_across(file: &LoadedMesh, bad: &[BadTriangle]) -> bool {
         && bad.iter().any(is_far)
 }
 
-/// Returns the first triangle of a closed part of the mesh, such as a closed surface in space. `None` for meshes on a
+/// Returns the first element of a closed part of the mesh, such as a closed surface in space. `None` for meshes on a
 /// sphere, or if each part has a boundary.
-fn closed_part(file: &LoadedMesh) -> Option<usize> {
+fn closed_part(file: &LoadedMesh) -> Option<Element> {
     Topology::new(file.mesh()).ok().filter(|_| file.chart().is_none())?.closed_part()
 }
 
@@ -141,15 +141,33 @@ fn constant(points: &[[f64; 2]]) -> Option<(char, f64)> {
         .map(|(name, k)| (name, first[k]))
 }
 
-/// Returns whether two of `triangles` have equal vertices.
-fn has_twins(file: &LoadedMesh, triangles: &[usize]) -> bool {
-    let corners = |&triangle: &usize| {
-        let mut corners = *file.mesh().triangles.get(triangle)?;
-        corners.sort_unstable();
-        Some(corners)
+/// Returns whether two of `elements` have equal vertices.
+fn has_twins(file: &LoadedMesh, elements: &[Element]) -> bool {
+    let vertices = |&element: &Element| {
+        let mut vertices = match element {
+            Element::Triangle(index) => file.mesh().triangles.get(index)?.to_vec(),
+            Element::Quadrilateral(index) => file.mesh().quadrilaterals.get(index)?.to_vec(),
+        };
+        vertices.sort_unstable();
+        Some(vertices)
     };
     let mut seen = HashSet::new();
-    triangles.iter().filter_map(corners).any(|corners| !seen.insert(corners))
+    elements.iter().filter_map(vertices).any(|vertices| !seen.insert(vertices))
+}
+
+/// Returns the name of an element in the terms of the file, such as "triangle 7", and its place.
+fn named(file: &LoadedMesh, element: Element) -> (String, String) {
+    let index = element.index();
+    let (kind, found) = match element {
+        Element::Triangle(_) => ("triangle", file.source.triangle_locations([index])),
+        Element::Quadrilateral(_) => {
+            ("quadrilateral", file.source.quadrilateral_locations([index]))
+        }
+    };
+    match found.get(&index) {
+        Some(place) => (format!("{kind} {}", place.id), place.to_string()),
+        None => (element.to_string(), file.source.path().display().to_string()),
+    }
 }
 
 /// Returns an error in the terms of a file: path, location, problem and remedy, on one line unless several triangles
@@ -158,7 +176,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
     let name = |v: u32| file.vertex_place(v).id;
     let path = file.source.path().display();
     match *error {
-        MeshError::Infeasible { ref triangles } => {
+        MeshError::Infeasible { ref triangles, ref quadrilaterals } => {
             if let Some((axis, value)) = constant(&file.mesh().points) {
                 return CliError::input(format!(
                     "{path}: {axis} of all vertices is {value}, so that every triangle is flat in the plane of x and y, in which meshes are smoothed"
@@ -168,8 +186,18 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                 );
             }
             let is_across = are_across(file, triangles);
-            if !is_across && let Some(triangle) = closed_part(file) {
-                return mesh_error(file, &MeshError::Closed { triangle });
+            if !is_across && let Some(element) = closed_part(file) {
+                return mesh_error(file, &MeshError::Closed { element });
+            }
+            if let Some(bad) = quadrilaterals.first() {
+                let (name, place) = named(file, Element::Quadrilateral(bad.quadrilateral));
+                let vertex = file.vertex_place(bad.vertices[bad.corner]).id;
+                return CliError::input(format!(
+                    "{place}: {name} is {} at vertex {vertex}, one of {} corners of quadrilaterals that are not convex",
+                    bad.problem(),
+                    quadrilaterals.len()
+                ))
+                .with_remedy("Correct the quadrilaterals, or keep all of them fixed: --quadrilaterals keep");
             }
             let remedy = if is_across {
                 "The triangles reach from the smallest longitude to the largest: --surface sphere continues longitudes across the meridian at which longitudes wrap, such as 180 degrees"
@@ -189,26 +217,34 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             };
             CliError::input(text).with_remedy(remedy).with_details(details)
         }
-        MeshError::Closed { triangle } => {
-            let place = file.source.triangle_location(triangle);
+        MeshError::Closed { element } => {
+            let (name, place) = named(file, element);
             CliError::input(format!(
-                "{place}: triangle {} belongs to a part of the mesh without boundary: a closed surface in space",
-                place.id
+                "{place}: {name} belongs to a part of the mesh without boundary: a closed surface in space"
             ))
             .with_remedy("Only meshes of the plane of x and y are smoothed")
         }
-        MeshError::EdgeOfThree { edge, ref triangles } => {
-            let places = file.source.triangle_locations(triangles.iter().copied());
+        MeshError::EdgeOfThree { edge, ref elements } => {
+            let of_kind = |wants: fn(Element) -> bool| {
+                elements.iter().filter(move |e| wants(**e)).map(|e| e.index())
+            };
+            let triangles = of_kind(|element| matches!(element, Element::Triangle(_)));
+            let others = of_kind(|element| matches!(element, Element::Quadrilateral(_)));
+            let mut places = file.source.triangle_locations(triangles);
+            let kinds = if places.len() == elements.len() { "triangles" } else { "elements" };
+            let of_others = file.source.quadrilateral_locations(others);
+            let first_of_others = file.mesh().triangles.len();
+            places.extend(of_others.into_iter().map(|(k, place)| (first_of_others + k, place)));
             let labels: Vec<_> = places.values().map(|place| place.id.to_string()).collect();
             let mut ends = edge.map(name);
             ends.sort_unstable();
             let [a, b] = ends;
-            let remedy = match has_twins(file, triangles) {
+            let remedy = match has_twins(file, elements) {
                 true => "Some of them have the same vertices: remove these",
                 false => "In a 2D mesh an edge has one or two: remove the others",
             };
             CliError::input(format!(
-                "{}: the edge between vertices {a} and {b} belongs to {} triangles ({})",
+                "{}: the edge between vertices {a} and {b} belongs to {} {kinds} ({})",
                 places.values().last().map(ToString::to_string).unwrap_or_default(),
                 labels.len(),
                 labels.join(", ")
@@ -226,7 +262,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             name(vertex)
         ))
         .with_remedy("Only meshes that lie flat are smoothed: separate the layers there"),
-        MeshError::BeyondPrecision { triangle, metric, ref usable } => {
+        MeshError::BeyondPrecision { element, metric, ref usable } => {
             let others = match &usable[..] {
                 [] => String::new(),
                 [one] => format!(". The metric {one} can judge this mesh: --scheme {one}"),
@@ -235,11 +271,10 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                     usable.join(", ")
                 ),
             };
-            let place = file.source.triangle_location(triangle);
+            let (name, place) = named(file, element);
             CliError::input(format!(
-                "{place}: triangle {} is too flat, or too small beside the others, for double precision: \
-                 {metric} cannot judge it",
-                place.id
+                "{place}: {name} is too flat, or too small beside the others, for double precision: \
+                 {metric} cannot judge it"
             ))
             .with_remedy(format!(
                 "Open it with --untangle if one of its vertices is free, or correct it{others}"

@@ -113,7 +113,7 @@ fn field_of_view(path: &Path, surface: Surface) -> Result<TargetField, CliError>
         of_background(CliError::input(text))
     };
     let (points, triangles) = (view.points().to_vec(), view.triangles().to_vec());
-    let mesh = Mesh { points, triangles, fixed: Vec::new() };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     let chart = match surface {
         Surface::Plane => None,
         Surface::Sphere => Chart::new(&mesh, Precision::Double).map_err(told_of)?,

@@ -117,7 +117,7 @@ fn small_mesh() -> Mesh {
     let mut points = vec![[0.1, 0.2]];
     points.extend((0..6).map(|k| f64::from(k).to_radians() * 60.0).map(|a| [a.cos(), a.sin()]));
     let triangles = (0..6).map(|k| [0, 1 + k, 1 + (k + 1) % 6]).collect();
-    Mesh { points, triangles, fixed: Vec::new() }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 /// Parses command lines as the program does.

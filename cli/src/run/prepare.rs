@@ -141,7 +141,7 @@ pub(super) fn set_up<'a>(
         follow.remark(&vertices.remark);
         sliding = Some(vertices);
     }
-    let taken = match smoother.slides_on_cpu() {
+    let taken = match smoother.stays_on_cpu() {
         true => OpenEngine::new(
             Backend::Cpu,
             Some(
@@ -186,7 +186,7 @@ pub(super) fn refusal(
         _ => explain::mesh_error(file, error),
     };
     let triangles = match error {
-        MeshError::Infeasible { triangles } if request.outputs.report.is_some() => {
+        MeshError::Infeasible { triangles, .. } if request.outputs.report.is_some() => {
             explain::bad_triangles(file, triangles)
         }
         _ => Vec::new(),

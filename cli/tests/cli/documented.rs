@@ -67,7 +67,7 @@ fn lattice(share: f64) -> Mesh {
     let squares = (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |k| columns * row + k));
     let halves = |a: usize| [[a, a + 1, a + columns + 1], [a, a + columns + 1, a + columns]];
     let triangles = squares.flat_map(halves).map(|t| t.map(|v| v as u32)).collect();
-    Mesh { points, triangles, fixed: vec![] }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 /// Returns a lattice as a file of gmsh with the groups and the data that the documented commands name.

@@ -20,7 +20,7 @@ pub(super) fn square() -> (Mesh, Vec<i32>) {
             }
         }
     }
-    (Mesh { points, triangles, fixed: vec![] }, materials)
+    (Mesh { points, triangles, ..Mesh::default() }, materials)
 }
 
 /// Returns the square as a Medit file in text.

@@ -102,7 +102,7 @@ fn with_speck(size: f64) -> Mesh {
     ];
     let triangles =
         vec![[0, 1, 5], [1, 2, 6], [2, 3, 6], [3, 4, 6], [4, 0, 5], [4, 5, 6], [5, 1, 6]];
-    Mesh { points, triangles, fixed: vec![] }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn bed() -> (Mesh, usize) {
     let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
     let triangles = cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]);
     let (points, triangles) = (points.collect(), triangles.collect());
-    (Mesh { points, triangles, fixed: Vec::new() }, side as usize / 2)
+    (Mesh { points, triangles, ..Mesh::default() }, side as usize / 2)
 }
 
 #[test]

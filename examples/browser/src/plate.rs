@@ -41,7 +41,7 @@ impl Plate {
             }
         }
         let hole = (0..around).collect();
-        Self { mesh: Mesh { points, triangles, fixed: Vec::new() }, hole }
+        Self { mesh: Mesh { points, triangles, ..Mesh::default() }, hole }
     }
 
     /// Returns every `each`th interior vertex.

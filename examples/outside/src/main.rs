@@ -204,5 +204,5 @@ fn refined(mesh: &Mesh) -> Mesh {
         let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
         triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
     }
-    Mesh { points, triangles, fixed: Vec::new() }
+    Mesh { points, triangles, ..Mesh::default() }
 }

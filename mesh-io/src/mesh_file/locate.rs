@@ -73,6 +73,18 @@ impl MeshFile {
         self.locations(&wanted, found).collect()
     }
 
+    /// Returns the locations of the vertex lists of [quadrilaterals](crate::MeshFile::quadrilaterals), by 0-based index. A
+    /// single reading of the file finds all locations. Indices out of range are left out.
+    pub fn quadrilateral_locations(
+        &self,
+        indices: impl IntoIterator<Item = usize>,
+    ) -> BTreeMap<usize, SourceLocation> {
+        let mut wanted: Vec<usize> = indices.into_iter().collect();
+        keep_ascending(&mut wanted, self.quadrilaterals().len());
+        let found = locate(self.reader(), self.source(), ItemList::Quadrilaterals, &wanted);
+        self.locations(&wanted, found).collect()
+    }
+
     /// Pairs each index in `wanted` with its location, completed by the path of the file.
     fn locations<'a>(
         &'a self,

@@ -95,6 +95,12 @@ impl MeshFile {
         &self.parsed.triangles
     }
 
+    /// Returns the vertex indices of each quadrilateral, zero-based, in the order of the file, around it in either direction.
+    /// A vertex may be listed twice.
+    pub fn quadrilaterals(&self) -> &[[u32; 4]] {
+        &self.parsed.quadrilaterals
+    }
+
     /// Returns the lines, points, other elements and periodic pairs of the file.
     pub fn constraints(&self) -> &Constraints {
         &self.parsed.constraints

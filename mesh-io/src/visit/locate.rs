@@ -1,4 +1,4 @@
-//! Finds the locations of nodes and triangles in a file that was read before. Only messages need locations, and
+//! Finds the locations of nodes and elements in a file that was read before. Only messages need locations, and
 //! therefore the first reading stores none.
 
 use crate::disk::source::Source;
@@ -13,6 +13,18 @@ use crate::visit::visitor::MeshVisitor;
 pub(crate) enum ItemList {
     Nodes,
     Triangles,
+    Quadrilaterals,
+}
+
+impl ItemList {
+    /// Returns whether elements of a kind are in the list.
+    fn has(self, kind: CellKind) -> bool {
+        match self {
+            Self::Nodes => false,
+            Self::Triangles => kind == CellKind::Triangle,
+            Self::Quadrilaterals => kind == CellKind::Quadrilateral,
+        }
+    }
 }
 
 /// Location and id of an item of a file.
@@ -93,7 +105,7 @@ impl MeshVisitor for LocationVisitor<'_> {
     }
 
     fn visit_element(&mut self, cursor: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        if self.list == ItemList::Triangles && element.kind == CellKind::Triangle {
+        if self.list.has(element.kind) {
             self.pass(cursor, element.id);
             return self.end_if_found(cursor);
         }

@@ -52,8 +52,9 @@ pub(crate) fn parse_by(
     let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, region_names, .. } = assembler;
     let MeshBuilder { cell_arrays, fractional, other_faces, .. } = assembler;
     let ghost_array = assembler.ghost_array.filter(|_| !assembler.has_ghosts);
-    if quadrilaterals > 0 {
-        remarks.insert(0, Remark::elements(quadrilaterals, "quadrilateral", ""));
+    if !quadrilaterals.is_empty() {
+        let count = quadrilaterals.len() as u64;
+        remarks.insert(0, Remark::elements(count, "quadrilateral", ""));
     }
     if on_lower > 0 && on_lower == points.len() {
         remarks.push(Remark::AllOnModelCurves);
@@ -92,6 +93,7 @@ pub(crate) fn parse_by(
         encoded,
         regions,
         constraints,
+        quadrilaterals,
         other_faces,
         remarks,
         data,
@@ -119,7 +121,7 @@ struct MeshBuilder {
     regions: TriangleRegions,
     constraints: Constraints,
     other_faces: Faces,
-    quadrilaterals: u64,
+    quadrilaterals: Vec<[u32; 4]>,
     remarks: Vec<Remark>,
     /// Names of the arrays of real numbers on vertices besides x and y, each once.
     data: Vec<String>,
@@ -423,7 +425,7 @@ impl MeshVisitor for MeshBuilder {
                     _ => self.constraints.anchored.extend_from_slice(fixed),
                 }
                 if kind == CellKind::Quadrilateral {
-                    self.quadrilaterals += 1;
+                    self.quadrilaterals.push(vertices);
                     self.other_faces.push(fixed);
                 }
                 Ok(())

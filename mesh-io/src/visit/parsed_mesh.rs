@@ -30,6 +30,8 @@ pub(crate) struct ParsedMesh {
     pub(crate) region_array: Option<String>,
     /// Lines, points and periodic pairs of the file.
     pub(crate) constraints: Constraints,
+    /// The vertices of each quadrilateral.
+    pub(crate) quadrilaterals: Vec<[u32; 4]>,
     /// The quadrilaterals and polygons of the file.
     pub(crate) other_faces: Faces,
     pub(crate) remarks: Vec<Remark>,

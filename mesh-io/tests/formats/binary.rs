@@ -172,7 +172,7 @@ fn arrangements(mesh: &Mesh) -> [Vec<u8>; 6] {
 
 #[test]
 fn long_binary_files_come_back_but_for_what_moved() {
-    let mesh = Mesh { points: points(), triangles: triangles(), fixed: Vec::new() };
+    let mesh = Mesh { points: points(), triangles: triangles(), ..Mesh::default() };
     let mut moved = mesh.clone();
     for (v, [x, y]) in moved.points.iter_mut().enumerate() {
         match v % 5 {

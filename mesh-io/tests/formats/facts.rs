@@ -20,7 +20,7 @@ pub(crate) fn fixed(file: &MeshFile) -> Vec<u32> {
 /// Returns the mesh of a file with the vertices that a program would fix.
 pub(crate) fn mesh_of(file: &MeshFile) -> Mesh {
     let (points, triangles) = (file.points().to_vec(), file.triangles().to_vec());
-    Mesh { points, triangles, fixed: fixed(file) }
+    Mesh { points, triangles, fixed: fixed(file), ..Mesh::default() }
 }
 
 /// Returns the mesh of a file with its constrained vertices fixed. Vertices between regions are free.

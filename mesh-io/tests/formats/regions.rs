@@ -68,7 +68,7 @@ fn triangles_of_one_group_and_entity_are_a_region_in_every_format() {
 
 #[test]
 fn regions_of_long_lists_are_those_of_short_ones() {
-    let mesh = Mesh { points: points(), triangles: triangles(), fixed: Vec::new() };
+    let mesh = Mesh { points: points(), triangles: triangles(), ..Mesh::default() };
     let regions: Vec<_> = (0..mesh.triangles.len() as u32).map(|t| t / 9000 % 5).collect();
     let names: Vec<_> =
         regions.iter().map(|&region| [region as i32 / 2, 3 - region as i32]).collect();

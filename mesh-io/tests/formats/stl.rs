@@ -24,7 +24,7 @@ fn in_order() -> Mesh {
         numbers[v as usize]
     };
     let triangles = mesh.triangles.iter().map(|t| t.map(&mut number)).collect();
-    Mesh { points, triangles, fixed: Vec::new() }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 /// Returns the mesh as text: two solids, the second from triangle 30 on, with words and numbers in several spellings.

@@ -195,7 +195,7 @@ fn both(pieces: &[Mesh; 2]) -> Mesh {
     Mesh {
         points: first.points.iter().chain(&second.points).copied().collect(),
         triangles: first.triangles.iter().copied().chain(triangles).collect(),
-        fixed: Vec::new(),
+        ..Mesh::default()
     }
 }
 
@@ -304,7 +304,7 @@ fn torn(mesh: &Mesh) -> (Mesh, Vec<u32>) {
     let points = vertices.iter().map(|&v| mesh.points[v as usize]).collect();
     let triangles =
         (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    (Mesh { points, triangles, fixed: Vec::new() }, vertices)
+    (Mesh { points, triangles, ..Mesh::default() }, vertices)
 }
 
 /// Returns a file with the points of a mesh in text, a continuous and a discontinuous array, and points of z `height`.

@@ -1,9 +1,9 @@
-//! The vertices that move and their triangles in blocks, from the connectivity alone.
+//! The vertices that move and their corners in blocks, from the connectivity alone.
 //!
-//! Vertices are numbered aggregate by aggregate, and a block has the vertices of successive aggregates. A triangle belongs
-//! to the block of its first corner that moves. Its other corners may belong to other blocks, so each block has a local list of
+//! Vertices are numbered aggregate by aggregate, and a block has the vertices of successive aggregates. A corner belongs
+//! to the block of its first vertex that moves. Its other vertices may belong to other blocks, so each block has a local list of
 //! vertices. The list has own vertices first, then vertices of other blocks, then fixed vertices. One task forms the sums over
-//! the triangles of a block, in a local list, and copies those at vertices of other blocks to a shared list. The other blocks
+//! the corners of a block, in a local list, and copies those at vertices of other blocks to a shared list. The other blocks
 //! then add them to their own sums in a fixed order. So the sums have equal bits on any number of threads.
 
 use std::ops::Range;
@@ -41,7 +41,7 @@ impl Ranks<'_> {
     }
 }
 
-/// Vertices and triangles that one task handles.
+/// Vertices and corners that one task handles.
 pub(super) struct Block {
     /// The own vertices, in the order of [`Blocks::order`].
     pub(super) own: Range<usize>,
@@ -54,8 +54,10 @@ pub(super) struct Block {
     /// For each vertex of the local list, the index among the sliding vertices, or [`NONE`]. Empty if no vertex of the list
     /// slides.
     pub(super) slides: Vec<u32>,
-    /// The corners of each triangle, counter-clockwise, as indices of the local list.
-    pub(super) triangles: Vec<[u32; 3]>,
+    /// The vertices of each corner, counter-clockwise, as indices of the local list: triangles, then corners of quadrilaterals.
+    pub(super) corners: Vec<[u32; 3]>,
+    /// Number of triangles.
+    pub(super) triangles: usize,
     /// The sums that other blocks form at own vertices, sorted by own vertex.
     pub(super) received: Vec<Received>,
     /// Range of the shared list, with an entry for each vertex of another block in the local list.
@@ -89,7 +91,7 @@ impl Blocks {
         for (block, (own, _)) in (0..).zip(&ranges) {
             block_of.extend(own.clone().map(|_| block));
         }
-        let lists = triangles_of_blocks(problem, &ranks, &block_of, ranges.len());
+        let lists = corners_of_blocks(problem, &ranks, &block_of, ranges.len());
         let made = paced::map_parts(ranges.into_iter().zip(lists), |_, ((own, groups), list)| {
             Block::new(own, groups, &order, &ranks, list)
         });
@@ -150,23 +152,34 @@ fn ranges(group_start: &[u32]) -> Vec<(Range<usize>, Range<usize>)> {
     ranges
 }
 
-/// Returns the triangles of each block with a free corner, by their vertices in the problem.
-fn triangles_of_blocks(
+/// Corners of a block, by their vertices in the problem: triangles, then corners of quadrilaterals.
+struct CornerList {
+    corners: Vec<[u32; 3]>,
+    /// Number of triangles.
+    triangles: usize,
+}
+
+/// Returns the corners of each block with a vertex that moves.
+fn corners_of_blocks(
     problem: &Problem,
     ranks: &Ranks<'_>,
     block_of: &[u32],
     count: usize,
-) -> Vec<Vec<[u32; 3]>> {
+) -> Vec<CornerList> {
     let block = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|v| ranks.of(v));
         block_of.get(a.min(b).min(c) as usize).map(|&block| block as usize)
     };
     let mut counts = vec![0; count];
-    problem.triangles().iter().filter_map(block).for_each(|block| counts[block] += 1);
-    let mut lists: Vec<_> = counts.into_iter().map(Vec::with_capacity).collect();
-    for triangle in problem.triangles() {
-        if let Some(block) = block(triangle) {
-            lists[block].push(*triangle);
+    problem.corners().all().iter().filter_map(block).for_each(|block| counts[block] += 1);
+    let list = |count| CornerList { corners: Vec::with_capacity(count), triangles: 0 };
+    let mut lists: Vec<CornerList> = counts.into_iter().map(list).collect();
+    for part in problem.corner_parts() {
+        for corner in part.corners {
+            if let Some(block) = block(corner) {
+                lists[block].corners.push(*corner);
+                lists[block].triangles += usize::from(!part.is_right);
+            }
         }
     }
     lists
@@ -178,8 +191,9 @@ impl Block {
         groups: Range<usize>,
         order: &[u32],
         ranks: &Ranks<'_>,
-        mut triangles: Vec<[u32; 3]>,
+        list: CornerList,
     ) -> Self {
+        let CornerList { mut corners, triangles } = list;
         // A vertex that moves has its rank as its key, and a fixed vertex a number above all ranks.
         let (free, sliding) = (ranks.rank.len() as u32, ranks.movers.sliding() as u32);
         let key = |v: u32| match ranks.of(v) {
@@ -187,12 +201,12 @@ impl Block {
             rank => rank,
         };
         let is_own = |key: u32| own.contains(&(key as usize));
-        let keys = triangles.as_flattened().iter().map(|&v| key(v));
+        let keys = corners.as_flattened().iter().map(|&v| key(v));
         let mut beyond: Vec<u32> = keys.filter(|&key| !is_own(key)).collect();
         beyond.sort_unstable();
         beyond.dedup();
         let others = beyond[..beyond.partition_point(|&key| key < free)].to_vec();
-        for v in triangles.as_flattened_mut() {
+        for v in corners.as_flattened_mut() {
             let key = key(*v);
             *v = match is_own(key) {
                 true => key - own.start as u32,
@@ -208,7 +222,7 @@ impl Block {
             slides.extend(vertices.iter().map(slide));
         }
         let (received, shared) = (Vec::new(), 0..0);
-        Self { own, groups, vertices, others, slides, triangles, received, shared }
+        Self { own, groups, vertices, others, slides, corners, triangles, received, shared }
     }
 
     /// Returns the index among the sliding vertices of a vertex of the local list, [`NONE`] if the vertex does not slide.

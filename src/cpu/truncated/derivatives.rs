@@ -183,14 +183,18 @@ impl<T: Scalar> Source<'_, T> {
         part.terms.clear();
         part.maps.clear();
         let mut first = 0;
-        while first < block.triangles.len() {
+        while first < block.corners.len() {
             let four = curved.curvature(&self.corners(simd, block, first));
-            let count = LANES.min(block.triangles.len() - first);
+            let count = LANES.min(block.corners.len() - first);
             let mut lane = 0;
             while lane < count {
-                let t = &block.triangles[first + lane];
+                let t = &block.corners[first + lane];
                 let vertices = vertices_of(block, t);
+                let is_right = first + lane >= block.triangles;
                 let mut curvature = of_lane(&four, lane);
+                if is_right {
+                    curvature = curvature.times(RIGHT_WEIGHT);
+                }
                 let map = self.problem.target_map(&vertices).map(|map| Map::of(&map));
                 part.terms.push(terms_of(&curvature));
                 part.maps.extend(map.as_ref().map(Map::narrowed));
@@ -200,8 +204,12 @@ impl<T: Scalar> Source<'_, T> {
                     force = map.apply(force[0], force[1]);
                     rows.iter_mut().for_each(|row| *row = map.apply(row[0], row[1]));
                 }
-                let force = at_corners(force);
+                let mut force = at_corners(force);
                 let mut rows = [at_corners(rows[0]), at_corners(rows[1]), at_corners(rows[2])];
+                if is_right {
+                    force = before_shear(force);
+                    rows = rows.map(before_shear);
+                }
                 if block.has_sliding_corner(t) {
                     self.project(block, t, &mut rows);
                 }
@@ -229,9 +237,10 @@ impl<T: Scalar> Source<'_, T> {
         let [mut a, mut b] = [[[0.0; LANES]; 2]; 2];
         let mut lane = 0;
         while lane < LANES {
-            let t = &block.triangles[(first + lane).min(block.triangles.len() - 1)];
+            let at = (first + lane).min(block.corners.len() - 1);
+            let (t, is_right) = (&block.corners[at], at >= block.triangles);
             let position = |v: u32| self.positions[v as usize];
-            let corner = self.problem.corner(&vertices_of(block, t), position);
+            let corner = self.problem.corner_of(is_right, &vertices_of(block, t), position);
             ([a[0][lane], a[1][lane]], [b[0][lane], b[1][lane]]) = (corner.a, corner.b);
             lane += 1;
         }
@@ -377,6 +386,29 @@ fn at_corners([c, d]: [[f64; 2]; 2]) -> [[f64; 2]; 3] {
     ]
 }
 
+/// The weight of a corner of a quadrilateral.
+const RIGHT_WEIGHT: f64 = 0.25;
+
+/// Returns the forces on the vertices of a corner of a quadrilateral, given those on the vertices of its sheared triangle. The
+/// third vertex of the triangle is p + (q - p)/2 + √3/2 (r - p) for the vertices p, q and r.
+#[inline(always)]
+pub(super) fn before_shear<T: Scalar>([p, q, r]: [[T; 2]; 3]) -> [[T; 2]; 3] {
+    let (half, h, rest) = (T::of(0.5), T::of(H), T::of(0.5 - H));
+    [
+        [p[0] + rest * r[0], p[1] + rest * r[1]],
+        [q[0] + half * r[0], q[1] + half * r[1]],
+        [h * r[0], h * r[1]],
+    ]
+}
+
+/// Returns the displacements of the vertices of the sheared triangle of a corner, given those of the corner's vertices.
+#[inline(always)]
+pub(super) fn sheared<T: Scalar>([p, q, r]: [[T; 2]; 3]) -> [[T; 2]; 3] {
+    let (half, h, rest) = (T::of(0.5), T::of(H), T::of(0.5 - H));
+    let third = [0, 1].map(|k| rest * p[k] + half * q[k] + h * r[k]);
+    [p, q, third]
+}
+
 impl Extent {
     /// Returns the extent of the vertices at the given positions.
     pub(super) fn of(positions: impl Iterator<Item = DVec2> + Clone) -> Self {
@@ -411,7 +443,7 @@ type Lists<T> = (Vec<Vec<Terms<T>>>, Vec<Vec<Map<T>>>);
 
 /// Returns the blocks' own lists of terms, empty.
 pub(super) fn room<T>(blocks: &[Block], mapped: bool) -> Lists<T> {
-    let of = |block: &Block| Vec::with_capacity(block.triangles.len());
-    let maps = |block: &Block| Vec::with_capacity(if mapped { block.triangles.len() } else { 0 });
+    let of = |block: &Block| Vec::with_capacity(block.corners.len());
+    let maps = |block: &Block| Vec::with_capacity(if mapped { block.corners.len() } else { 0 });
     (blocks.iter().map(of).collect(), blocks.iter().map(maps).collect())
 }

@@ -63,7 +63,7 @@ impl Truncated {
         goes_on: &mut GoesOn<'_>,
     ) -> NewtonStep {
         let metric: Metric = sweep.metric;
-        let count = problem.judged_triangles().len() as f64;
+        let count = problem.judged_count() as f64;
         let swept = mean_excess(metric, problem, positions).await;
         let mut tangents = tangents(curves.as_deref_mut(), sweep, problem, positions);
         let is_exact = tangents.restrict(request.is_exact);
@@ -114,7 +114,7 @@ impl Truncated {
     ) -> Option<f64> {
         let mut tangents = tangents(curves.as_mut(), sweep, problem, positions);
         tangents.restrict(request.is_exact);
-        let count = problem.judged_triangles().len() as f64;
+        let count = problem.judged_count() as f64;
         let metric = sweep.metric;
         let solved = self.solve(metric, problem, positions, &tangents, request, goes_on).await;
         let Solved { model_gain, bound, is_curved_down, .. } = solved;
@@ -135,7 +135,7 @@ impl Truncated {
         let movers = problem.free_count() + tangents.vertices.len();
         let all_move = movers == problem.positions().len();
         let request = &request.for_mesh(all_move);
-        let scale = request.objective * problem.judged_triangles().len() as f64;
+        let scale = request.objective * problem.judged_count() as f64;
         let least_gain = request.least_gain * scale;
         on!(self, solver => solver.solve(request, least_gain, goes_on).await)
     }

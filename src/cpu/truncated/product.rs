@@ -3,7 +3,7 @@
 use fearless_simd::Level;
 
 use super::blocks::{Block, Blocks, receive};
-use super::derivatives::{Map, Numbers, Terms};
+use super::derivatives::{Map, Numbers, Terms, before_shear, sheared};
 use super::scalar::Scalar;
 use crate::metric::H;
 use crate::parallel::paced;
@@ -44,7 +44,7 @@ pub(super) async fn multiply<T: Scalar>(
     inner.await.into_iter().sum()
 }
 
-/// Adds the Hessians of the triangles of a block times `factor` to `sums`.
+/// Adds the Hessians of the corners of a block times `factor` to `sums`.
 #[inline(always)]
 fn add_triangles<T: Scalar>(
     block: &Block,
@@ -53,14 +53,27 @@ fn add_triangles<T: Scalar>(
     factor: &[[T; 2]],
     sums: &mut [[T; 2]],
 ) {
-    let triangles = &block.triangles[..terms.len()];
+    let corners = &block.corners[..terms.len()];
+    let triangles = block.triangles.min(terms.len());
     let is_mapped = !maps.is_empty();
     let mut at = 0;
-    while at < terms.len() {
-        let [i, j, k] = triangles[at];
+    while at < triangles {
+        let [i, j, k] = corners[at];
         let [i, j, k] = [i as usize, j as usize, k as usize];
         let map = if is_mapped { Some(&maps[at]) } else { None };
         let [p, q, r] = of_triangle(&terms[at], map, [factor[i], factor[j], factor[k]]);
+        let ([a, b], [c, d], [e, f]) = (sums[i], sums[j], sums[k]);
+        sums[i] = [a + p[0], b + p[1]];
+        sums[j] = [c + q[0], d + q[1]];
+        sums[k] = [e + r[0], f + r[1]];
+        at += 1;
+    }
+    while at < terms.len() {
+        let [i, j, k] = corners[at];
+        let [i, j, k] = [i as usize, j as usize, k as usize];
+        let map = if is_mapped { Some(&maps[at]) } else { None };
+        let moved = sheared([factor[i], factor[j], factor[k]]);
+        let [p, q, r] = before_shear(of_triangle(&terms[at], map, moved));
         let ([a, b], [c, d], [e, f]) = (sums[i], sums[j], sums[k]);
         sums[i] = [a + p[0], b + p[1]];
         sums[j] = [c + q[0], d + q[1]];

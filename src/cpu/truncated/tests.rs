@@ -89,7 +89,7 @@ fn blocks_divide_vertices_and_triangles() {
     let mut vertices = blocks.order.clone();
     vertices.sort_unstable();
     assert!(vertices.into_iter().eq(0..problem.free_count() as u32));
-    let of_block = |block: &super::blocks::Block| block.triangles.len();
+    let of_block = |block: &super::blocks::Block| block.corners.len();
     let movable = problem.triangles().iter().filter(|t| problem.can_move(t)).count();
     assert_eq!(blocks.blocks.iter().map(of_block).sum::<usize>(), movable);
     let received: usize = blocks.blocks.iter().map(|block| block.received.len()).sum();

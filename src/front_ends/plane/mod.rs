@@ -191,7 +191,7 @@ mod tests {
         let plane = Plane::of(space.to_vec(), Precision::Single).unwrap();
         assert!(plane.is_tilted() && plane.run_precision() == Precision::Double);
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        let mesh = Mesh { points: plane.points().to_vec(), triangles, fixed: vec![] };
+        let mesh = Mesh { points: plane.points().to_vec(), triangles, ..Mesh::default() };
         let topology = Topology::new(&mesh).unwrap();
         let is_valid = |points: &[[f64; 2]]| topology.bad_triangles(points).unwrap().is_empty();
         let (mut returned, mut kept) = (0, 0);

@@ -296,7 +296,7 @@ mod tests {
         opened.arithmetic.set(Some("digits are lost")).unwrap();
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        let mesh = Mesh { points, triangles, fixed: vec![] };
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
         let smoother = Smoother::new(&mesh).unwrap();
         let observe = &mut |_: &_| ControlFlow::Continue(());
         let backend = Backend::Gpu(opened);

@@ -62,7 +62,7 @@ mod tests {
         let gpu = Gpu::open(None).block().unwrap();
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        let mesh = DeviceMesh::new(&gpu, &Mesh { points, triangles, fixed: vec![] }).unwrap();
+        let mesh = DeviceMesh::new(&gpu, &Mesh { points, triangles, ..Mesh::default() }).unwrap();
         assert_eq!(format!("{mesh:?}"), "DeviceMesh { vertices: 5, triangles: 4, .. }");
         let options = Options { scheme: "edge+imr".parse().unwrap(), ..Options::default() };
         let sweeps = Sweeps::new(&mesh, &options).block().unwrap();

@@ -130,6 +130,7 @@ impl DeviceMesh {
     }
 
     fn uploaded(gpu: &Gpu, mesh: &Mesh, problem: Problem) -> Result<Self, SmoothError> {
+        MeshError::check_triangles_alone(mesh, "a mesh on a device")?;
         let buffers = now(MeshBuffers::new(gpu, &problem, problem.positions()))?;
         let numbers = scoped(&gpu.device, || {
             filled(gpu, "vertex numbers", problem.vertices(), Usage::STORAGE)
@@ -141,9 +142,9 @@ impl DeviceMesh {
         let free = problem.free_count() as u32;
         let mut fixed = Vec::new();
         for &vertex in &mesh.fixed {
-            let (triangle, vertices) = (None, vertex_count);
+            let (element, vertices) = (None, vertex_count);
             let place = places.get(vertex as usize).copied();
-            let place = place.ok_or(MeshError::IndexOutOfRange { triangle, vertex, vertices })?;
+            let place = place.ok_or(MeshError::IndexOutOfRange { element, vertex, vertices })?;
             fixed.extend(Some(place).filter(|&place| place < free));
         }
         let pins = Pins::new(gpu, &problem, &buffers, &fixed)?;
@@ -336,7 +337,7 @@ impl DeviceMesh {
     fn place_of(&self, vertex: u32) -> Result<u32, MeshError> {
         let vertices = self.vertex_count;
         let place = self.places.get(vertex as usize).copied();
-        place.ok_or(MeshError::IndexOutOfRange { triangle: None, vertex, vertices })
+        place.ok_or(MeshError::IndexOutOfRange { element: None, vertex, vertices })
     }
 
     /// Returns the positions in the order and unit of the mesh, once the device has finished all work submitted before. A
@@ -369,7 +370,7 @@ fn unconstrained(mesh: &Mesh) -> Cow<'_, Mesh> {
         false => Cow::Owned(Mesh {
             points: mesh.points.clone(),
             triangles: mesh.triangles.clone(),
-            fixed: Vec::new(),
+            ..Mesh::default()
         }),
     }
 }

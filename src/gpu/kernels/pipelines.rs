@@ -206,7 +206,7 @@ mod tests {
 
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.4]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        let mesh = DeviceMesh::new(&gpu, &Mesh { points, triangles, fixed: vec![] }).unwrap();
+        let mesh = DeviceMesh::new(&gpu, &Mesh { points, triangles, ..Mesh::default() }).unwrap();
         let sweeps = Sweeps::new(&mesh, &options).block().unwrap();
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,

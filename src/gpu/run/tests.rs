@@ -35,7 +35,7 @@ fn mapped(to: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     Mesh {
         points: (0..(columns + 1) * (rows + 1)).map(at).collect(),
         triangles: (0..columns * rows).flat_map(cell).collect(),
-        fixed: Vec::new(),
+        ..Mesh::default()
     }
 }
 
@@ -55,7 +55,7 @@ fn cases() -> Vec<(&'static str, Mesh, Slide)> {
         let next = (k + 1) % 18;
         [[k, next, 18 + k], [next, 18 + next, 18 + k], [18 + k, 18 + next, 36]]
     };
-    let disc = Mesh { points, triangles: (0..18).flat_map(of).collect(), fixed: Vec::new() };
+    let disc = Mesh { points, triangles: (0..18).flat_map(of).collect(), ..Mesh::default() };
     let pairs = (0..7).map(|row| [13 * row, 13 * row + 12]).collect();
     let periodic = vec![Periodic { pairs, motion: None }];
     vec![

@@ -5,7 +5,7 @@ use crate::Mesh;
 use crate::measure::Measured;
 
 fn edges_of(surface: Surface, points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<InnerEdge> {
-    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: vec![] };
+    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     Measured::on(surface, points, &topology).unwrap().edges()
 }
@@ -81,7 +81,7 @@ fn a_degree_of_longitude_is_shorter_in_the_north() {
 fn the_worst_edges_of_triangles_are_those_of_the_list() {
     let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.1, 1.0], [0.45, 0.6], [3.0, 0.2]];
     let triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 5, 2]];
-    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), fixed: vec![] };
+    let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     let measured = Measured::new(&points, &topology).unwrap();
     let edges = measured.edges();
@@ -99,7 +99,7 @@ fn the_worst_edges_of_triangles_are_those_of_the_list() {
 #[test]
 fn a_triangle_alone_and_a_flat_triangle_have_finite_measures() {
     let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0]];
-    let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], fixed: vec![] };
+    let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     let alone = worst_edges(Surface::Plane, &points, &topology);
     assert_eq!(alone, [WorstEdges { orthogonality: 0.0, flow_link: EQUILATERAL }]);

@@ -116,7 +116,7 @@ impl Corrections {
     pub(crate) fn new(problem: &Problem, plan: &Plan, has_field: bool) -> Self {
         Self {
             plan: plan.clone(),
-            least: plan.scheme.base().least_objective(problem.targets().is_some()),
+            least: plan.scheme.base().least_objective(problem.mean_varies()),
             is_held: problem.is_bounded() || plan.base_step(1.0).shape_guard.is_finite(),
             has_field,
             stage: Stage::Before { until: 1 },

@@ -13,6 +13,10 @@ const DIRECT: usize = 96;
 /// Damping factor of the Jacobi step that smooths the prolongation.
 pub(crate) const SMOOTHING: f32 = 0.9;
 
+/// [`SMOOTHING`] for the vertices of a mesh with quadrilaterals: (4/3)/2, as D⁻¹A of a lattice of squares has eigenvalues up to
+/// 2, and that of a lattice of triangles up to 1.5.
+const OF_QUADRILATERALS: f32 = 0.667;
+
 /// Coefficients of two steps of the Chebyshev iteration for D⁻¹A over [0.45, 1.8], the upper three quarters of the
 /// spectrum, whose end is assumed at 1.8. The first coefficient is the factor on D⁻¹r in the first step d. The other
 /// two are the factors on d and on D⁻¹r in the second step.
@@ -145,6 +149,14 @@ impl Hierarchy {
         Some(levels)
     }
 
+    /// Returns the damping factor of the Jacobi step that smooths the prolongation to the vertices.
+    pub(crate) fn smoothing(problem: &Problem) -> f32 {
+        match problem.has_quadrilaterals() {
+            true => OF_QUADRILATERALS,
+            false => SMOOTHING,
+        }
+    }
+
     /// Returns the reciprocal of the diagonal entry of each free vertex, the sum of the weights of its edges.
     async fn diagonal_inverted(&self, problem: &Problem) -> Vec<f32> {
         let diagonal =
@@ -169,15 +181,16 @@ impl Hierarchy {
         // roots, E diagonal, and N the adjacency matrix. Therefore `prolongation` is R P here, and the matrix in the
         // product is E - N, whose entries off the diagonal are -1.
         let (root, inverse) = (&self.root, &self.inverse_diagonal);
+        let smoothing = Self::smoothing(problem);
         let inverse_e = |v: usize| inverse[v] * root[v] * root[v];
         let prolongation = Sparse::from_rows(free, |v, sum| {
             if !moves(v) {
                 return;
             }
             if of[v] != NONE {
-                sum.add(of[v], (1.0 - SMOOTHING) * root[v]);
+                sum.add(of[v], (1.0 - smoothing) * root[v]);
             }
-            let share = SMOOTHING * inverse_e(v);
+            let share = smoothing * inverse_e(v);
             for k in free_neighbors(v).filter(|&k| of[k] != NONE) {
                 sum.add(of[k], share * root[k]);
             }
@@ -289,9 +302,10 @@ async fn aggregates(
     let free = problem.free_count();
     let degree = |v: u32| problem.ring_of(v).len() as f32;
     // A vertex that does not move has no free neighbors, and so belongs to no aggregate.
+    // The opposite vertices of quadrilaterals join too: on a lattice of squares, an aggregate then has nine members.
     let free_neighbors = |v: usize| {
         let joins = move |&k: &u32| (k as usize) < free && moves(k as usize) && moves(v);
-        neighbors(problem, v).filter(joins)
+        problem.companions(v as u32).filter(joins)
     };
     let strong_neighbors = |v: usize| {
         let most = 1.0 / (STRONG * STRONG * degree(v as u32));
@@ -300,10 +314,9 @@ async fn aggregates(
     Aggregates::new(free, strong_neighbors).await.with_the_rest(free_neighbors).await
 }
 
-/// Returns all neighbors of a free vertex, in the order of the one-ring.
+/// Returns all neighbors along edges of a free vertex, in the order of the one-ring.
 fn neighbors(problem: &Problem, v: usize) -> impl Iterator<Item = u32> + '_ {
-    let start = problem.ring_start();
-    problem.ring()[start[v] as usize..start[v + 1] as usize].iter().copied()
+    problem.neighbors(v as u32)
 }
 
 /// Replaces roots that are not positive and finite by the smallest usable root, so that every weight is positive and
@@ -370,7 +383,7 @@ mod tests {
         let points = (0..side * side).map(|k| [f64::from(k % side), f64::from(k / side)]).collect();
         let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
         let triangles = cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]);
-        let mesh = Mesh { points, triangles: triangles.collect(), fixed: Vec::new() };
+        let mesh = Mesh { points, triangles: triangles.collect(), ..Mesh::default() };
         let problem = prepare(&mesh).unwrap().1;
         let roots =
             |scale: f32| (0..problem.free_count()).map(|v| 1.0 + scale * v as f32).collect();

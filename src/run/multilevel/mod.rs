@@ -18,6 +18,8 @@ mod sparse;
 
 pub(crate) use aggregate::{Aggregates, NONE};
 pub(crate) use dense::invert;
-pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level, SMOOTHING};
+#[cfg(feature = "gpu")]
+pub(crate) use hierarchy::SMOOTHING;
+pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level};
 pub(crate) use search::{MIN_FIRST_LENGTH, Search};
 pub(crate) use sparse::Sparse;

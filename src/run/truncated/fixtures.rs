@@ -18,7 +18,7 @@ pub(crate) fn lattice(side: u32, ratio: f64) -> Mesh {
     Mesh {
         points: (0..side * side).map(point).collect(),
         triangles: triangles.collect(),
-        fixed: Vec::new(),
+        ..Mesh::default()
     }
 }
 
@@ -39,7 +39,7 @@ pub(crate) fn hub(around: u32) -> Mesh {
         triangles.push([at(ring, k), at(ring + 1, k), at(ring + 1, k + 1)]);
         triangles.push([at(ring, k), at(ring + 1, k + 1), at(ring, k + 1)]);
     }
-    Mesh { points, triangles, fixed: Vec::new() }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 pub(crate) fn problem(mesh: &Mesh) -> Problem {

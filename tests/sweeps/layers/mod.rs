@@ -209,7 +209,7 @@ fn worst_at_rim(mesh: &Mesh, is_free: &[bool], points: &[[f64; 2]]) -> f64 {
         0 < free && free < 3
     };
     let triangles = mesh.triangles.iter().filter(is_at_rim).copied().collect();
-    support::worst_imr(&Mesh { points: points.to_vec(), triangles, fixed: Vec::new() })
+    support::worst_imr(&Mesh { points: points.to_vec(), triangles, ..Mesh::default() })
 }
 
 #[test]

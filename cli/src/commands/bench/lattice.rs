@@ -27,7 +27,7 @@ pub(crate) fn lattice(vertices: usize) -> Mesh {
             [[p, q, r], [p, r, s]]
         });
     }
-    Mesh { points, triangles, fixed: Vec::new() }
+    Mesh { points, triangles, ..Mesh::default() }
 }
 
 /// The generator SplitMix64 (Steele, Lea, Flood 2014).

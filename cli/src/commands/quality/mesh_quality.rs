@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
-    Quality, Topology,
+    Element, Quality, Topology,
     measure::{Measure, Measured, Statistics},
     topology::BadTriangle,
 };
@@ -159,7 +159,7 @@ impl MeshQuality {
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
             report: QualityReport::from(&quality),
-            worst_place: file.source.triangle_location(quality.worst_triangle),
+            worst_place: file.source.triangle_location(quality.worst.index()),
             statistics: measured.statistics(&args.statistics()),
             regions: match args.by_region {
                 true => regions(&file, &measured, &args.statistics())?,
@@ -285,7 +285,7 @@ fn worst(
         at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
         length: longest_edge(mesh.triangles[t].map(|v| mesh.points[v as usize])),
         values: args.histograms().iter().map(|&m| (m, measured.value(m, t))).collect(),
-        can_move: topology.can_move(t),
+        can_move: topology.can_move(Element::Triangle(t)),
     };
     found.iter().map(one).collect()
 }

@@ -3,6 +3,7 @@
 use crate::load::LoadedMesh;
 use std::fmt::Write;
 
+use gpu_smooth::Element;
 use gpu_smooth::measure::{Measure, Measured};
 
 use crate::load::as_in_file;
@@ -51,8 +52,10 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<WorstT
     for (list, &(_, state, only_movable)) in LISTS.iter().enumerate() {
         let most = if only_movable { CANDIDATES } else { LISTED };
         let found = states[state].worst(Measure::Shape, most).into_iter().map(|found| found.0);
-        let found: Vec<usize> =
-            found.filter(|&t| !only_movable || topology.can_move(t)).take(LISTED).collect();
+        let found: Vec<usize> = found
+            .filter(|&t| !only_movable || topology.can_move(Element::Triangle(t)))
+            .take(LISTED)
+            .collect();
         let is_new = listed.iter().all(|(_, known)| *known != found || !only_movable);
         if is_new {
             listed.push((list, found));
@@ -102,7 +105,7 @@ fn located(
             at_in_file: as_in_file(file, at),
             size: length(p, q).max(length(q, r)).max(length(r, p)),
             values: states.map(|state| measures.map(|measure| state.value(measure, triangle))),
-            can_move: topology.can_move(triangle),
+            can_move: topology.can_move(Element::Triangle(triangle)),
         }
     };
     listed.iter().map(spot).collect()

@@ -54,7 +54,7 @@ fn ordered(mesh: &Mesh, order: &[usize]) -> Mesh {
     let position = |v: u32| order.iter().position(|&i| i == v as usize).map_or(v, |at| at as u32);
     let points = order.iter().map(|&i| mesh.points[i]).collect();
     let triangles = mesh.triangles.iter().map(|t| t.map(position)).collect();
-    let mesh = Mesh { points, triangles, fixed: Vec::new() };
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
     fixing(&mesh, [POINT].into_iter().chain(LINE).map(position))
 }
 

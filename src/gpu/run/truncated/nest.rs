@@ -112,7 +112,7 @@ impl Nest {
         let mut vertices = Vec::new();
         for fan in curves.fans() {
             vertices.push(fan.own());
-            fans[fan.own() as usize - free] = fan.triangles();
+            fans[fan.own() as usize - free] = fan.corners();
         }
         let mut starts = vec![0];
         let mut corners = Vec::new();
@@ -178,7 +178,7 @@ mod tests {
         let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
         let triangles =
             cells.flat_map(|k| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]]).collect();
-        let problem = prepare(&Mesh { points, triangles, fixed: Vec::new() }).unwrap().1;
+        let problem = prepare(&Mesh { points, triangles, ..Mesh::default() }).unwrap().1;
         let nest = now(Nest::new(&problem, None));
         assert!(nest.depth() >= 4);
         assert_eq!(nest.op(nest.depth() - 1).rows, 1);

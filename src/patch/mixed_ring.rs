@@ -1,0 +1,174 @@
+//! The one-rings of four free vertices of quadrilaterals, or of quadrilaterals and triangles, one vertex in each lane.
+
+use std::ops::Mul;
+
+use fearless_simd::prelude::*;
+use glam::DVec2;
+
+use crate::layout::{OPPOSITE, Problem};
+use crate::metric::{Corner, Dual, Given, Ideal, TargetMap};
+use crate::patch::corners::Corners;
+use crate::patch::direction::{Direction, newton_direction};
+use crate::patch::lanes::{LANES, Lanes, Points, points, vertex_maps};
+use crate::patch::ring::{LanePatch, mapped_direction, squared_distance};
+use crate::patch::role::Role;
+
+/// One-rings of four free vertices whose elements are of equal kinds in equal order.
+#[derive(Clone, Copy)]
+pub(crate) struct MixedRings<'a, S: Simd> {
+    /// Positions of the vertices around each visited vertex, counter-clockwise: neighbors, and opposite vertices of
+    /// quadrilaterals.
+    ring: &'a [Points<S>],
+    corners: &'a [RingCorner],
+    /// Target map of each corner. Empty without targets and local maps.
+    maps: &'a [TargetMap<Lanes<S>>],
+    /// Inverse of the target map or local map of each visited vertex. `None` without maps.
+    inverse_map: Option<TargetMap<Lanes<S>>>,
+    total_weight: f64,
+    ideal: Ideal,
+}
+
+/// A corner that depends on the visited vertex.
+#[derive(Clone, Copy)]
+struct RingCorner {
+    role: Role,
+    /// Its other two vertices, counter-clockwise, as indices in the ring.
+    others: [u32; 2],
+}
+
+/// Memory for [`MixedRings`], reused by one visit after another.
+pub(crate) struct MixedScratch<S: Simd> {
+    ring: Vec<Points<S>>,
+    corners: Vec<RingCorner>,
+    maps: Vec<TargetMap<Lanes<S>>>,
+}
+
+impl<S: Simd> MixedScratch<S> {
+    pub(crate) fn new() -> Self {
+        Self { ring: Vec::new(), corners: Vec::new(), maps: Vec::new() }
+    }
+}
+
+impl<'a, S: Simd> MixedRings<'a, S> {
+    /// Reads the one-rings of `vertices`, and their target maps, into `scratch`.
+    #[inline(always)]
+    pub(crate) fn gather(
+        simd: S,
+        problem: &Problem,
+        positions: &[DVec2],
+        vertices: [u32; LANES],
+        scratch: &'a mut MixedScratch<S>,
+    ) -> Self {
+        let MixedScratch { ring, corners, maps } = scratch;
+        let rings = vertices.map(|v| problem.ring_of(v));
+        let length = rings[0].len();
+        let at = |i: usize| rings.map(|ring| ring[i] & !OPPOSITE);
+        ring.clear();
+        ring.extend((0..length).map(|i| points(simd, positions, at(i))));
+        corners.clear();
+        list_corners(rings[0], corners);
+        let total_weight = corners.iter().map(|corner| corner.role.weighted(1.0)).sum();
+        maps.clear();
+        let mut inverse_map = None;
+        if problem.maps().is_some() {
+            let of = |vertices| vertex_maps(simd, problem.targets(), vertices);
+            let own = of(vertices);
+            maps.extend(corners.iter().map(|corner| {
+                let [p, q] = corner.others.map(|i| of(at(i as usize)));
+                TargetMap::mean([own, p, q])
+            }));
+            inverse_map = Some(TargetMap(vertex_maps(simd, problem.maps(), vertices)).inverse());
+        }
+        Self { ring, corners, maps, inverse_map, total_weight, ideal: problem.ideal() }
+    }
+}
+
+/// Lists the corners around a vertex, given its list in [`Problem::ring`].
+fn list_corners(ring: &[u32], corners: &mut Vec<RingCorner>) {
+    let is_opposite = |i: usize| ring[i % ring.len()] & OPPOSITE != 0;
+    let place = |i: usize| (i % ring.len()) as u32;
+    for i in (0..ring.len()).filter(|&i| !is_opposite(i)) {
+        let mut add = |role, a, b| corners.push(RingCorner { role, others: [place(a), place(b)] });
+        if is_opposite(i + 1) {
+            let [next, opposite, last] = [i, i + 1, i + 2];
+            add(Role::Own, next, last);
+            add(Role::Next, next, opposite);
+            add(Role::Last, last, opposite);
+        } else {
+            add(Role::Triangle, i, i + 1);
+        }
+    }
+}
+
+impl<S: Simd> LanePatch<S> for MixedRings<'_, S> {
+    #[inline(always)]
+    fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
+        &self.inverse_map
+    }
+
+    #[inline(always)]
+    fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
+        squared_distance(self.ring[0], at)
+    }
+
+    #[inline(always)]
+    fn vertices(&self, i: usize, at: Points<S>) -> [Points<S>; 3] {
+        let RingCorner { role, others: [p, q] } = self.corners[i];
+        role.vertices(at, [self.ring[p as usize], self.ring[q as usize]])
+    }
+}
+
+impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
+    type Slopes = Given;
+
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.corners.len()
+    }
+
+    #[inline(always)]
+    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+        let [p, q, r] = self.vertices(i, at);
+        // Differences come first: a general form that is linear in the vertex would cancel for small elements.
+        let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+        let mut corner = Corner { a, b, ideal: self.ideal };
+        if self.corners[i].role.is_right() {
+            corner = corner.of_right_angle();
+        }
+        match self.maps.get(i) {
+            Some(map) => map.transform(&corner),
+            None => corner,
+        }
+    }
+
+    #[inline(always)]
+    fn slopes(&self, i: usize) -> Given {
+        self.corners[i].role.slopes()
+    }
+
+    #[inline(always)]
+    fn weighted<V: Mul<f64, Output = V>>(&self, i: usize, term: V) -> V {
+        self.corners[i].role.weighted(term)
+    }
+
+    #[inline(always)]
+    fn total_weight(&self) -> f64 {
+        self.total_weight
+    }
+
+    #[inline(always)]
+    fn pull_back(&self, i: usize, transformed: Dual<Lanes<S>>) -> Dual<Lanes<S>> {
+        match self.maps.get(i) {
+            Some(map) => map.pull_back(transformed),
+            None => transformed,
+        }
+    }
+
+    #[inline(always)]
+    fn direction(&self, sum: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
+        match &self.inverse_map {
+            Some(inverse) => mapped_direction(inverse, sum, eigenvalue_floor),
+            None => newton_direction(sum, eigenvalue_floor),
+        }
+    }
+}

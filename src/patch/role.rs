@@ -1,0 +1,79 @@
+//! The place of a visited vertex in the corners that depend on it.
+
+use crate::metric::Given;
+
+/// The place of a visited vertex in a corner. A quadrilateral has three corners with the vertex: its own corner, and those at
+/// the vertices before and after.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// Any vertex of a triangle, which is then written with the visited vertex first.
+    #[default]
+    Triangle,
+    /// First vertex of its own corner of a quadrilateral.
+    Own,
+    /// Third vertex of the corner at the next vertex of a quadrilateral.
+    Next,
+    /// Second vertex of the corner at the previous vertex of a quadrilateral.
+    Last,
+}
+
+impl Role {
+    /// Returns the place of a vertex in a corner, and the other two vertices, counter-clockwise. `is_right` tells whether the
+    /// corner is of a quadrilateral.
+    pub(crate) fn of([p, q, r]: [u32; 3], is_right: bool, vertex: u32) -> (Self, [u32; 2]) {
+        match (is_right, vertex) {
+            (false, v) if v == q => (Self::Triangle, [r, p]),
+            (false, v) if v == r => (Self::Triangle, [p, q]),
+            (false, _) => (Self::Triangle, [q, r]),
+            (true, v) if v == r => (Self::Next, [p, q]),
+            (true, v) if v == q => (Self::Last, [p, r]),
+            (true, _) => (Self::Own, [q, r]),
+        }
+    }
+
+    /// Returns whether the corner is of a quadrilateral.
+    #[inline(always)]
+    pub(crate) fn is_right(self) -> bool {
+        self != Self::Triangle
+    }
+
+    /// Returns the vertices of the corner, counter-clockwise, given the visited vertex and the other two of [`Self::of`].
+    #[inline(always)]
+    pub(crate) fn vertices<P>(self, at: P, [p, q]: [P; 2]) -> [P; 3] {
+        match self {
+            Self::Triangle | Self::Own => [at, p, q],
+            Self::Next => [p, q, at],
+            Self::Last => [p, at, q],
+        }
+    }
+
+    /// Returns the slopes of the edges of the corner in the form of the metrics, in which the corner of a quadrilateral is
+    /// sheared.
+    #[inline(always)]
+    pub(crate) fn slopes(self) -> Given {
+        const OWN: Given = Given::of_right_angle(-1.0, -1.0);
+        const NEXT: Given = Given::of_right_angle(0.0, 1.0);
+        const LAST: Given = Given::of_right_angle(1.0, 0.0);
+        match self {
+            Self::Triangle => Given(-1.0, -1.0),
+            Self::Own => OWN,
+            Self::Next => NEXT,
+            Self::Last => LAST,
+        }
+    }
+
+    /// Returns the slopes of the edges of the corner in the plane.
+    pub(crate) fn plane_slopes(self) -> Given {
+        match self {
+            Self::Triangle | Self::Own => Given(-1.0, -1.0),
+            Self::Next => Given(0.0, 1.0),
+            Self::Last => Given(1.0, 0.0),
+        }
+    }
+
+    /// Returns a term of the corner times its weight: 1 for a triangle, 1/4 for a corner of a quadrilateral.
+    #[inline(always)]
+    pub(crate) fn weighted<V: std::ops::Mul<f64, Output = V>>(self, term: V) -> V {
+        if self.is_right() { term * 0.25 } else { term }
+    }
+}
