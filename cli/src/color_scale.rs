@@ -14,7 +14,7 @@ pub struct ColorScale {
 
 impl ColorScale {
     /// Returns the default scale of a measure, where good meshes differ: the better half of a bounded range, or up to 1
-    /// above the ideal. The scale depends only on the measure, so that pictures are comparable. Negative values of the
+    /// above the ideal; by `flow-link`, 0 to 0.8, which shows the limits of solvers. The scale depends only on the measure, so that pictures are comparable. Negative values of the
     /// scaled Jacobian belong to inverted triangles, and do not count.
     pub fn usual(measure: Measure) -> Self {
         let definition = measure.definition();
@@ -24,8 +24,13 @@ impl ColorScale {
             Better::Lower => most,
         };
         let ideal = definition.ideal;
-        let bad = if worst.is_finite() { (worst + ideal) / 2.0 } else { ideal + 1.0 };
-        Self { measure, bad, good: ideal }
+        let [bad, good] = match measure {
+            // The ideal of flow links is not round.
+            Measure::FlowLink => [0.0, 0.8],
+            _ if worst.is_finite() => [(worst + ideal) / 2.0, ideal],
+            _ => [ideal + 1.0, ideal],
+        };
+        Self { measure, bad, good }
     }
 
     /// Returns the scale between two values of a measure.
@@ -61,7 +66,10 @@ impl ColorScale {
     pub fn legend(self) -> String {
         let ticks = self.ticks();
         let [bad, good] = [&ticks[0].1, &ticks[ticks.len() - 1].1];
-        let name = self.measure.name();
+        let name = match (self.measure.is_of_edges(), self.measure.name()) {
+            (true, name) => format!("the worst {name} of their edges"),
+            (false, name) => name.to_owned(),
+        };
         format!(
             "Triangles by {name}: dark blue is {bad}, yellow is {good}, red is inverted or flat"
         )
@@ -147,10 +155,13 @@ mod tests {
         assert_eq!(usual(Measure::Shape), "≤ 0.5 0.6 0.7 0.8 0.9 1");
         assert_eq!(usual(Measure::MinAngle), "≤ 30° 35° 40° 45° 50° 55° 60°");
         assert_eq!(usual(Measure::Condition), "≥ 2 1.8 1.6 1.4 1.2 1");
+        assert_eq!(usual(Measure::FlowLink), "0 0.2 0.4 0.6 ≥ 0.8");
         assert_eq!(of(Measure::Shape, [0.0, 1.0]), "0 0.2 0.4 0.6 0.8 1");
         assert_eq!(of(Measure::Shape, [0.6, 0.9]), "≤ 0.6 0.65 0.7 0.75 0.8 0.85 ≥ 0.9");
         let legend = ColorScale::usual(Measure::Shape).legend();
         assert!(legend.starts_with("Triangles by shape: dark blue is ≤ 0.5, yellow is 1,"));
+        let legend = ColorScale::usual(Measure::Orthogonality).legend();
+        assert!(legend.starts_with("Triangles by the worst orthogonality of their edges: "));
         assert_eq!(of(Measure::MaxAngle, [80.0, 180.0]), "180° 160° 140° 120° 100° ≤ 80°");
     }
 

@@ -12,14 +12,15 @@ pub(crate) struct PictureArgs {
     /// Draw the mesh, colored by its quality, as .png or .svg
     #[arg(long, value_name = "FILE", help_heading = "Picture")]
     pub(crate) picture: Option<PathBuf>,
-    /// The measure that colors show (see `gpu-smooth quality --help`)
+    /// The measure that colors show, on a page at first (see `gpu-smooth quality --help`). orthogonality and flow-link color
+    /// edges, other measures triangles
     #[arg(
         long,
         value_name = "NAME",
         default_value = "shape",
         value_parser = names::measures(),
         hide_possible_values = true,
-        requires = "picture",
+        requires = "drawing",
         help_heading = "Picture"
     )]
     pub(crate) picture_measure: Measure,

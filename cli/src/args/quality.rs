@@ -30,7 +30,7 @@ pub(crate) struct QualityArgs {
         help = names::measure_help()
     )]
     pub(crate) measure: Vec<Measure>,
-    /// Number of worst triangles to list
+    /// Number of worst triangles to list; of worst edges, if the first measure is orthogonality or flow-link
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) worst: usize,
     /// Show the statistics of each region too: physical groups, materials, references, attributes

@@ -58,6 +58,14 @@ impl Quantity {
         }
     }
 
+    /// Returns the measure; `None` for other quantities.
+    pub(crate) fn measure(self) -> Option<Measure> {
+        match self {
+            Self::Measure(measure) => Some(measure),
+            _ => None,
+        }
+    }
+
     /// Returns the parts of a mesh that have the quantity.
     pub(crate) fn part(self) -> Part {
         match self {

@@ -96,7 +96,7 @@ impl<'m> Quantities<'m> {
         let topology = self.measured.topology();
         match threshold.quantity {
             Quantity::Measure(measure) if measure.is_of_edges() => {
-                let values = self.edges().iter().map(|edge| of_edge(threshold.quantity, edge));
+                let values = self.edges().iter().map(|edge| of_edge(measure, edge));
                 values.enumerate().map(valued).collect()
             }
             Quantity::Measure(measure) => {
@@ -151,10 +151,10 @@ impl<'m> Quantities<'m> {
     }
 }
 
-/// Returns the value of a quantity of edges for an edge between two triangles.
-pub(crate) fn of_edge(quantity: Quantity, edge: &InnerEdge) -> f64 {
-    match quantity {
-        Quantity::Measure(Measure::FlowLink) => edge.flow_link,
+/// Returns the value of a measure of edges for an edge between two triangles.
+pub(crate) fn of_edge(measure: Measure, edge: &InnerEdge) -> f64 {
+    match measure {
+        Measure::FlowLink => edge.flow_link,
         _ => edge.orthogonality,
     }
 }

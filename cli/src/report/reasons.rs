@@ -29,7 +29,9 @@ pub(crate) fn reasons(profile: &Profile, quantities: &Quantities<'_>) -> Vec<Rea
     let mut reasons: Vec<Reason> = all.map(|why| Reason { why, warned: 0, failed: 0 }).collect();
     for edge in quantities.edges() {
         let is_in = |range: &Option<Threshold>| {
-            range.as_ref().is_some_and(|range| range.is_met(of_edge(range.quantity, edge)))
+            let measured =
+                range.as_ref().and_then(|range| Some((range, range.quantity.measure()?)));
+            measured.is_some_and(|(range, measure)| range.is_met(of_edge(measure, edge)))
         };
         let (is_failed, is_warned) = (
             limits.iter().any(|limit| is_in(&limit.fail)),

@@ -83,6 +83,39 @@ fn the_mesh_of_a_page_is_that_of_the_files() {
 }
 
 #[test]
+fn a_page_colors_edges_by_the_measures_that_the_command_line_names() {
+    let folder = small();
+    let names = |data: &Value| -> Vec<String> {
+        let measures = data["measures"].as_array().unwrap().iter();
+        measures.map(|measure| measure["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let usual = ["shape", "min-angle", "max-angle", "size-ratio"];
+    let (_, data) = page(&folder, "in out --for dflowfm");
+    assert_eq!(names(&data), [&usual[..], &["orthogonality", "flow-link"]].concat());
+    assert_eq!(data["first"], 0);
+    let before = folder.mesh("in");
+    let topology = Topology::new(&before).unwrap();
+    for (state, name) in ["in", "out"].into_iter().enumerate() {
+        let mesh = folder.mesh(name);
+        let edges = Measured::new(&mesh.points, &topology).unwrap().edges();
+        let told = &data["states"][state];
+        let drawn = points(&told["points"]);
+        let ends: Vec<[f64; 2]> = indices(&data["edges"]).into_iter().map(|v| drawn[v]).collect();
+        let of_mesh = edges.iter().flat_map(|edge| edge.vertices.map(|v| mesh.points[v as usize]));
+        assert_eq!(ends, of_mesh.collect::<Vec<_>>());
+        let links: Vec<f32> = edges.iter().map(|edge| edge.flow_link as f32).collect();
+        assert_eq!(values(&told["edge_values"][5]), links);
+        assert!(values(&told["edge_values"][0]).is_empty());
+    }
+    let (_, data) = page_of(&folder, "quality in --picture-measure orthogonality");
+    assert_eq!((names(&data).len(), &data["first"]), (5, &4.into()));
+    let (_, data) = page_of(&folder, "quality in -m skewness,flow-link");
+    assert_eq!(names(&data)[4..], ["flow-link"]);
+    let (_, data) = page_of(&folder, "quality in");
+    assert_eq!((names(&data).len(), indices(&data["edges"]).len()), (4, 0));
+}
+
+#[test]
 fn a_page_needs_nothing_else_and_tells_all_of_the_run() {
     let folder = small();
     fs::rename(folder.path("in.node"), folder.path("<i>&.node")).unwrap();

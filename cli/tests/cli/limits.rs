@@ -54,6 +54,46 @@ fn a_threshold_of_edges_counts_edges_and_names_the_ends_of_the_worst() {
 }
 
 #[test]
+fn the_worst_edges_are_listed_with_their_ends_if_a_measure_of_edges_is_first() {
+    let folder = quadrilateral();
+    let text =
+        quality(&folder, &["-m", "orthogonality,min-angle,flow-link", "--worst", "3"]).clean().out;
+    let list: Vec<&str> =
+        text.split("worst edges by orthogonality\n").nth(1).unwrap().lines().take(4).collect();
+    assert_eq!(list[3], "");
+    assert_holds(
+        list[0],
+        &["  the edge between vertices ", " and 5 (lines ", " of in.14): orthogonality 0."],
+    );
+    assert!(list[0].contains(", flow-link ") && list[0].ends_with("; can move"), "{}", list[0]);
+    assert!(!list[0].contains("min-angle"));
+    let told: Value =
+        serde_json::from_str(&quality(&folder, &["-m", "flow-link", "--worst", "9", "--json"]).out)
+            .unwrap();
+    let worst = told["worst"].as_array().unwrap();
+    // Each of the four edges at vertex 5, the shortest link first.
+    let links: Vec<f64> = worst.iter().map(|edge| number(&edge["flow-link"])).collect();
+    assert!(links.len() == 4 && links.is_sorted(), "{links:?}");
+    for edge in worst {
+        assert_eq!(
+            (&edge["vertices"][1], &edge["corners"][1]),
+            (&5.into(), &vec![2.0, 0.5].into())
+        );
+        let end = edge["vertices"][0].as_u64().unwrap();
+        assert_eq!(edge["lines"], Value::from(vec![end + 2, 7]));
+        assert_eq!(edge["movable"], true);
+    }
+    // All vertices of the square are fixed, and none is inside.
+    let cut = "flat\n2 4\n1 0 0 1\n2 4 0 1\n3 4 3 1\n4 0 3 1\n1 3 1 2 3\n2 3 1 3 4\n0\n0\n0\n0\n";
+    let folder = Folder::new(&[("in.14", cut)]);
+    let text = quality(&folder, &["-m", "orthogonality"]).clean().out;
+    assert_holds(
+        &text,
+        &["vertices 1 and 3 (lines 3 and 5 of in.14)", "all vertices of its triangles are fixed"],
+    );
+}
+
+#[test]
 fn a_threshold_of_neighbors_counts_vertices_and_leaves_out_the_boundary_for_small_numbers() {
     let folder = quadrilateral();
     let run = quality(&folder, &["--threshold", "neighbors<5", "--threshold", "neighbors>3"]);

@@ -3,6 +3,7 @@
 use super::html::MIXED;
 use super::output::INVERTED;
 use super::{Folder, assert_holds, finish, small};
+use gpu_smooth::{Topology, measure::Measured};
 use std::fs;
 
 /// An image, decoded to its pixels.
@@ -101,6 +102,46 @@ fn a_run_is_drawn_before_and_after_on_one_scale() {
     assert_eq!(image.places(is_red), [[0; 2]; 0]);
     // No other file is written.
     assert_eq!(folder.content().len(), 5);
+}
+
+/// Two squares, the left one of triangles with a long diagonal and the right one with its corner moved, so that the edge
+/// between the squares is orthogonal and one diagonal is not.
+const SQUARES: [(&str, &str); 2] = [
+    ("in.node", "6 2 0 0\n1 0 0\n2 2 0\n3 2 2\n4 0 2\n5 4 0\n6 5 1\n"),
+    ("in.ele", "4 3 0\n1 1 2 3\n2 1 3 4\n3 2 5 3\n4 5 6 3\n"),
+];
+
+#[test]
+fn measures_of_edges_color_edges_and_leave_triangles_pale() {
+    let folder = Folder::new(&SQUARES);
+    folder.line("quality in --picture p.svg --picture-measure orthogonality").clean();
+    let edges = folder.text("p.svg");
+    folder.line("quality in --picture p.svg --picture-range 0,1").clean();
+    let faces = folder.text("p.svg");
+    let lines = |text: &str, color: &str| {
+        let of_color = |line: &&str| {
+            line.contains(&format!("stroke=\"#{color}\"")) && line.contains("stroke-opacity")
+        };
+        text.lines().filter(of_color).map(|line| line.matches('M').count()).sum::<usize>()
+    };
+    // Three edges are between triangles. Both centers are on the diagonal of the left square, so the diagonal has no link.
+    let topology = folder.mesh("in");
+    let topology = Topology::new(&topology).unwrap();
+    let mesh = folder.mesh("in");
+    let measured = Measured::new(&mesh.points, &topology).unwrap();
+    let values: Vec<f64> = measured.edges().iter().map(|edge| edge.orthogonality).collect();
+    assert_eq!(values.len(), 3);
+    let [best, worst] = ["fde725", "440154"].map(|color| lines(&edges, color));
+    assert_eq!(best, values.iter().filter(|&&value| value < 0.003).count(), "{values:?}");
+    assert_eq!(worst, values.iter().filter(|&&value| value > 0.5).count(), "{values:?}");
+    assert!(best > 0, "{values:?}");
+    assert!(edges.contains("fill=\"#eceef1\"") && !faces.contains("#eceef1"));
+    assert_holds(
+        &edges,
+        &[">worst edges<", "3 edges; orthogonality ", ">orthogonality, 0 is best<"],
+    );
+    assert_holds(&faces, &[">worst triangles<", "4 triangles; shape "]);
+    assert_eq!(lines(&faces, "fde725"), 0);
 }
 
 #[test]

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use gpu_smooth::measure::{QUANTILES, Statistics};
 use serde_json::{Value, json};
 
-use crate::commands::quality::mesh_quality::{MeshQuality, Region, WorstTriangle};
+use crate::commands::quality::mesh_quality::{MeshQuality, Region};
+use crate::commands::quality::worst::WorstPart;
 use crate::error::CliError;
 use crate::render::columns::quoted;
 use crate::report::{Finding, Histogram, Worst, placed};
@@ -70,8 +71,8 @@ fn histogram(histogram: &Histogram) -> Value {
     json!({ "measure": measure.name(), "edges": edges, "counts": counts })
 }
 
-fn worst(worst: &WorstTriangle) -> Value {
-    let mut object = placed("triangle", &worst.place);
+fn worst(worst: &WorstPart) -> Value {
+    let mut object = worst.place.json();
     object.insert("vertices".into(), json!(worst.vertices));
     object.insert("corners".into(), json!(worst.corners));
     for (measure, value) in &worst.values {

@@ -6,17 +6,18 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
-    Element, Quality, Topology,
+    Quality, Topology,
     measure::{Measure, Measured, Statistics},
     topology::BadTriangle,
 };
 use mesh_io::{Group, Groups, SourceLocation};
 
 use crate::args::QualityArgs;
+use crate::commands::quality::worst::{WorstPart, worst};
 use crate::load::explain::{self, BadTriangleReport};
+use crate::load::lay_out;
 use crate::load::remarks;
 use crate::load::streams::read;
-use crate::load::{as_in_file, lay_out};
 use crate::profiles::Profile;
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
@@ -40,8 +41,8 @@ pub(crate) struct MeshQuality {
     pub(crate) statistics: Vec<Statistics>,
     pub(crate) regions: Vec<Region>,
     pub(crate) histograms: Vec<Histogram>,
-    /// The worst triangles by the first measure with a histogram, worst first.
-    pub(crate) worst: Vec<WorstTriangle>,
+    /// The worst triangles or edges by the first measure with a histogram, worst first.
+    pub(crate) worst: Vec<WorstPart>,
     /// The parts of the mesh with values in the ranges of `--threshold`.
     pub(crate) findings: Vec<Finding>,
     /// The mesh beside the limits of `--for`.
@@ -77,22 +78,6 @@ pub(crate) struct GroupNames {
     pub(crate) kind: String,
     /// Whether the group has triangles of one region only.
     pub(crate) is_of_one_region: bool,
-}
-
-/// One of the worst triangles, in the terms of its file.
-pub(crate) struct WorstTriangle {
-    pub(crate) place: SourceLocation,
-    /// Numbers or tags of the vertices in the file.
-    pub(crate) vertices: [u64; 3],
-    /// Corners in coordinates of the file, without continued longitudes. `at` is the centroid.
-    pub(crate) corners: [[f64; 2]; 3],
-    pub(crate) at: [f64; 2],
-    /// Length of the longest edge.
-    pub(crate) length: f64,
-    /// Values of the measures with a histogram.
-    pub(crate) values: Vec<(Measure, f64)>,
-    /// Whether the triangle has a free vertex.
-    pub(crate) can_move: bool,
 }
 
 impl MeshQuality {
@@ -143,6 +128,7 @@ impl MeshQuality {
                 measured: &measured,
                 histograms: args.histograms(),
                 colors: outputs.colors,
+                profile,
                 worst: args.worst,
                 is_alone: args.meshes.len() == 1,
                 sentences: sentences(&file, &topology, bad.len(), &remarks),
@@ -166,7 +152,7 @@ impl MeshQuality {
                 false => Vec::new(),
             },
             histograms: args.histograms().iter().map(|&m| histogram(&measured, m)).collect(),
-            worst: worst(&file, &topology, &measured, args),
+            worst: worst(&file, &measured, args),
             profile: profile.map(|profile| ProfileReport::new(profile, &quantities)),
             findings: args.threshold.iter().map(|t| quantities.finding(t)).collect(),
             bad: explain::bad_triangles(&file, &bad[..listed]),
@@ -265,36 +251,4 @@ fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<GroupNames>> {
         found.into_iter().map(|(_, names)| names).collect()
     };
     found.into_iter().map(sorted).collect()
-}
-
-fn worst(
-    file: &LoadedMesh,
-    topology: &Topology<'_>,
-    measured: &Measured<'_>,
-    args: &QualityArgs,
-) -> Vec<WorstTriangle> {
-    let mesh = file.mesh();
-    let Some(&measure) = args.histograms().first() else { return Vec::new() };
-    let found = measured.worst(measure, args.worst);
-    let places = file.source.triangle_locations(found.iter().map(|found| found.0));
-    let names = file.vertex_places(found.iter().flat_map(|found| mesh.triangles[found.0]));
-    let one = |&(t, _): &(usize, f64)| WorstTriangle {
-        place: places[&t].clone(),
-        vertices: mesh.triangles[t].map(|v| names[&v].id),
-        corners: file.source.triangles()[t].map(|v| file.positions()[v as usize]),
-        at: as_in_file(file, centroid(mesh.triangles[t].map(|v| mesh.points[v as usize]))),
-        length: longest_edge(mesh.triangles[t].map(|v| mesh.points[v as usize])),
-        values: args.histograms().iter().map(|&m| (m, measured.value(m, t))).collect(),
-        can_move: topology.can_move(Element::Triangle(t)),
-    };
-    found.iter().map(one).collect()
-}
-
-fn longest_edge([p, q, r]: [[f64; 2]; 3]) -> f64 {
-    let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
-    length(p, q).max(length(q, r)).max(length(r, p))
-}
-
-fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
-    [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
 }

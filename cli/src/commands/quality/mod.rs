@@ -5,5 +5,6 @@ mod command;
 mod json;
 mod mesh_quality;
 mod text;
+mod worst;
 
 pub(crate) use command::run;

@@ -8,10 +8,11 @@ use gpu_smooth::{
 };
 
 use crate::commands::quality::bars::{self, Style};
-use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region, WorstTriangle};
+use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region};
+use crate::commands::quality::worst::WorstPart;
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
-use crate::report::DistinctMeasures;
+use crate::report::{DistinctMeasures, Place};
 use crate::terminal::numbers::{coordinate, fit8, sig6};
 
 /// Width of a table's first column, in characters.
@@ -118,7 +119,7 @@ fn named(measure: Measure, style: &Style) -> String {
     }
 }
 
-/// Writes histograms, regions, worst triangles, objectives and counts of one mesh.
+/// Writes histograms, regions, worst triangles or edges, objectives and counts of one mesh.
 fn details(quality: &MeshQuality, is_usual: bool, style: &Style) -> String {
     let mut text = String::new();
     for histogram in &quality.histograms {
@@ -128,7 +129,8 @@ fn details(quality: &MeshQuality, is_usual: bool, style: &Style) -> String {
     text.push_str(&by_region(quality, style));
     if let Some(first) = quality.worst.first() {
         let by = first.values.first().map_or("", |value| value.0.name());
-        let _ = writeln!(text, "worst triangles by {by}");
+        let parts = if matches!(first.place, Place::Edge(_)) { "edges" } else { "triangles" };
+        let _ = writeln!(text, "worst {parts} by {by}");
         quality.worst.iter().for_each(|worst| text.push_str(&worst_line(worst, style)));
         text.push('\n');
     }
@@ -214,15 +216,18 @@ fn by_region(quality: &MeshQuality, style: &Style) -> String {
     text
 }
 
-/// Writes the location of a triangle, its values, and whether smoothing can improve the triangle.
-fn worst_line(worst: &WorstTriangle, style: &Style) -> String {
-    let WorstTriangle { place, at, values, can_move, .. } = worst;
+/// Writes the location of a triangle or edge, its values, and whether smoothing can improve them.
+fn worst_line(worst: &WorstPart, style: &Style) -> String {
+    let WorstPart { place, at, values, can_move, .. } = worst;
     let [x, y] = at.map(|x| coordinate(x, worst.length));
     let values: Vec<String> =
         values.iter().map(|&(measure, value)| valued(measure, value, style)).collect();
-    let movable = if *can_move { "can move" } else { "all its vertices are fixed" };
-    let (label, values) = (place.id, values.join(", "));
-    format!("  triangle {label} ({place}): {values}; at {x} {y}; {movable}\n")
+    let movable = match (can_move, place) {
+        (true, _) => "can move",
+        (false, Place::Edge(_)) => "all vertices of its triangles are fixed",
+        (false, _) => "all its vertices are fixed",
+    };
+    format!("  {place}: {}; at {x} {y}; {movable}\n", values.join(", "))
 }
 
 /// Formats a value with the name and unit of its measure.

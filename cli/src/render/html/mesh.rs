@@ -14,13 +14,36 @@ use gpu_smooth::{
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use crate::profiles::Profile;
+use crate::render::html::edges::ShownEdges;
 use crate::render::html::page::ViewerMesh;
 use crate::render::html::worst::WorstTriangle;
-use crate::render::picture::{BAD, Extent, FixedFaces, NEUTRAL, Outlines, VIRIDIS, picture_of};
+use crate::render::picture::{
+    BAD, Extent, FixedFaces, NEUTRAL, Outlines, PALE, VIRIDIS, picture_of,
+};
 
-/// The measures by which the page can color the mesh.
+/// The measures by which each page can color the mesh.
 const SHOWN: [Measure; 4] =
     [Measure::Shape, Measure::MinAngle, Measure::MaxAngle, Measure::SizeRatio];
+
+/// Returns the measures by which a page can color its mesh: the usual ones, that of `colors`, and the measures of edges
+/// among `others` and among the limits of a profile.
+pub(crate) fn measures(
+    colors: ColorScale,
+    others: &[Measure],
+    profile: Option<&Profile>,
+) -> Vec<Measure> {
+    let limited = profile.into_iter().flat_map(|profile| &profile.limits);
+    let limited = limited.filter_map(|limit| limit.quantity.measure());
+    let of_edges = others.iter().copied().chain(limited).filter(|measure| measure.is_of_edges());
+    let mut measures = SHOWN.to_vec();
+    for measure in [colors.measure()].into_iter().chain(of_edges) {
+        if !measures.contains(&measure) {
+            measures.push(measure);
+        }
+    }
+    measures
+}
 
 /// Limits on the size of a page.
 pub(crate) struct Bounds {
@@ -56,11 +79,12 @@ fn caption(triangles: usize, faces: &FixedFaces, is_whole: bool) -> String {
 }
 
 /// Returns what the page shows of a mesh before and after a run, or of one mesh. `states` must not be empty. `colors` is the
-/// scale by one measure; other measures have default scales.
+/// scale by one of `measures`, which the page shows first; other measures have default scales.
 pub(crate) fn viewer_mesh(
     file: &LoadedMesh,
     states: &[&Measured<'_>],
     spots: &[WorstTriangle],
+    measures: &[Measure],
     colors: ColorScale,
     bounds: &Bounds,
 ) -> Result<ViewerMesh, CliError> {
@@ -107,10 +131,13 @@ pub(crate) fn viewer_mesh(
         [edge.piece as u32, a, b]
     });
     let face_edges: Vec<u32> = face_edges.collect();
-    let measures = SHOWN.map(|measure| {
+    let colored = ShownEdges::of(states, &shown, measures);
+    let edges: Vec<u32> = colored.ends().flatten().map(|v| part.number(v)).collect();
+    let described = measures.iter().map(|&measure| {
         let scale = colors.or_usual(measure);
         json!({
             "name": measure.name(), "unit": measure.definition().unit,
+            "of_edges": measure.is_of_edges(),
             // The values at the bad and the good end of the scale.
             "ends": scale.ends(),
             "ticks": scale.ticks().into_iter()
@@ -118,16 +145,19 @@ pub(crate) fn viewer_mesh(
         })
     });
     let mut both = Vec::new();
-    for &state in states {
+    for (k, &state) in states.iter().enumerate() {
         let draw = |&measure: &Measure| {
             let scale = colors.or_usual(measure);
             let png = picture_of(topology, &faces, state, scale, extent, bounds.pixels)?;
             Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)))
         };
-        let pictures = if is_whole { &[][..] } else { &SHOWN[..] };
+        let pictures = if is_whole { &[][..] } else { measures };
+        let of_edges =
+            |&measure: &Measure| encoded(colored.values(k, measure).map(f32::to_le_bytes));
         both.push(json!({
             "points": part.points(state.points()),
-            "values": values(topology, state, &shown)?,
+            "values": values(topology, state, &shown, measures)?,
+            "edge_values": measures.iter().map(of_edges).collect::<Vec<_>>(),
             // A picture by each measure; empty if the page contains all triangles.
             "pictures": pictures.par_iter().map(draw).collect::<Result<Vec<_>, CliError>>()?,
         }));
@@ -143,9 +173,14 @@ pub(crate) fn viewer_mesh(
         "colors": VIRIDIS,
         "bad": BAD,
         "neutral": NEUTRAL,
-        "measures": measures,
+        "pale": PALE,
+        "measures": described.collect::<Vec<_>>(),
+        // The index of the measure that the page shows first.
+        "first": measures.iter().position(|&measure| measure == colors.measure()),
         "extent": [extent.low, extent.high],
         "triangles": indices(&triangles),
+        // Two vertices for each edge between triangles, if a measure is one of edges.
+        "edges": indices(&edges),
         "boundary": indices(&boundary),
         "between": indices(&between),
         "held": indices(&held),
@@ -208,17 +243,18 @@ fn values(
     topology: &Topology<'_>,
     state: &Measured<'_>,
     shown: &[usize],
+    measures: &[Measure],
 ) -> Result<Vec<String>, CliError> {
     let bad = topology.bad_triangles(state.points())?;
     let bad: HashSet<usize> = bad.into_iter().map(|bad| bad.triangle).collect();
-    let of = |measure| {
+    let of = |&measure: &Measure| {
         let value = |&t: &usize| match bad.contains(&t) {
             true => f32::NAN,
             false => state.value(measure, t) as f32,
         };
         encoded(shown.iter().map(|t| value(t).to_le_bytes()))
     };
-    Ok(SHOWN.map(of).to_vec())
+    Ok(measures.iter().map(of).collect())
 }
 
 /// Returns the triangles around each spot, ascending and without repeats. Triangles are added in order of their
@@ -306,7 +342,8 @@ mod tests {
         let of = |most| {
             let bounds = Bounds { most, pixels: 300 };
             let colors = ColorScale::usual(Measure::Shape);
-            viewer_mesh(&file, &[&state; 2], &spots, colors, &bounds).unwrap().data
+            let measures = measures(colors, &[Measure::FlowLink], None);
+            viewer_mesh(&file, &[&state; 2], &spots, &measures, colors, &bounds).unwrap().data
         };
         let count = |data: &Value, key: &str| {
             BASE64_STANDARD.decode(data[key].as_str().unwrap()).unwrap().len() / 4
@@ -317,6 +354,8 @@ mod tests {
         let shown = count(&parts, "triangles") / 3;
         assert!((AROUND..12_800).contains(&shown), "{shown}");
         assert_eq!(count(&parts, "boundary"), 2 * 320);
+        assert_eq!(count(&whole, "edges"), 2 * (3 * 12_800 - 320) / 2);
+        assert!((shown..3 * shown).contains(&(count(&parts, "edges") / 2)));
         for state in 0..2 {
             let pictures = parts["states"][state]["pictures"].as_array().unwrap();
             // Each measure by which the page colors the mesh has a picture of its own.

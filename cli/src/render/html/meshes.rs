@@ -12,6 +12,7 @@ use mesh_io::atomic;
 use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::profiles::Profile;
 use crate::render::html::overview::MeshNumbers;
 use crate::render::html::page::{Page, View, ViewerMesh, escape};
 use crate::render::html::tables::measure_name;
@@ -30,6 +31,8 @@ pub(crate) struct MeshDescription<'a> {
     pub(crate) histograms: &'a [Measure],
     /// The scale of colors by one measure.
     pub(crate) colors: ColorScale,
+    /// The profile whose measures of edges the page can show.
+    pub(crate) profile: Option<&'a Profile>,
     /// Number of listed worst triangles.
     pub(crate) worst: usize,
     /// Whether the page has only this mesh.
@@ -55,15 +58,18 @@ enum MeshView {
 
 impl MeshPart {
     pub(crate) fn new(description: MeshDescription<'_>) -> Result<Self, CliError> {
-        let MeshDescription { file, measured, histograms, colors, worst, is_alone, sentences } =
-            description;
+        let MeshDescription {
+            file, measured, histograms, colors, worst, is_alone, sentences, ..
+        } = description;
         let by = histograms.first().copied().unwrap_or(Measure::Shape);
         let spots = worst::spots_of_mesh(file, measured, by, worst);
         let topology = measured.topology();
         let view = match is_alone {
             true => {
-                let states = &[measured];
-                MeshView::Viewer(mesh::viewer_mesh(file, states, &spots, colors, &mesh::BOUNDS)?)
+                let (states, bounds) = (&[measured], &mesh::BOUNDS);
+                let measures = mesh::measures(colors, histograms, description.profile);
+                let mesh = mesh::viewer_mesh(file, states, &spots, &measures, colors, bounds)?;
+                MeshView::Viewer(mesh)
             }
             false => {
                 let faces = FixedFaces::of(file, topology);

@@ -1,6 +1,7 @@
 //! Pages in a single file, for `--html`: of a run, and of measured meshes.
 
 mod charts;
+mod edges;
 mod mesh;
 mod meshes;
 mod overview;

@@ -9,6 +9,8 @@ function decoded(Type, text) {
 }
 
 const triangles = decoded(Uint32Array, data.triangles);
+// The ends of the edges between triangles, which measures of edges color.
+const colored = decoded(Uint32Array, data.edges);
 const boundary = decoded(Uint32Array, data.boundary);
 const between = decoded(Uint32Array, data.between);
 const held = decoded(Uint32Array, data.held);
@@ -19,6 +21,7 @@ const faceEdges = decoded(Uint32Array, data.face_edges);
 const states = data.states.map((state) => ({
   points: decoded(Float64Array, state.points),
   values: state.values.map((values) => decoded(Float32Array, values)),
+  edgeValues: state.edge_values.map((values) => decoded(Float32Array, values)),
   pictures: state.pictures,
   // Images and codes by measure, made when the measure is chosen.
   images: [],
@@ -37,7 +40,7 @@ const [low, high] = data.extent;
 
 // The middle of the view in units of the mesh, and CSS pixels per unit. `spot` is the triangle that a link asked for.
 const view = { x: 0, y: 0, scale: 1, isWhole: true, spot: null };
-let measure = 0;
+let measure = data.first;
 // The triangle whose values are shown, -1 without any.
 let marked = -1;
 // Whether colors are those of paper, whatever the theme of the window is.
@@ -45,8 +48,11 @@ let isPrinting = false;
 // The timer of each canvas that ends its hint.
 const hints = new Map();
 
-// Colors by code: 0 is inverted or flat, 1 to BEST goes from bad to good, NEUTRAL is a face that no measure judges.
-const BEST = 65533, NEUTRAL = 65534, NOTHING = 65535;
+// Colors by code: 0 is inverted or flat, 1 to BEST goes from bad to good, PALE is a triangle between colored edges, NEUTRAL is
+// a face that no measure judges.
+const BEST = 65532, PALE = 65533, NEUTRAL = 65534, NOTHING = 65535;
+// Number of steps to which the colors of edges are rounded.
+const STEPS = 64;
 const palette = new Uint32Array(65536);
 for (let code = 1; code <= BEST; code++) {
   const place = ((code - 1) / (BEST - 1)) * (data.colors.length - 1);
@@ -54,7 +60,7 @@ for (let code = 1; code <= BEST; code++) {
   const [r, g, b] = data.colors[first].map((from, i) => Math.round(from + (data.colors[first + 1][i] - from) * (place - first)));
   palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
 }
-for (const [code, [r, g, b]] of [[0, data.bad], [NEUTRAL, data.neutral]]) palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
+for (const [code, [r, g, b]] of [[0, data.bad], [PALE, data.pale], [NEUTRAL, data.neutral]]) palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
 
 /** The codes of all triangles by the chosen measure. A value that is not a number is that of an inverted or flat triangle. */
 function codesOf(state) {
@@ -129,6 +135,22 @@ function edges(context, list, at) {
   context.stroke();
 }
 
+/** Draws the edges that are some pixels long in the colors of their values, bad edges above good ones. */
+function colorEdges(context, values, at, ratio) {
+  const lists = Array.from({ length: STEPS + 1 }, () => []);
+  for (let i = 0; i < values.length; i++) {
+    const a = colored[2 * i], b = colored[2 * i + 1];
+    if (Math.hypot(at[2 * b] - at[2 * a], at[2 * b + 1] - at[2 * a + 1]) < 4 * ratio) continue;
+    lists[Math.round(STEPS * goodness(data.measures[measure], values[i]))].push(a, b);
+  }
+  context.lineWidth = 2.4 * ratio;
+  for (let step = STEPS; step >= 0; step--) {
+    const color = palette[1 + Math.round((BEST - 1) * (step / STEPS))];
+    context.strokeStyle = `rgb(${color & 255} ${(color >> 8) & 255} ${(color >> 16) & 255})`;
+    edges(context, lists[step], at);
+  }
+}
+
 /** Draws a mesh without its marks on a layer that has the size of the canvas. */
 function draw(canvas, layer, state) {
   const ratio = window.devicePixelRatio || 1;
@@ -155,12 +177,15 @@ function draw(canvas, layer, state) {
     const longest = Math.max((x1 - x0) ** 2 + (y1 - y0) ** 2, (x2 - x1) ** 2 + (y2 - y1) ** 2, (x0 - x2) ** 2 + (y0 - y2) ** 2);
     // Small triangles are seen better in the picture of the whole mesh.
     if (image && longest < (4 * ratio) ** 2) return false;
-    fill(best, width, height, x0, y0, x1, y1, x2, y2, code);
     const area = Math.abs((x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0));
-    return area > 4 * ratio * Math.sqrt(longest);
+    const isHigh = area > 4 * ratio * Math.sqrt(longest);
+    // A triangle that is too small for colored edges has the color of its worst edge.
+    const isPale = isHigh && code > 0 && code <= BEST && data.measures[measure].of_edges;
+    fill(best, width, height, x0, y0, x1, y1, x2, y2, isPale ? PALE : code);
+    return isHigh;
   };
   for (let t = 0, i = 0; i < triangles.length; t++, i += 3) {
-    if (!filled(triangles, i, codes[t])) continue;
+    if (!filled(triangles, i, codes[t]) || data.measures[measure].of_edges) continue;
     const [a, b, c] = [triangles[i], triangles[i + 1], triangles[i + 2]];
     if (a < b) inner.push(a, b);
     if (b < c) inner.push(b, c);
@@ -181,6 +206,7 @@ function draw(canvas, layer, state) {
     context.lineWidth = 0.7 * ratio;
     edges(context, inner, at);
   }
+  colorEdges(context, state.edgeValues[measure], at, ratio);
   context.strokeStyle = ink;
   context.lineWidth = 4 * ratio;
   edges(context, between, at);
@@ -340,6 +366,7 @@ function legend() {
 
 const select = document.getElementById("measure");
 data.measures.forEach(({ name }) => select.add(new Option(name)));
+select.selectedIndex = measure;
 select.onchange = () => {
   measure = select.selectedIndex;
   legend();

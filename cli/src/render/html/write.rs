@@ -43,7 +43,10 @@ fn page(task: &SmoothJob<'_>, done: &Done<'_>, began: Instant) -> Result<String,
     if let Some(warning) = done.report.warning() {
         page.lead(&warning);
     }
-    page.mesh(&mesh::viewer_mesh(done.file, &states, &spots, colors, &mesh::BOUNDS)?, View::Run);
+    let measures = mesh::measures(colors, &[], task.request.profile.as_ref());
+    let bounds = &mesh::BOUNDS;
+    let viewed = mesh::viewer_mesh(done.file, &states, &spots, &measures, colors, bounds)?;
+    page.mesh(&viewed, View::Run);
     page.columns(&[
         &[("Summary", tables::summary(&done.report))],
         &[("Worst triangles", worst::lists(&spots, done.file.axes()))],

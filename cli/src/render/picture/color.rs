@@ -11,8 +11,14 @@ pub const BAD: Color = [230, 25, 75];
 /// Color of quadrilaterals and polygons, which no measure judges. The color is not on the scale.
 pub(crate) const NEUTRAL: Color = [196, 198, 201];
 
+/// Color of triangles between colored edges. The color is not on the scale, and lighter than [`NEUTRAL`].
+pub(crate) const PALE: Color = [236, 238, 241];
+
 /// Goodness that stands for [`NEUTRAL`]. Goodness of triangles is at most 1.
 pub(crate) const UNJUDGED: f32 = 2.0;
+
+/// Goodness that stands for [`PALE`].
+pub(crate) const BETWEEN_EDGES: f32 = 3.0;
 
 /// The color map Viridis (Smith & van der Walt, 2015), from bad to good. Its steps appear equal to normal and
 /// color-blind vision, and in gray.
@@ -29,14 +35,14 @@ pub const VIRIDIS: [Color; 10] = [
     [253, 231, 37],
 ];
 
-/// Returns the color for a goodness from 0 (bad) to 1 (ideal), [`BAD`] for a negative one (inverted or flat), and
-/// [`NEUTRAL`] for one above 1.
+/// Returns the color for a goodness from 0 (bad) to 1 (ideal), [`BAD`] for a negative one (inverted or flat), [`NEUTRAL`]
+/// for [`UNJUDGED`], and [`PALE`] for [`BETWEEN_EDGES`].
 pub(crate) fn of_goodness(goodness: f32) -> Color {
     if goodness < 0.0 {
         return BAD;
     }
     if goodness > 1.0 {
-        return NEUTRAL;
+        return if goodness < BETWEEN_EDGES { NEUTRAL } else { PALE };
     }
     let place = goodness * (VIRIDIS.len() - 1) as f32;
     let first = (place as usize).min(VIRIDIS.len() - 2);

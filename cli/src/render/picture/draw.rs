@@ -1,9 +1,12 @@
 //! The picture of `--picture`: a mesh colored by quality, before and after a run.
 
+use std::cmp::Ordering;
+
 use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::{LoadedMesh, axes_legend};
 use crate::render::picture::{color, png, svg};
+use crate::report::of_edge;
 use crate::request::{PictureFormat, PictureRequest};
 
 use crate::render::picture::canvas::Canvas;
@@ -12,14 +15,14 @@ use crate::render::picture::font::Font;
 use crate::render::picture::layout::{Extent, Frame};
 use crate::render::picture::outlines::Outlines;
 use crate::render::picture::raster::Raster;
-use crate::render::picture::scene::{Panel, Scene};
-use gpu_smooth::measure::{Measure, Measured};
+use crate::render::picture::scene::{ColoredEdge, Panel, Scene, Spot, middle};
+use gpu_smooth::measure::{InnerEdge, Measure, Measured};
 use gpu_smooth::{MeshError, Topology, targets::Surface};
 use mesh_io::atomic;
 
 use crate::terminal::numbers::fit8;
 
-/// Number of the worst triangles from which the marked triangles, with disjoint marks, are selected.
+/// Number of the worst triangles or edges from which the marked ones, with disjoint marks, are selected.
 const CANDIDATES: usize = 1000;
 
 /// The mesh drawn in a picture.
@@ -132,42 +135,64 @@ fn panel<'a>(
     let measured = Measured::on(mesh.surface, state.points, mesh.topology)?;
     let goodness = goodness_of(mesh.topology, &measured, colors)?;
     let measure = colors.measure();
-    // The triangles of the drawn part are those with their middle in it, as rings are at the middle.
-    let is_drawn = |t: usize| {
-        part.is_none_or(|part| {
-            let corners = mesh.topology.triangles()[t].map(|v| state.points[v as usize]);
-            part.has([0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum()))
-        })
+    let edges = if measure.is_of_edges() { measured.edges() } else { Vec::new() };
+    let values = match measure.is_of_edges() {
+        true => edges.iter().map(|edge| of_edge(measure, edge)).collect(),
+        false => measured.values(measure),
     };
-    let values = measured.values(measure).into_iter().enumerate();
-    let drawn: Vec<f64> = values.filter(|(t, _)| is_drawn(*t)).map(|(_, value)| value).collect();
-    let worst = match part {
-        None => measured.worst(measure, CANDIDATES),
-        Some(_) => {
-            let all = measured.worst(measure, goodness.len()).into_iter();
-            all.filter(|(t, _)| is_drawn(*t)).take(CANDIDATES).collect()
-        }
+    let corners = |i: usize| match edges.get(i) {
+        Some(edge) => &edge.vertices[..],
+        None => &mesh.topology.triangles()[i],
     };
-    let numbers = numbers(measure, &drawn, goodness.len());
+    let spot = |i: usize| Spot { corners: corners(i).to_vec(), value: values[i] };
+    // The drawn part has the triangles or edges with their middle in the part, as rings are at the middle.
+    let is_drawn = |&i: &usize| part.is_none_or(|part| part.has(middle(corners(i), state.points)));
+    let mut drawn: Vec<usize> = (0..values.len()).filter(is_drawn).collect();
+    let is_worse = |&a: &usize, &b: &usize| measure.is_worse(values[a], values[b]);
+    let noun = if measure.is_of_edges() { "edge" } else { "triangle" };
+    let numbers = numbers(measure, noun, drawn.iter().map(|&i| values[i]), values.len());
+    let order = |a: &usize, b: &usize| match (is_worse(a, b), is_worse(b, a)) {
+        (true, _) => Ordering::Less,
+        (_, true) => Ordering::Greater,
+        _ => a.cmp(b),
+    };
+    if drawn.len() > CANDIDATES {
+        drawn.select_nth_unstable_by(CANDIDATES, order);
+        drawn.truncate(CANDIDATES);
+    }
+    drawn.sort_unstable_by(order);
+    let worst = drawn.into_iter().map(spot).collect();
+    let colored = |(edge, &value): (&InnerEdge, &f64)| ColoredEdge {
+        ends: edge.vertices,
+        triangles: edge.triangles,
+        goodness: colors.goodness(value),
+    };
+    let edges = edges.iter().zip(&values).map(colored).collect();
     let axes = mesh.file.plane().and_then(axes_legend);
     let title = match axes {
         Some(axes) => format!("{}; {axes}", state.title),
         None => state.title.clone(),
     };
-    Ok(Panel { title: [title, numbers], points: state.points, goodness, worst })
+    Ok(Panel { title: [title, numbers], points: state.points, goodness, edges, worst })
 }
 
-/// Describes the values of a measure of the drawn triangles. `all` is the number of triangles of the mesh.
-fn numbers(measure: Measure, drawn: &[f64], all: usize) -> String {
+/// Describes the values of a measure of the drawn triangles or edges, whose name is `noun`. `all` is their number in the
+/// mesh.
+fn numbers(
+    measure: Measure,
+    noun: &str,
+    drawn: impl ExactSizeIterator<Item = f64> + Clone,
+    all: usize,
+) -> String {
     let count = match drawn.len() {
-        0 => return "no triangle has its middle in this part".to_owned(),
-        n if n == all => format!("{n} triangles"),
-        n => format!("{n} of {all} triangles"),
+        0 => return format!("no {noun} has its middle in this part"),
+        n if n == all => format!("{n} {noun}s"),
+        n => format!("{n} of {all} {noun}s"),
     };
     let unit = measure.definition().unit;
-    let least = drawn.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = drawn.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
+    let least = drawn.clone().fold(f64::INFINITY, f64::min);
+    let most = drawn.clone().fold(f64::NEG_INFINITY, f64::max);
+    let mean = drawn.clone().sum::<f64>() / drawn.len() as f64;
     let [least, mean, most] = [least, mean, most].map(fit8);
     format!("{count}; {measure} {least}{unit} to {most}{unit}, mean {mean}{unit}")
 }

@@ -19,7 +19,8 @@ pub(crate) enum Symbol {
     /// A quadrilateral or polygon, by its name.
     Face(&'static str),
     Bad,
-    Worst,
+    /// The worst triangles or edges, by their name.
+    Worst(&'static str),
     Displacement,
 }
 
@@ -37,7 +38,7 @@ impl Symbol {
             Self::Slid => slid,
             Self::Face(_) => |at, text, canvas| square(at, text, NEUTRAL, canvas),
             Self::Bad => |at, text, canvas| square(at, text, BAD, canvas),
-            Self::Worst => worst,
+            Self::Worst(_) => worst,
             Self::Displacement => moved,
         }
     }
@@ -48,9 +49,8 @@ impl Symbol {
             Self::BetweenRegions => "between regions",
             Self::Held => "fixed vertex inside",
             Self::Slid => "vertex that slid",
-            Self::Face(name) => name,
+            Self::Face(name) | Self::Worst(name) => name,
             Self::Bad => "inverted or flat",
-            Self::Worst => "worst triangles",
             Self::Displacement => "displacement",
         }
     }

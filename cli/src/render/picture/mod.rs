@@ -16,8 +16,8 @@ mod raster;
 mod scene;
 mod svg;
 
-pub(crate) use color::NEUTRAL;
 pub use color::{BAD, VIRIDIS};
+pub(crate) use color::{NEUTRAL, PALE};
 pub(crate) use draw::{MeshState, PictureSubject, picture_of, write};
 pub(crate) use faces::FixedFaces;
 pub(crate) use layout::Extent;

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use crate::color_scale::ColorScale;
 use crate::render::picture::arrows;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
-use crate::render::picture::color::{BLACK, UNJUDGED, WHITE};
+use crate::render::picture::color::{BETWEEN_EDGES, BLACK, UNJUDGED, WHITE, of_goodness};
 use crate::render::picture::faces::FixedFaces;
 use crate::render::picture::font::Font;
 use crate::render::picture::heading::{end_within, wrapped};
@@ -24,8 +24,41 @@ pub(crate) struct Panel<'a> {
     pub(crate) points: &'a [[f64; 2]],
     /// Goodness of each triangle from 0 to 1, negative if inverted or flat.
     pub(crate) goodness: Vec<f32>,
-    /// The worst triangles with their values, worst first.
-    pub(crate) worst: Vec<(usize, f64)>,
+    /// The edges between triangles that colors show; empty if colors show triangles.
+    pub(crate) edges: Vec<ColoredEdge>,
+    /// The worst triangles or edges, worst first.
+    pub(crate) worst: Vec<Spot>,
+}
+
+/// An edge between two triangles, with the goodness shown by its color.
+pub(crate) struct ColoredEdge {
+    pub(crate) ends: [u32; 2],
+    /// The indices of the two triangles.
+    pub(crate) triangles: [u32; 2],
+    /// Goodness from 0 to 1.
+    pub(crate) goodness: f32,
+}
+
+/// One of the worst triangles or edges.
+#[derive(Clone)]
+pub(crate) struct Spot {
+    /// The corners of a triangle, or the ends of an edge.
+    pub(crate) corners: Vec<u32>,
+    pub(crate) value: f64,
+}
+
+impl Spot {
+    /// Returns the edges of the triangle, or the edge.
+    fn sides(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let count = if self.corners.len() == 2 { 1 } else { self.corners.len() };
+        (0..count).map(|i| [self.corners[i], self.corners[(i + 1) % self.corners.len()]])
+    }
+
+    /// Returns the length of the longest edge.
+    fn size(&self, points: &[[f64; 2]]) -> f64 {
+        let ends = self.sides().map(|side| side.map(|v| points[v as usize]));
+        ends.map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).fold(0.0, f64::max)
+    }
 }
 
 /// The content of a picture: panels of one mesh, with outlines and legend.
@@ -41,12 +74,21 @@ pub(crate) struct Scene<'a> {
     pub(crate) panels: Vec<Panel<'a>>,
 }
 
+/// Returns the mean of some vertices, given the points of all vertices.
+pub(crate) fn middle(corners: &[u32], points: &[[f64; 2]]) -> [f64; 2] {
+    let count = corners.len() as f64;
+    [0, 1].map(|axis| corners.iter().map(|&v| points[v as usize][axis] / count).sum())
+}
+
 /// Smallest altitude, in pixels, of triangles whose edges are drawn. Edges are darker from twice and from four times
 /// this altitude.
 const LEAST_HEIGHT: f32 = 3.0;
 
-/// Number of worst triangles that are marked and enlarged.
+/// Number of worst triangles or edges that are marked and enlarged.
 const MARKED: usize = 3;
+
+/// Number of steps to which the goodness of edges is rounded for their colors.
+const EDGE_COLORS: u8 = 64;
 
 impl Scene<'_> {
     /// Lays out the panels, with insets if a marked triangle is too small to be visible without. `font` measures texts.
@@ -69,9 +111,9 @@ impl Scene<'_> {
         };
         let lines = self.panels.iter().zip(places).map(lines).max().unwrap_or(1);
         let is_small = |(panel, place): (&Panel<'_>, &Place)| {
-            let spots = self.spots(panel, &place.frame, text);
-            let length = |t: usize| self.longest_edge(panel, t) * place.frame.scale;
-            spots.iter().any(|&(t, _)| length(t) < 2.0 * f64::from(text))
+            let spots = spots(panel, &place.frame, text);
+            let length = |spot: &Spot| spot.size(panel.points) * place.frame.scale;
+            spots.iter().any(|spot| length(spot) < 2.0 * f64::from(text))
         };
         let insets = match self.panels.iter().zip(places).any(is_small) {
             true => MARKED,
@@ -96,9 +138,9 @@ impl Scene<'_> {
         canvas: &mut dyn Canvas,
     ) {
         let (frame, text) = (&place.frame, layout.text);
-        let spots = self.spots(panel, frame, text);
+        let spots = spots(panel, frame, text);
         let marks: Vec<Point> =
-            spots.iter().map(|&(t, _)| frame.place(self.middle(panel, t))).collect();
+            spots.iter().map(|spot| frame.place(middle(&spot.corners, panel.points))).collect();
         if self.part.is_some() {
             canvas.clip(Some(frame.corners));
         }
@@ -114,20 +156,24 @@ impl Scene<'_> {
         for (number, at) in (1..).zip(marks) {
             ring_number(number, at, bounds, text, canvas);
         }
-        for (i, (&corners, &(t, value))) in place.insets.iter().zip(&spots).enumerate() {
+        for (i, (&corners, spot)) in place.insets.iter().zip(&spots).enumerate() {
             let [[left, _], [right, _]] = corners;
             // An inset shows some seven triangles across, and is larger in scale than the whole mesh.
-            let scale = f64::from(right - left) / (7.0 * self.longest_edge(panel, t));
+            let scale = f64::from(right - left) / (7.0 * spot.size(panel.points));
             let scale = if scale.is_finite() { scale } else { frame.scale };
             let scale = scale.max(2.5 * frame.scale);
-            let frame = Frame::around(self.middle(panel, t), scale, corners);
+            let frame = Frame::around(middle(&spot.corners, panel.points), scale, corners);
             canvas.clip(Some(corners));
             self.draw_mesh(panel, &frame, text, canvas);
-            self.outline(panel, t, &frame, text, canvas);
+            match spot.corners.len() {
+                // An outline would hide the color of the edge.
+                2 => worst(frame.place(middle(&spot.corners, panel.points)), text, canvas),
+                _ => outline(spot, panel, &frame, text, canvas),
+            }
             canvas.clip(None);
             around(corners, text, canvas);
             scale_bar(corners, scale, text, canvas);
-            draw_name(&self.inset_name(i + 1, value), corners, text, canvas);
+            draw_name(&self.inset_name(i + 1, spot.value), corners, text, canvas);
         }
         draw_heading(&panel.title, place, text, canvas);
     }
@@ -138,6 +184,8 @@ impl Scene<'_> {
         let is_bad = |panel: &Panel<'_>| panel.goodness.iter().any(|&goodness| goodness < 0.0);
         let has_worst = self.panels.iter().any(|panel| !panel.worst.is_empty());
         let occurs = |occurs: bool, symbol: Symbol| occurs.then_some(symbol);
+        let is_of_edges = self.colors.measure().is_of_edges();
+        let name = if is_of_edges { "worst edges" } else { "worst triangles" };
         let symbols = [
             Some(Symbol::Boundary),
             occurs(!between_regions.is_empty(), Symbol::BetweenRegions),
@@ -145,7 +193,7 @@ impl Scene<'_> {
             occurs(!slid.is_empty(), Symbol::Slid),
             self.faces.name().map(Symbol::Face),
             occurs(self.panels.iter().any(is_bad), Symbol::Bad),
-            occurs(has_worst, Symbol::Worst),
+            occurs(has_worst, Symbol::Worst(name)),
             occurs(self.with_arrows, Symbol::Displacement),
         ];
         symbols.into_iter().flatten().collect()
@@ -158,57 +206,24 @@ impl Scene<'_> {
         [format!("{number}: {measure} {value}"), format!("{number}: {value}")]
     }
 
-    /// Returns the worst triangles whose marks do not overlap.
-    fn spots(&self, panel: &Panel<'_>, frame: &Frame, text: f32) -> Vec<(usize, f64)> {
-        let mut spots: Vec<(usize, f64, Point)> = Vec::new();
-        for &(t, value) in &panel.worst {
-            let at = frame.place(self.middle(panel, t));
-            let apart = |other: &Point| (other[0] - at[0]).hypot(other[1] - at[1]) > 2.0 * text;
-            if spots.len() < MARKED && spots.iter().all(|spot| apart(&spot.2)) {
-                spots.push((t, value, at));
-            }
-        }
-        spots.into_iter().map(|(t, value, _)| (t, value)).collect()
-    }
-
-    fn middle(&self, panel: &Panel<'_>, t: usize) -> [f64; 2] {
-        let corners = self.triangles[t].map(|v| panel.points[v as usize]);
-        [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum())
-    }
-
-    /// Returns the length of a triangle's longest edge, in units of the mesh.
-    fn longest_edge(&self, panel: &Panel<'_>, t: usize) -> f64 {
-        let [p, q, r] = self.triangles[t].map(|v| panel.points[v as usize]);
-        let length = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
-        length(p, q).max(length(q, r)).max(length(r, p))
-    }
-
-    /// Outlines a triangle: a black line on a white one.
-    fn outline(
-        &self,
-        panel: &Panel<'_>,
-        t: usize,
-        frame: &Frame,
-        text: f32,
-        canvas: &mut dyn Canvas,
-    ) {
-        let corners = self.triangles[t].map(|v| frame.place(panel.points[v as usize]));
-        let sides = [0, 1, 2].map(|i: usize| [corners[i], corners[(i + 1) % 3]]);
-        canvas.lines(&sides, text / 5.0, WHITE, 1.0);
-        canvas.lines(&sides, text / 10.0, BLACK, 1.0);
-    }
-
     fn draw_mesh(&self, panel: &Panel<'_>, frame: &Frame, text: f32, canvas: &mut dyn Canvas) {
         let place = |v: u32| frame.place(panel.points[v as usize]);
         let shown = |points: &[Point]| is_shown(points, frame.corners, text);
-        let placed =
-            self.triangles.iter().map(|t| t.map(place)).zip(panel.goodness.iter().copied());
+        // Between colored edges, triangles are pale unless they are too small for edges to be drawn.
+        let color = |(corners, goodness): ([Point; 3], f32)| {
+            let is_pale =
+                !panel.edges.is_empty() && goodness >= 0.0 && least_height(corners) >= LEAST_HEIGHT;
+            (corners, if is_pale { BETWEEN_EDGES } else { goodness })
+        };
+        let placed = self.triangles.iter().map(|t| t.map(place));
+        let placed = placed.zip(panel.goodness.iter().copied()).map(color);
         let pieces = self.faces.pieces.iter().map(|piece| (piece.map(place), UNJUDGED));
         let mut faces = placed.chain(pieces).filter(|face| shown(&face.0));
         canvas.faces(frame.corners, &mut faces, self.triangles.len() + self.faces.pieces.len());
 
         let mut edges: [Vec<[Point; 2]>; 3] = Default::default();
-        let of_triangles = inner_edges(self.triangles).map(|(t, edge)| (self.triangles[t], edge));
+        let inner = inner_edges(self.triangles).filter(|_| panel.edges.is_empty());
+        let of_triangles = inner.map(|(t, edge)| (self.triangles[t], edge));
         let of_faces =
             self.faces.edges.iter().map(|edge| (self.faces.pieces[edge.piece], edge.ends));
         for (triangle, edge) in of_triangles.chain(of_faces) {
@@ -223,6 +238,7 @@ impl Scene<'_> {
         for (segments, opacity) in edges.iter().zip([0.15, 0.3, 0.5]) {
             canvas.lines(segments, thin, BLACK, opacity);
         }
+        self.draw_colored_edges(panel, frame, text, canvas);
         let placed = |edges: &[[u32; 2]]| {
             let placed = edges.iter().map(|edge| edge.map(place));
             placed.filter(|edge| shown(edge)).collect::<Vec<_>>()
@@ -243,6 +259,50 @@ impl Scene<'_> {
         let places = self.outlines.slid.iter().map(|&v| place(v)).filter(|at| shown(&[*at]));
         places.filter(|&at| taken.insert(square(at))).for_each(|at| slid(at, text, canvas));
     }
+
+    /// Draws the colored edges of triangles that are high enough, bad edges above good ones.
+    fn draw_colored_edges(
+        &self,
+        panel: &Panel<'_>,
+        frame: &Frame,
+        text: f32,
+        canvas: &mut dyn Canvas,
+    ) {
+        let place = |v: u32| frame.place(panel.points[v as usize]);
+        let is_high = |t: u32| least_height(self.triangles[t as usize].map(place)) >= LEAST_HEIGHT;
+        let mut classes = vec![Vec::new(); usize::from(EDGE_COLORS) + 1];
+        for ColoredEdge { ends, triangles, goodness } in &panel.edges {
+            let edge = ends.map(place);
+            if is_shown(&edge, frame.corners, text) && triangles.iter().any(|&t| is_high(t)) {
+                classes[(goodness * f32::from(EDGE_COLORS)).round() as usize].push(edge);
+            }
+        }
+        for (class, segments) in (0..=EDGE_COLORS).zip(&classes).rev() {
+            let color = of_goodness(f32::from(class) / f32::from(EDGE_COLORS));
+            canvas.lines(segments, (text / 8.0).max(1.5), color, 1.0);
+        }
+    }
+}
+
+/// Returns the worst triangles or edges whose marks do not overlap.
+fn spots(panel: &Panel<'_>, frame: &Frame, text: f32) -> Vec<Spot> {
+    let mut spots: Vec<(Spot, Point)> = Vec::new();
+    for spot in &panel.worst {
+        let at = frame.place(middle(&spot.corners, panel.points));
+        let apart = |other: &Point| (other[0] - at[0]).hypot(other[1] - at[1]) > 2.0 * text;
+        if spots.len() < MARKED && spots.iter().all(|spot| apart(&spot.1)) {
+            spots.push((spot.clone(), at));
+        }
+    }
+    spots.into_iter().map(|(spot, _)| spot).collect()
+}
+
+/// Outlines a triangle: a black line on a white one.
+fn outline(spot: &Spot, panel: &Panel<'_>, frame: &Frame, text: f32, canvas: &mut dyn Canvas) {
+    let place = |v: u32| frame.place(panel.points[v as usize]);
+    let sides: Vec<[Point; 2]> = spot.sides().map(|side| side.map(place)).collect();
+    canvas.lines(&sides, text / 5.0, WHITE, 1.0);
+    canvas.lines(&sides, text / 10.0, BLACK, 1.0);
 }
 
 /// Writes the heading of a mesh: a line that is shortened to the width of the panel, and lines that are broken.
