@@ -72,6 +72,7 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
         Measure::Condition => condition,
         Measure::Shape => 1.0 / condition,
         Measure::Skewness => ((most - third) / (2.0 * third)).max((third - least) / third),
+        Measure::SchismSkewness => longest / (area / std::f64::consts::PI).sqrt(),
         Measure::SizeRatio => 1.0,
         // The mesh consists of one triangle, without neighbors.
         Measure::Orthogonality => 0.0,
@@ -137,6 +138,7 @@ fn known_triangles_have_known_values() {
         (half_square, Condition, 2.0 / root(3.0)),
         (half_square, Shape, root(3.0) / 2.0),
         (half_square, Skewness, 0.25),
+        (half_square, SchismSkewness, 2.0 * root(std::f64::consts::PI)),
         (three_four_five, MinAngle, 0.6f64.asin().to_degrees()),
         (three_four_five, MaxAngle, 90.0),
         (three_four_five, EdgeRatio, 5.0 / 3.0),
@@ -229,6 +231,7 @@ fn inverted_and_flat_triangles_are_as_in_verdict() {
         (Condition, [infinity; 5]),
         (Shape, [0.0; 5]),
         (Skewness, [0.25, 1.0, 1.0, 1.0, 1.0]),
+        (SchismSkewness, [value(SchismSkewness, inverted), infinity, infinity, infinity, infinity]),
         (Metric(gpu_smooth::Metric::Imr), [infinity; 5]),
         (Metric(gpu_smooth::Metric::Edge), [2f64.sqrt(), 4.0, infinity, infinity, infinity]),
     ];

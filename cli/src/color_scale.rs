@@ -25,8 +25,9 @@ impl ColorScale {
         };
         let ideal = definition.ideal;
         let [bad, good] = match measure {
-            // The ideal of flow links is not round.
+            // The ideals of these measures are not round.
             Measure::FlowLink => [0.0, 0.8],
+            Measure::SchismSkewness => [3.7, 2.7],
             _ if worst.is_finite() => [(worst + ideal) / 2.0, ideal],
             _ => [ideal + 1.0, ideal],
         };
@@ -156,6 +157,7 @@ mod tests {
         assert_eq!(usual(Measure::MinAngle), "≤ 30° 35° 40° 45° 50° 55° 60°");
         assert_eq!(usual(Measure::Condition), "≥ 2 1.8 1.6 1.4 1.2 1");
         assert_eq!(usual(Measure::FlowLink), "0 0.2 0.4 0.6 ≥ 0.8");
+        assert_eq!(usual(Measure::SchismSkewness), "≥ 3.7 3.5 3.3 3.1 2.9 ≤ 2.7");
         assert_eq!(of(Measure::Shape, [0.0, 1.0]), "0 0.2 0.4 0.6 0.8 1");
         assert_eq!(of(Measure::Shape, [0.6, 0.9]), "≤ 0.6 0.65 0.7 0.75 0.8 0.85 ≥ 0.9");
         let legend = ColorScale::usual(Measure::Shape).legend();

@@ -2,7 +2,7 @@
 //! [`Measure::ALL`].
 
 use crate::measure::edges::EQUILATERAL;
-use crate::measure::triangle::Triangle;
+use crate::measure::triangle::{LEAST_SKEWNESS, Triangle};
 use crate::metric::Metric;
 
 /// Direction of a measure: whether large or small values are better.
@@ -169,6 +169,17 @@ measures! {
         ideal: 0.0,
         better: Better::Lower,
         source: "ANSYS Fluent User's Guide, Mesh Quality: equiangle skewness; Verdict as of 2019, equiangle_skew",
+    };
+    /// The longest edge divided by the radius of the circle of equal area, 2.69 for the equilateral triangle: the skewness
+    /// of SCHISM's documentation.
+    SchismSkewness = Triangle::schism_skewness, Definition {
+        name: "schism-skewness",
+        formula: "Lmax / sqrt(S / π)",
+        unit: "",
+        range: [LEAST_SKEWNESS, f64::INFINITY],
+        ideal: LEAST_SKEWNESS,
+        better: Better::Lower,
+        source: "SCHISM, grid-generation.md, Mesh quality",
     };
     /// Jump of the area to a neighbor: the largest ratio of larger to smaller area among the triangles across the three
     /// edges. 1 for a triangle without neighbors.

@@ -1,10 +1,14 @@
 //! A triangle in the form from which quality measures are computed.
 
 use std::cell::OnceCell;
+use std::f64::consts::PI;
 
 use crate::measure::edges::WorstEdges;
 use crate::metric::{Corner, Ideal, Metric};
 use crate::topology::predicates::orientation;
+
+/// The longest edge of an equilateral triangle divided by the radius of the circle of equal area, sqrt(4π / √3).
+pub(crate) const LEAST_SKEWNESS: f64 = 2.693_547_374_177_196_7;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
@@ -198,6 +202,11 @@ impl Triangle {
     pub(crate) fn skewness(&self) -> f64 {
         let [least, most] = self.angles();
         ((most - 60.0) / 120.0).max((60.0 - least) / 60.0).clamp(0.0, 1.0)
+    }
+
+    pub(crate) fn schism_skewness(&self) -> f64 {
+        let radius = (self.doubled_area.abs() / 2.0 / PI).sqrt();
+        unbounded(self.longest() / radius).max(LEAST_SKEWNESS)
     }
 
     /// Returns the value q of a metric, infinite if the metric has a barrier and the triangle is inverted or flat.

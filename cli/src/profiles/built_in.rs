@@ -7,11 +7,12 @@ use crate::profiles::profile::Profile;
 use crate::similar;
 
 /// The names of the program's profiles, each with its file.
-const BUILT_IN: [(&str, &str); 6] = [
+const BUILT_IN: [(&str, &str); 7] = [
     ("adcirc", include_str!("adcirc.toml")),
     ("dflowfm", include_str!("dflowfm.toml")),
     ("fea", include_str!("fea.toml")),
     ("fvcom", include_str!("fvcom.toml")),
+    ("schism", include_str!("schism.toml")),
     ("swan", include_str!("swan.toml")),
     ("telemac", include_str!("telemac.toml")),
 ];

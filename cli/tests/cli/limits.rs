@@ -94,6 +94,17 @@ fn the_worst_edges_are_listed_with_their_ends_if_a_measure_of_edges_is_first() {
 }
 
 #[test]
+fn the_profile_of_schism_warns_of_long_triangles() {
+    // The longest side is that of 4, and the area of the lowest triangle becomes 0.02: 4 / sqrt(0.02 / pi) is above 15.
+    let flat = QUADRILATERAL.replace("5 2 0.5 1", "5 2 0.01 1");
+    let folder = Folder::new(&[("hgrid.gr3", &flat)]);
+    let run = folder.line("quality hgrid.gr3 --for schism --summary").clean();
+    let told = "hgrid.gr3: warn: 1 of 4 triangles have schism-skewness>15; the worst is triangle 1 (hgrid.gr3:8), schism-skewness 50.13";
+    assert_holds(&run.out, &[told]);
+    folder.line("quality hgrid.gr3 --threshold schism-skewness>51").clean();
+}
+
+#[test]
 fn a_threshold_of_neighbors_counts_vertices_and_leaves_out_the_boundary_for_small_numbers() {
     let folder = quadrilateral();
     let run = quality(&folder, &["--threshold", "neighbors<5", "--threshold", "neighbors>3"]);
