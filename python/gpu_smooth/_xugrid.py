@@ -86,7 +86,9 @@ def _positions(data: Any, grid: Any, moved: Any) -> dict[str, Any]:
             if name not in data.coords:
                 continue
             old = data.coords[name]
-            kind = next((kind for kind in kinds if np.allclose(getattr(grid, kind)[:, axis], old.values, rtol=1e-9)), None)
+            # Files may have the coordinates in single precision.
+            near = max(1e-9, 4 * np.finfo(old.dtype).eps) if old.dtype.kind == "f" else 1e-9
+            kind = next((kind for kind in kinds if np.allclose(getattr(grid, kind)[:, axis], old.values, rtol=near)), None)
             if kind is None:
                 warnings.warn(
                     f"mesh: the coordinate {name} is not updated, as it has neither centers of mass nor circumcenters of the "
