@@ -11,10 +11,10 @@ const CHUNK: usize = 1 << 12;
 /// An edge between two triangles, with measures by the definitions of MeshKernel 8 (Deltares: MeshFaceCenters.cpp,
 /// MeshOrthogonality.cpp, MeshSmoothness.cpp and Mesh2D.cpp).
 ///
-/// The center of a triangle is its circumcenter if that is inside. Otherwise, the center is the place where the segment
-/// from the mean of the corners to the circumcenter leaves the triangle. A triangle without neighbors has the mean of
-/// its corners as center. In degrees, a difference of longitudes is multiplied by the cosine of the mean latitude of its
-/// two ends.
+/// The center of a triangle is its circumcenter if the circumcenter is inside, by coordinates. Otherwise, the center is
+/// the place where the segment from the mean of the corners to the circumcenter leaves the triangle. A triangle without
+/// neighbors has the mean of its corners as center. In degrees, a difference of longitudes is multiplied by the cosine of
+/// the mean latitude of its two ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct InnerEdge {
@@ -71,6 +71,16 @@ fn vector(surface: Surface, offset: [f64; 2], y: f64) -> [f64; 2] {
     [offset[0] * x, offset[1] * y]
 }
 
+/// Returns whether a point is inside a triangle or on its boundary, by the signs of products of coordinates.
+fn is_inside(triangle: [[f64; 2]; 3], point: [f64; 2]) -> bool {
+    let side = |k: usize| {
+        let from = triangle[k];
+        cross(minus(triangle[(k + 1) % 3], from), minus(point, from))
+    };
+    let sides = [side(0), side(1), side(2)];
+    sides.iter().all(|&side| side >= 0.0) || sides.iter().all(|&side| side <= 0.0)
+}
+
 impl Cell {
     /// Returns the cell of a triangle with corners at `points`.
     fn of(surface: Surface, points: [[f64; 2]; 3], has_neighbors: bool) -> Self {
@@ -103,7 +113,10 @@ impl Cell {
             let [x, y] = surface.lengths(first[1] + mean[1]);
             center = [0.5 * (v[0] - z * v[1]) / x, 0.5 * (v[1] + z * v[0]) / y];
             let out = between(mean, center);
-            for k in 0..3 {
+            // In degrees, the segment to a center that is barely inside seems to leave the triangle, as each difference of
+            // longitudes has a factor of its own.
+            let sides = if is_inside(at, center) { 0..0 } else { 0..3 };
+            for k in sides {
                 let (from, to) = (at[k], at[(k + 1) % 3]);
                 let (side, start) = (between(from, to), between(mean, from));
                 let across = cross(out, side);

@@ -77,6 +77,22 @@ fn a_degree_of_longitude_is_shorter_in_the_north() {
     assert!((edge.flow_link - EQUILATERAL).abs() < 1e-4, "{edge:?}");
 }
 
+/// The first triangle has nearly a right angle. The segment to its circumcenter crosses the edge by the factors of
+/// longitudes, though the circumcenter is inside by coordinates.
+#[test]
+fn a_center_barely_inside_in_degrees_is_that_of_meshkernel() {
+    let points = [
+        [4.633859261520806, 53.49769251852584],
+        [4.652386520499213, 53.56459745224698],
+        [4.5832930242949566, 53.57135158163246],
+        [4.54977944551005, 53.49415868373533],
+    ];
+    let triangles = [[0, 1, 2], [0, 2, 3]];
+    let [edge] = edges_of(Surface::Sphere, &points, &triangles)[..] else { panic!() };
+    assert!((edge.orthogonality - 0.00032632689853730434).abs() < 1e-9, "{edge:?}");
+    assert!((edge.flow_link - 0.328984341100778).abs() < 1e-9, "{edge:?}");
+}
+
 #[test]
 fn the_worst_edges_of_triangles_are_those_of_the_list() {
     let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.1, 1.0], [0.45, 0.6], [3.0, 0.2]];
