@@ -1,5 +1,7 @@
 //! Quality measures compared with independent formulas, known triangles, and plain loops.
 
+#[path = "measures/meshkernel.rs"]
+mod meshkernel;
 #[allow(dead_code)]
 #[path = "metrics/oracles.rs"]
 mod oracles;

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Points, Triangles, lattice
+from conftest import MESHES, Points, Triangles
 
 import gpu_smooth
 
@@ -123,36 +124,75 @@ def test_numbers_of_no_node_are_refused(mesh: Mesh) -> None:
         gpu_smooth.quality(given)
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5, "degrees"])
-def test_measures_of_edges_are_those_of_meshkernel(seed: Any) -> None:
-    import meshkernel
+def inner_edges(faces: Triangles) -> tuple[Triangles, Triangles]:
+    """Return the ends of each edge between two faces, of shape (k, 2), and the faces, of shape (k, 2, 3)."""
+    sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    order = np.lexsort(sides.T[::-1])
+    first = np.flatnonzero((sides[order[1:]] == sides[order[:-1]]).all(axis=1))
+    return sides[order[first]], faces[np.column_stack([order[first], order[first + 1]]) // 3]
 
-    in_degrees = seed == "degrees"
-    points, triangles = lattice(12, 6 if in_degrees else seed, 0.3)
-    surface: Any = "sphere" if in_degrees else "plane"
-    points = points * [0.02, 0.01] + [4.0, 60.0] if in_degrees else points * seed
-    kernel, given = administered(of_edges(points, edges_of(triangles)), "SPHERICAL" if in_degrees else "CARTESIAN")
-    own = given.face_nodes.reshape(-1, 3)
-    edges = {tuple(sorted(edge)): k for k, edge in enumerate(given.edge_nodes.reshape(-1, 2).tolist())}
-    sides = np.array([[edges[tuple(sorted((row[k], row[k - 1])))] for k in range(3)] for row in own.tolist()])
-    # MeshKernel has -999 at edges of the boundary.
-    cosines = np.abs(kernel.mesh2d_get_orthogonality().values)
-    ratios = kernel.mesh2d_get_smoothness().values
-    found = {name: gpu_smooth.quality(given, measure=name, surface=surface) for name in ("orthogonality", "size-ratio", "flow-link")}
-    np.testing.assert_allclose(found["orthogonality"], np.where(cosines == 999, 0, cosines)[sides].max(axis=1), rtol=0, atol=1e-9)
-    if in_degrees:
-        return
-    np.testing.assert_allclose(found["size-ratio"], np.maximum(ratios, 1)[sides].max(axis=1), rtol=1e-9)
-    # MeshKernel returns no lengths of links, so the links are those between its circumcenters.
-    (a, b), (c, d) = (np.moveaxis(points[own][:, 1:] - points[own][:, :1], 1, 0)[k].T for k in (0, 1))
-    roots = np.sqrt(np.abs(a * d - b * c) / 2)
-    of_faces = meshkernel.Mesh2dLocation.FACES
-    circumcenters = kernel.mesh2d_get_property(of_faces, meshkernel.Mesh2d.Property.FACE_CIRCUMCENTER)
-    centers = np.column_stack([circumcenters.x_coordinates, circumcenters.y_coordinates])
-    least = np.full(len(own), np.inf)
-    for edge in np.unique(sides):
-        across = np.flatnonzero((sides == edge).any(axis=1))
-        if len(across) == 2:
-            link = np.linalg.norm(centers[across[0]] - centers[across[1]]) / roots[across].mean()
-            least[across] = np.minimum(least[across], link)
-    np.testing.assert_allclose(found["flow-link"], least, rtol=0, atol=1e-9)
+
+def measured(points: Points, pairs: Triangles, measure: str, surface: Any) -> Any:
+    """Return a measure of each edge, by a mesh in which each pair of faces is on its own."""
+    corners = pairs.reshape(-1, 6)
+    numbers = (corners[:, :, None] == corners[:, None]).argmax(axis=2) + 6 * np.arange(len(corners))[:, None]
+    return gpu_smooth.quality(points[corners].reshape(-1, 2), numbers.reshape(-1, 3), measure, surface=surface)[::2]
+
+
+def shortest_links(kernel: Any, links: Any) -> Any:
+    """Return every `STORED_EACH`-th of MeshKernel's flow links, ascending, to 1e-11.
+
+    Checks that the shortest of `links`, ascending, and every twentieth are within 1e-9 of MeshKernel's. MeshKernel returns no
+    lengths of links, but the edges whose links are shorter than a threshold.
+    """
+    def count(thresholds: Any) -> Any:
+        return np.array([len(kernel.mesh2d_get_small_flow_edge_centers(own).x_coordinates) for own in thresholds])
+
+    ranks = np.unique([*range(100), *range(0, len(links), 20), len(links) - 1])
+    assert (count(links[ranks] - 1e-9) <= ranks).all() and (count(links[ranks] + 1e-9) > ranks).all()
+    ranks = np.arange(0, len(links), STORED_EACH)
+    low, high = links[ranks] - 1e-9, links[ranks] + 1e-9
+    for _ in range(8):
+        middle = (low + high) / 2
+        is_short = count(middle) <= ranks
+        low, high = np.where(is_short, middle, low), np.where(is_short, high, middle)
+    return high
+
+
+# Every this many edges of a mesh, in the order of their flow links, is in the list of MeshKernel's numbers.
+STORED_EACH = 100
+STORED = MESHES.parent / "tests" / "measures" / "meshkernel.txt"
+HEAD = """# Measures of edges by MeshKernel 8.3.0. `GPU_SMOOTH_GOLDEN=write python/tests/run --all test_meshkernel.py` writes the file.
+# mesh of meshes/, corners of both triangles from 0, orthogonality, flow link, smoothness. mechanic is in degrees: x / 2 + 4, y / 2 + 52
+"""
+
+
+def test_measures_of_edges_are_those_of_meshkernel() -> None:
+    rows = []
+    for name in ("plate", "airplane", "duck", "fish", "hand", "mechanic"):
+        file, surface = gpu_smooth.MeshFile(MESHES / f"{name}.node"), "sphere" if name == "mechanic" else "plane"
+        points = file.points / 2 + [4.0, 52.0] if surface == "sphere" else file.points
+        projection = "SPHERICAL" if surface == "sphere" else "CARTESIAN"
+        kernel, given = administered(of_edges(points, edges_of(file.triangles)), projection)
+        ends, pairs = inner_edges(given.face_nodes.reshape(-1, 3))
+        assert len(ends) > 3500
+        links = measured(points, pairs, "flow-link", surface)
+        order = np.argsort(links)
+        ends, pairs, links = ends[order], pairs[order], links[order]
+        number = {tuple(sorted(edge)): k for k, edge in enumerate(given.edge_nodes.reshape(-1, 2).tolist())}
+        index = np.array([number[tuple(edge)] for edge in ends.tolist()])
+        cosines = np.abs(kernel.mesh2d_get_orthogonality().values)[index]
+        ratios = np.asarray(kernel.mesh2d_get_smoothness().values)[index]
+        np.testing.assert_allclose(measured(points, pairs, "orthogonality", surface), cosines, rtol=0, atol=1e-9)
+        if surface == "plane":
+            # In degrees, `size-ratio` has other areas than MeshKernel. The list has MeshKernel's smoothness.
+            np.testing.assert_allclose(measured(points, pairs, "size-ratio", surface), ratios, rtol=1e-9)
+        shortest = shortest_links(kernel, links)
+        for k, link in enumerate(shortest.tolist()):
+            at = k * STORED_EACH
+            rows.append([name, *pairs[at].ravel().tolist(), float(cosines[at]), link, float(ratios[at])])
+    if os.environ.get("GPU_SMOOTH_GOLDEN") == "write":
+        STORED.write_text(HEAD + "".join(" ".join(map(str, row)) + "\n" for row in rows))
+    stored = [line.split() for line in STORED.read_text().splitlines() if not line.startswith("#")]
+    assert [row[:7] for row in stored] == [[str(word) for word in row[:7]] for row in rows]
+    np.testing.assert_allclose(np.array([row[7:] for row in stored], float), [row[7:] for row in rows], rtol=0, atol=1e-10)
