@@ -133,6 +133,7 @@ def interpolate(
     moved: Array,
     values: Array,
     *,
+    surface: Surface = "plane",
     z: ThirdCoordinate = "coordinate",
 ) -> Doubles:
     """Return data of vertices at new positions of the vertices.
@@ -150,6 +151,8 @@ def interpolate(
         New positions of the vertices.
     values : array_like of float, shape (n,) or (n, k)
         Data of the vertices, such as depths.
+    surface : {"plane", "sphere"}, default "plane"
+        Meaning of the coordinates, as in `smooth`.
     z : {"coordinate", "data"}, default "coordinate"
         Meaning of third coordinates, as in `smooth`.
 
@@ -172,7 +175,7 @@ def interpolate(
     >>> gpu_smooth.interpolate(points, triangles, moved, [0, 2, 2, 0, 1.5]).tolist()
     [0.0, 2.0, 2.0, 0.0, 1.0]
     """
-    return _native.interpolate(points, triangles, moved, values, z)
+    return _native.interpolate(points, triangles, moved, values, surface, z)
 
 
 class Spread(NamedTuple):

@@ -39,6 +39,8 @@ class Cells(NamedTuple):
     """Vertices inside the mesh on curves of a model that have no lines, of shape (k,). They stay unless lines are free."""
     surface: Surface | None = None
     """Meaning of the coordinates that the mesh states; None if the mesh states none."""
+    interpolated: tuple[str, ...] = ()
+    """Names of the data of vertices that are interpolated where vertices have moved."""
 
     def options(self, given: dict[str, Any], vertices: int) -> dict[str, Any]:
         """Return options with the constraints of the cells, beside those that were given."""

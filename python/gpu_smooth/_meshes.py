@@ -7,8 +7,11 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from gpu_smooth import _native
 from gpu_smooth._cells import Cells, with_groups
+from gpu_smooth._errors import MeshError
 from gpu_smooth._files import MeshFile
 
 if TYPE_CHECKING:
@@ -37,10 +40,28 @@ def arrays_of(mesh: Any, options: dict[str, Any]) -> MeshArrays:
         cells = cells._replace(ends=package.ends_of(mesh, cells))
     points = package.points_of(mesh)
     options = cells.options(options, len(points))
+    if cells.interpolated and options.get("untangle"):
+        _check_data(cells, points, options.get("surface", "plane"))
     with_points = None
     if not isinstance(mesh, MeshFile):
         with_points = functools.partial(package.with_points, mesh, surface=options.get("surface", "plane"))
     return MeshArrays(points, cells.triangles, options, with_points)
+
+
+def _check_data(cells: Cells, points: Any, surface: str) -> None:
+    """Raise an error if data of vertices cannot be interpolated, as triangles of the mesh are inverted or flat."""
+    try:
+        _native.interpolate(points, cells.triangles, points, np.zeros(len(points)), surface, "coordinate")
+    except MeshError as error:
+        if not error.triangles:
+            raise
+        refused = MeshError(
+            f"mesh: data of nodes ({', '.join(cells.interpolated)}) cannot be interpolated, as {len(error.triangles)} triangles "
+            f"are inverted or flat, the first is triangle {error.triangles[0]}. Pass the grid alone, and take the data at its new "
+            "nodes from their source"
+        )
+        refused.triangles = error.triangles
+        raise refused from error
 
 
 def smooth(mesh: Any, options: dict[str, Any]) -> Any:

@@ -37,7 +37,8 @@ def cells_of(mesh: Any) -> Cells:
     """Return the cells of a grid: its faces, on the sphere if the grid is geographic."""
     grid = _grid_of(mesh)
     faces = np.asarray(grid.face_node_connectivity, np.int64)
-    return of_faces(faces, "sphere" if grid.is_geographic else None)
+    cells = of_faces(faces, "sphere" if grid.is_geographic else None)
+    return cells._replace(interpolated=() if mesh is grid else _of_nodes(mesh.obj, grid))
 
 
 def groups_of(mesh: Any) -> dict[str, Callable[[], Any]]:
@@ -67,11 +68,11 @@ def with_points(mesh: Any, points: Any, surface: str) -> Any:
     data = mesh.obj
     is_array = not hasattr(data, "data_vars")
     positions = _positions(data, grid, moved)
-    new = {name: _interpolated(own, grid, points) for name, own in data.coords.items() if name not in positions}
+    new = {name: _interpolated(own, grid, points, surface) for name, own in data.coords.items() if name not in positions}
     data = data.assign_coords({**new, **positions})
     if is_array:
-        return type(mesh)(_interpolated(data, grid, points), moved)
-    data = data.assign({name: _interpolated(own, grid, points) for name, own in data.data_vars.items()})
+        return type(mesh)(_interpolated(data, grid, points, surface), moved)
+    data = data.assign({name: _interpolated(own, grid, points, surface) for name, own in data.data_vars.items()})
     return type(mesh)(data, [moved if own is grid else own for own in mesh.grids])
 
 
@@ -100,14 +101,27 @@ def _positions(data: Any, grid: Any, moved: Any) -> dict[str, Any]:
     return found
 
 
-def _interpolated(data: Any, grid: Any, points: Any) -> Any:
+def _is_of_nodes(data: Any, grid: Any) -> bool:
+    """Return whether data are floating-point numbers of nodes, which are interpolated."""
+    return grid.node_dimension in data.dims and data.dtype.kind == "f" and data.size > 0
+
+
+def _of_nodes(data: Any, grid: Any) -> tuple[str, ...]:
+    """Return the names of the data that are interpolated, without positions of nodes."""
+    named = {**data.coords, **(data.data_vars if hasattr(data, "data_vars") else {data.name or "data": data})}
+    positions = {grid._indexes.get(f"node_{letter}", f"{grid.name}_node_{letter}") for letter in "xy"}
+    return tuple(str(name) for name, own in named.items() if name not in positions and _is_of_nodes(own, grid))
+
+
+def _interpolated(data: Any, grid: Any, points: Any, surface: str) -> Any:
     """Return data with values at the moved nodes; the same data if they are not floating-point numbers of nodes."""
-    if grid.node_dimension not in data.dims or data.dtype.kind != "f" or not data.size:
+    if not _is_of_nodes(data, grid):
         return data
     axis = data.get_axis_num(grid.node_dimension)
     old = np.moveaxis(data.to_numpy(), axis, 0)
     values = old.reshape(len(points), -1).astype(np.float64)
-    new = _native.interpolate(grid.node_coordinates, cells_of(grid).triangles, points, values, "coordinate")
+    triangles = cells_of(grid).triangles
+    new = _native.interpolate(grid.node_coordinates, triangles, points, values, surface, "coordinate")
     # Beside a node without a number, the data stay.
     new = np.where(np.isfinite(new), new, values).reshape(old.shape)
     return data.copy(data=np.moveaxis(new, 0, axis).astype(data.dtype))

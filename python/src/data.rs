@@ -3,7 +3,7 @@
 use gpu_smooth::interpolate::Interpolation;
 use gpu_smooth::measure::{Change, Distribution};
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Mesh, Quality as MeshQuality, Topology, Untangle};
+use gpu_smooth::{Mesh, MeshError, Quality as MeshQuality, Topology, Untangle};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -74,22 +74,40 @@ pub(crate) fn interpolate<'py>(
     triangles: &Bound<'py, PyAny>,
     moved: &Bound<'py, PyAny>,
     values: &Bound<'py, PyAny>,
+    on: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let z = plane::third_coordinate(z)?;
+    let (surface, z) = (measures::surface(on)?, plane::third_coordinate(z)?);
     let given = Named { name: "points", points };
-    let (mesh, form) = measures::mesh(given, triangles, z, Surface::Plane)?;
+    let (mesh, form) = measures::mesh(given, triangles, z, surface)?;
     let moved = likewise("moved", moved, &mesh, &form)?.xy;
-    let values = arrays::per_vertex("values", values, mesh.points.len())?;
+    let count = mesh.points.len();
+    let values = arrays::per_vertex("values", values, count)?;
     let taken = threads::detached(py, || {
-        let topology = Topology::new(&mesh)?;
-        Interpolation::new(&topology, &mesh.points, &moved)?.apply(&values.numbers, values.each)
+        let Some(chart) = measures::chart(&mesh, surface, form.precision())? else {
+            return interpolated(&mesh, &moved, &values.numbers, values.each);
+        };
+        let numbers = chart.extended(&values.numbers, values.each);
+        let taken = interpolated(chart.mesh(), &chart.continued(&moved), &numbers, values.each);
+        // The copies of vertices come last.
+        taken.map(|taken| taken[..count * values.each].to_vec())
     })?;
     let taken = taken.map_err(|error| error::of_mesh(py, &error))?;
     match values.is_flat {
         true => Ok(PyArray1::from_vec(py, taken).into_any()),
-        false => arrays::matrix(py, taken, [mesh.points.len(), values.each]),
+        false => arrays::matrix(py, taken, [count, values.each]),
     }
+}
+
+/// Returns data of the vertices of a mesh, `each` numbers per vertex, at the points `moved` of the vertices.
+fn interpolated(
+    mesh: &Mesh,
+    moved: &[[f64; 2]],
+    values: &[f64],
+    each: usize,
+) -> Result<Vec<f64>, MeshError> {
+    let topology = Topology::new(mesh)?;
+    Interpolation::new(&topology, &mesh.points, moved)?.apply(values, each)
 }
 
 /// Compares two states of a mesh. Returns a dict of keyword arguments for the class `Comparison` of the package.
@@ -107,10 +125,14 @@ pub(crate) fn compare<'py>(
     let (mesh, form) = measures::mesh(given, triangles, z, surface)?;
     let Points { xy: after, form: other } = likewise("after", after, &mesh, &form)?;
     let compared = threads::detached(py, || {
-        let topology = Topology::new(&mesh)?;
-        let change = Change::between(&topology, &mesh.points, &after)?;
+        let chart = measures::chart(&mesh, surface, form.precision())?;
+        let continued = chart.as_ref().map(|chart| (chart.mesh(), chart.continued(&after)));
+        let (mesh, after) =
+            continued.as_ref().map_or((&mesh, &after), |(mesh, after)| (mesh, after));
+        let topology = Topology::new(mesh)?;
+        let change = Change::between(&topology, &mesh.points, after)?;
         let of = |points: &[[f64; 2]]| MeshQuality::on(surface, points, &topology);
-        Ok((change, [of(&mesh.points)?, of(&after)?]))
+        Ok((change, [of(&mesh.points)?, of(after)?]))
     })?;
     let (change, [was, is]) = compared.map_err(|error| error::of_mesh(py, &error))?;
     let spread = |of: Distribution| (of.median, of.p95, of.most);

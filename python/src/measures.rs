@@ -1,8 +1,10 @@
 //! Quality of the triangles of a mesh.
 
+use gpu_smooth::front_ends::Chart;
 use gpu_smooth::measure::{Measure, Measured, UnknownMeasure};
+use gpu_smooth::options::Precision;
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Mesh, Metric, Quality as MeshQuality, Topology};
+use gpu_smooth::{Mesh, MeshError, Metric, Quality as MeshQuality, Topology};
 use gpu_smooth_cli::colors::{BAD, ColorScale, VIRIDIS};
 use numpy::PyArray1;
 use pyo3::intern;
@@ -84,6 +86,19 @@ pub(crate) fn mesh(
     Ok((Mesh { points: xy, triangles, ..Mesh::default() }, form))
 }
 
+/// Returns the chart of a mesh with the stored precision of its coordinates; `None` in the plane, and if no triangle is across
+/// the line where longitudes jump or at a pole.
+pub(crate) fn chart(
+    mesh: &Mesh,
+    surface: Surface,
+    stored: Precision,
+) -> Result<Option<Chart>, MeshError> {
+    match surface {
+        Surface::Plane => Ok(None),
+        Surface::Sphere => Chart::new(mesh, stored),
+    }
+}
+
 /// Returns the value of a measure for each triangle.
 #[pyfunction]
 pub(crate) fn quality<'py>(
@@ -96,9 +111,12 @@ pub(crate) fn quality<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let surface = surface(on)?;
     let z = plane::third_coordinate(z)?;
-    let (mesh, _) = mesh(Named { name: "points", points }, triangles, z, surface)?;
+    let (mut mesh, form) = mesh(Named { name: "points", points }, triangles, z, surface)?;
     let measure = measure_of(measure)?;
     let values = threads::detached(py, || {
+        if let Some(chart) = chart(&mesh, surface, form.precision())? {
+            mesh = chart.mesh().clone();
+        }
         let topology = Topology::new(&mesh)?;
         Ok(Measured::on(surface, &mesh.points, &topology)?.values(measure))
     })?;

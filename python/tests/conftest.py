@@ -30,6 +30,14 @@ def lattice(side: int, seed: int = 1, by: float = 0.24) -> tuple[Points, Triangl
     return points + moves, np.concatenate([lower, upper])
 
 
+def across_date_line(points: Points) -> tuple[Points, Points]:
+    """Return points of `lattice(12)` in degrees, around longitude 180, as they are and with longitudes from -180 to 180."""
+    continued = points * [0.2, 0.1] + [178.9, 60.0]
+    wrapped = continued.copy()
+    wrapped[wrapped[:, 0] > 180, 0] -= 360
+    return continued, wrapped
+
+
 def alternating(side: int) -> tuple[Points, Triangles]:
     """Return a square of right triangles whose diagonals alternate from row to row; sweeps by imr would make them sharper."""
     points, triangles = lattice(side, by=0.0)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from conftest import Points, Triangles
+from conftest import Points, Triangles, across_date_line
 
 import gpu_smooth
 
@@ -65,6 +65,28 @@ def test_interpolation_keeps_linear_data(mesh: Mesh) -> None:
         gpu_smooth.interpolate(points, triangles, moved[:5], linear(points))
     with pytest.raises(gpu_smooth.MeshError, match="values"):
         gpu_smooth.interpolate(points, triangles, moved, linear(points)[:5])
+
+
+@pytest.mark.filterwarnings("ignore:points. the mesh is adapted:gpu_smooth.MeshWarning")
+def test_meshes_across_the_date_line_are_measured_interpolated_and_compared_as_elsewhere(mesh: Mesh) -> None:
+    continued, wrapped = across_date_line(mesh[0])
+    triangles = mesh[1]
+    for measure in ("min-angle", "orthogonality", "size-ratio"):
+        found = gpu_smooth.quality(wrapped, triangles, measure, surface="sphere")
+        np.testing.assert_allclose(found, gpu_smooth.quality(continued, triangles, measure, surface="sphere"), rtol=1e-9, atol=1e-9)
+    moved, new = [gpu_smooth.smooth(points, triangles, surface="sphere") for points in (continued, wrapped)]
+    assert np.ptp(new[:, 0]) > 359 and np.array_equal(moved[:, 1], new[:, 1])
+    values = np.column_stack([2 * continued[:, 0] - continued[:, 1], continued[:, 1]])
+    found = gpu_smooth.interpolate(wrapped, triangles, new, values, surface="sphere")
+    np.testing.assert_allclose(found, np.column_stack([2 * moved[:, 0] - moved[:, 1], moved[:, 1]]), atol=1e-10)
+    with pytest.raises(gpu_smooth.MeshError, match="inverted or flat"):
+        gpu_smooth.interpolate(wrapped, triangles, new, values)
+    here, there = [
+        gpu_smooth.compare(*states, triangles, surface="sphere") for states in ((continued, moved), (wrapped, new))
+    ]
+    assert there.moved == pytest.approx(here.moved) and there.least_altitude == pytest.approx(here.least_altitude)
+    assert there.quality_after.min_angle == pytest.approx(here.quality_after.min_angle)
+    assert there.vertices_moved == here.vertices_moved and there.moved.most < 0.6
 
 
 def test_two_states_are_compared(mesh: Mesh) -> None:

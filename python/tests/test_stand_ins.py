@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import stand_ins
-from conftest import Points, Triangles
+from conftest import Points, Triangles, across_date_line
 from stand_ins import DataArray, Dataset, Mesh2d, Ugrid2d, UgridDataArray, UgridDataset
 
 import gpu_smooth
@@ -150,6 +150,36 @@ def test_data_of_xugrid_follow_the_nodes(mesh: Mesh) -> None:
     assert np.array_equal(found["mesh2d_edge_x"].values, moved.edge_coordinates[:, 0].astype(np.float32))
     depth = gpu_smooth.smooth(UgridDataArray(data["depth"], grid))
     assert type(depth) is UgridDataArray and np.array_equal(depth.obj.values, found["depth"].values)
+
+
+@pytest.mark.filterwarnings("ignore:points. the mesh is adapted:gpu_smooth.MeshWarning")
+def test_data_of_xugrid_are_interpolated_across_the_date_line(mesh: Mesh) -> None:
+    continued, wrapped = across_date_line(mesh[0])
+    depths = DataArray(continued[:, 0] - continued[:, 1], "mesh2d_nNodes")
+    smoothed = gpu_smooth.smooth(UgridDataArray(depths, grid_of((wrapped, mesh[1]), is_geographic=True)))
+    new = smoothed.grids[0].node_coordinates
+    assert np.ptp(new[:, 0]) > 359 and not np.array_equal(new, wrapped)
+    np.testing.assert_allclose(smoothed.obj.values, new[:, 0] % 360 - new[:, 1], atol=1e-10)
+
+
+def test_data_of_nodes_on_a_tangled_grid_of_xugrid_are_refused_before_untangling(mesh: Mesh) -> None:
+    points, triangles = mesh[0].copy(), mesh[1]
+    points[80] += 2.5
+    grid = grid_of((points, triangles))
+    nodes, faces = DataArray(points[:, 1], "mesh2d_nNodes", name="depth"), DataArray(triangles[:, 0] / 2, "mesh2d_nFaces")
+    functions: list[Any] = [gpu_smooth.smooth, gpu_smooth.run, gpu_smooth.Smoother]
+    for function in functions:
+        for own in UgridDataArray(nodes, grid), UgridDataset(Dataset({"depth": nodes, "level": faces}, {}), [grid]):
+            with pytest.raises(gpu_smooth.MeshError, match=(
+                r"data of nodes \(depth\) cannot be interpolated, as \d+ triangles are inverted or flat, the first is triangle "
+                r"\d+\. Pass the grid alone"
+            )) as refused:
+                function(own, untangle=True)
+            assert len(refused.value.triangles) > 2
+    assert not np.array_equal(gpu_smooth.smooth(grid, untangle=True).node_coordinates, points)
+    # Data of faces stay, and data of nodes are no obstacle if nothing is to be untangled.
+    assert gpu_smooth.smooth(UgridDataArray(faces, grid), untangle=True).obj.values is faces.values
+    gpu_smooth.smooth(UgridDataArray(nodes, grid_of(mesh)), untangle=True)
 
 
 def test_unknown_centers_of_xugrid_are_kept_with_a_warning(mesh: Mesh) -> None:

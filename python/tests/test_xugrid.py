@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Points, Triangles
+from conftest import Points, Triangles, across_date_line
 
 import gpu_smooth
 
@@ -71,3 +71,32 @@ def test_depths_are_interpolated_and_data_of_faces_stay(mesh: Mesh) -> None:
     depth = gpu_smooth.smooth(given["depth"])
     assert type(depth) is xugrid.UgridDataArray
     np.testing.assert_allclose(depth.values[1], new[:, 1], atol=1e-12)
+
+
+@pytest.mark.filterwarnings("ignore:points. the mesh is adapted:gpu_smooth.MeshWarning")
+def test_depths_are_interpolated_across_the_date_line(mesh: Mesh) -> None:
+    import xugrid
+
+    continued, wrapped = across_date_line(mesh[0])
+    data = grid_of(wrapped, mesh[1], is_projected=False).to_dataset()
+    data["depth"] = ("mesh2d_nNodes", continued[:, 0] - continued[:, 1])
+    given = xugrid.UgridDataset(data)
+    assert given.ugrid.grid.is_geographic
+    smoothed = gpu_smooth.smooth(given)
+    new = smoothed.ugrid.grid.node_coordinates
+    assert np.ptp(new[:, 0]) > 359 and not np.array_equal(new, wrapped)
+    np.testing.assert_allclose(smoothed["depth"], new[:, 0] % 360 - new[:, 1], atol=1e-10)
+
+
+def test_depths_on_a_tangled_grid_are_refused_before_untangling(mesh: Mesh) -> None:
+    import xugrid
+
+    points = mesh[0].copy()
+    points[80] += 2.5
+    data = grid_of(points, mesh[1]).to_dataset()
+    data["depth"] = ("mesh2d_nNodes", points[:, 0])
+    given = xugrid.UgridDataset(data)
+    with pytest.raises(gpu_smooth.MeshError, match=r"data of nodes \(depth\) cannot be interpolated.*Pass the grid alone"):
+        gpu_smooth.smooth(given, untangle=True)
+    untangled = gpu_smooth.smooth(given.ugrid.grid, untangle=True).node_coordinates
+    assert (gpu_smooth.quality(untangled, mesh[1], "min-angle") > 1).all()
