@@ -74,6 +74,16 @@ def test_a_grid_for_delft3d_fm_is_made_orthogonal(tmp_path: Path) -> None:
 
 
 @pytest.mark.heavy
+def test_a_coast_of_ocsmesh_is_made_orthogonal(tmp_path: Path) -> None:
+    printed = output("ocsmesh_coast.py", tmp_path / "coast.2dm")
+    counts = re.findall(r"(\d+) triangles, oblique edges at (\d+) -> (\d+), obtuse (\d+) -> (\d+)", printed)[0]
+    count, before, after, obtuse_before, obtuse_after = map(int, counts)
+    assert count > 4000 and after <= before // 3 and obtuse_after <= obtuse_before // 2
+    file = gpu_smooth.MeshFile(tmp_path / "coast.2dm")
+    assert len(file.triangles) == count and file.data("z").min() < -50
+
+
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["coast", "airfoil", "two_materials"])
 def test_the_gallery_draws(name: str, tmp_path: Path) -> None:
     printed = output(f"gallery_{name}.py", tmp_path / "picture.png", MPLBACKEND="agg")
