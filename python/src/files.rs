@@ -1,11 +1,11 @@
 //! Mesh files: a file in memory with its points, triangles, groups and data, and conversions.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use gpu_smooth_job::options::Settings;
 use mesh_io::{
-    Conversion, Encoding, FieldError, Format, MeshFile as File, ReadError, ReadOptions, WriteError,
+    Conversion, Encoding, FieldError, MeshFile as File, ReadError, ReadOptions, WriteError,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -185,7 +185,6 @@ impl MeshFile {
         free_lines: &Bound<'_, PyAny>,
         moved_fixed: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        self.check_ending(py, &path)?;
         let points = arrays::points("points", points)?;
         let mut settings = Settings::default();
         settings.slides = Given { name: "slide", value: slide }.flag()?;
@@ -278,26 +277,5 @@ impl MeshFile {
         let written = threads::detached(py, || conversion.write(&path))?;
         written.map_err(|error| error::of_writing(py, &error))?;
         Ok(losses)
-    }
-}
-
-impl MeshFile {
-    /// Returns an error if the files of a Triangle mesh would get another ending behind that of `path`, which is an ending of no
-    /// format. Endings of digits, as in `la.1`, are parts of names.
-    fn check_ending(&self, py: Python<'_>, path: &Path) -> PyResult<()> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().into_owned());
-        let is_word = ending.is_some_and(|ending| ending.contains(char::is_alphabetic));
-        if self.0.format() != Format::Triangle
-            || !is_word
-            || Format::name_of_extension(path).is_some()
-        {
-            return Ok(());
-        }
-        let text = format!(
-            "{path}: the ending belongs to no format, and a Triangle mesh would be written to {path}.node and {path}.ele. End \
-             the name in .node",
-            path = path.display()
-        );
-        Err(error::file(py, &text))
     }
 }

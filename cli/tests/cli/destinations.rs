@@ -35,6 +35,29 @@ fn a_triangle_mesh_goes_by_any_of_its_names() {
     }
 }
 
+/// Endings without letters are numbers of versions, and `in.v2.node` has the ending of its OUT.
+#[test]
+fn a_triangle_mesh_is_not_written_behind_an_ending_of_no_format() {
+    let folder = small();
+    fs::create_dir(folder.path("dir")).unwrap();
+    for (from, to) in [("in.node", "in.v2.node"), ("in.ele", "in.v2.ele")] {
+        fs::copy(folder.path(from), folder.path(to)).unwrap();
+    }
+    let before = folder.content();
+    for out in ["out.zzz", "out.v2", "dir/out.smooth"] {
+        let text = format!(
+            "{out}: the ending belongs to no format, and a Triangle mesh would be written to {out}.node and {out}.ele"
+        );
+        let run = folder.line(&format!("in.node {out} --engine cpu"));
+        run.refused(&[&text, "End the name in .node"]);
+        assert!(folder.content() == before, "{out}");
+    }
+    for (input, out) in [("in", "out.2"), ("in.v2", "out.v2"), ("in.v2.ele", "dir/in.v2")] {
+        folder.run([input, out, "--engine", "cpu"]).clean();
+        assert_eq!(folder.text(&format!("{out}.ele")), folder.text("in.ele"));
+    }
+}
+
 #[test]
 fn zero_sweeps_give_back_the_same_bytes() {
     let files = triangle_files(&disturbed(), 1);

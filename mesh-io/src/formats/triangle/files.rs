@@ -2,6 +2,7 @@
 //! segments.
 
 use crate::compress::file::{Compression, inner_name};
+use crate::detect::format_name_of_extension;
 use crate::disk::source::{Companion, Source, file_name};
 use crate::error::{ReadError, WriteError};
 use crate::formats::triangle::names::{Names, appended};
@@ -113,8 +114,9 @@ fn missing_file(missing: &Path, names: &Names) -> ReadError {
 /// Returns the files that are written for `path`, in the order of [`Source::files`].
 ///
 /// # Errors
-/// If `path` has the ending of a compressed file. If an existing file `path` would be read in place of the `.node`, or
-/// a `.poly` of another mesh along with the new files.
+/// If `path` has the ending of a compressed file, or an ending of no format, behind which the files would get another
+/// ending. If an existing file `path` would be read in place of the `.node`, or a `.poly` of another mesh along with the
+/// new files.
 pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, WriteError> {
     let refused = |problem: String, remedy: &str| {
         Err(WriteError::Format { path: path.to_owned(), problem, remedy: remedy.into() })
@@ -122,6 +124,13 @@ pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, W
     if Compression::of(path).is_some() {
         let problem = "a Triangle mesh is of several files, which are not written compressed";
         return refused(problem.into(), "End the name in .node");
+    }
+    if has_foreign_ending(node, path) {
+        let name = path.display();
+        let problem = format!(
+            "the ending belongs to no format, and a Triangle mesh would be written to {name}.node and {name}.ele"
+        );
+        return refused(problem, "End the name in .node");
     }
     if path.is_file() && !is_named_as_triangle(path) {
         let name = path.display();
@@ -139,4 +148,13 @@ pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, W
         return refused(problem, "Remove it, or take another name");
     }
     Ok([to_node, ele, poly].into_iter().take(1 + node.companions.len()).collect())
+}
+
+/// Returns whether `path` has an ending of no format. An ending without letters, as in `la.1`, and one that the given
+/// mesh has before `.node`, as in `la.v2.node`, are parts of names.
+fn has_foreign_ending(node: &Source, path: &Path) -> bool {
+    let Some(ending) = path.extension() else { return false };
+    let is_word = ending.to_string_lossy().contains(char::is_alphabetic);
+    let is_given = node.path.with_extension("").extension() == Some(ending);
+    is_word && !is_given && format_name_of_extension(path).is_none()
 }
