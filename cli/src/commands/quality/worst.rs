@@ -56,7 +56,7 @@ fn triangles(
             at: as_in_file(file, mean(&points)),
             length: longest_edge(&points),
             values: args.histograms().iter().map(|&m| (m, measured.value(m, t))).collect(),
-            can_move: measured.topology().can_move(t),
+            can_move: measured.topology().can_move(Element::Triangle(t)),
         }
     };
     found.iter().map(one).collect()
@@ -89,7 +89,10 @@ fn edges(
             at: as_in_file(file, mean(&points)),
             length: longest_edge(&points),
             values: of_edges.map(|&m| (m, of_edge(m, edge))).collect(),
-            can_move: edge.triangles.iter().any(|&t| measured.topology().can_move(t as usize)),
+            can_move: edge
+                .triangles
+                .iter()
+                .any(|&t| measured.topology().can_move(Element::Triangle(t as usize))),
         }
     };
     edges.iter().map(one).collect()

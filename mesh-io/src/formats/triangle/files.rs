@@ -2,7 +2,6 @@
 //! segments.
 
 use crate::compress::file::{Compression, inner_name};
-use crate::detect::format_name_of_extension;
 use crate::disk::source::{Companion, Source, file_name};
 use crate::error::{ReadError, WriteError};
 use crate::formats::triangle::names::{Names, appended};
@@ -150,11 +149,11 @@ pub(super) fn destinations(node: &Source, path: &Path) -> Result<Vec<PathBuf>, W
     Ok([to_node, ele, poly].into_iter().take(1 + node.companions.len()).collect())
 }
 
-/// Returns whether `path` has an ending of no format. An ending without letters, as in `la.1`, and one that the given
-/// mesh has before `.node`, as in `la.v2.node`, are parts of names.
+/// Returns whether `path`, which has no ending of another format, has an ending of no format. An ending without letters,
+/// as in `la.1`, and one that the given mesh has before `.node`, as in `la.v2.node`, are parts of names.
 fn has_foreign_ending(node: &Source, path: &Path) -> bool {
     let Some(ending) = path.extension() else { return false };
     let is_word = ending.to_string_lossy().contains(char::is_alphabetic);
     let is_given = node.path.with_extension("").extension() == Some(ending);
-    is_word && !is_given && format_name_of_extension(path).is_none()
+    is_word && !is_given && !is_named_as_triangle(path)
 }
