@@ -8,7 +8,7 @@ use crate::metric::{Corner, Ideal, Metric};
 use crate::topology::predicates::orientation;
 
 /// The longest edge of an equilateral triangle divided by the radius of the circle of equal area, sqrt(4π / √3).
-pub(crate) const LEAST_SKEWNESS: f64 = 2.693_547_374_177_196_7;
+pub(crate) const LEAST_SKEWNESS: f64 = 2.693_547_374_177_197;
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
