@@ -16,6 +16,8 @@ pub(crate) enum Quantity {
     HoleEdges,
     /// Number of triangles at a vertex; inside the mesh, also the number of its neighbors.
     Neighbors,
+    /// Least altitude of a triangle over the speed of long waves, in seconds. Only wet triangles have the quantity.
+    TimeStep,
 }
 
 /// The kind of items to which a quantity belongs.
@@ -46,7 +48,8 @@ impl Part {
 
 impl Quantity {
     /// The quantities that are no measures.
-    const COUNTS: [Self; 3] = [Self::BoundaryCorners, Self::HoleEdges, Self::Neighbors];
+    const OWN: [Self; 4] =
+        [Self::BoundaryCorners, Self::HoleEdges, Self::Neighbors, Self::TimeStep];
 
     /// Returns the name on the command line and in profiles.
     pub(crate) fn name(self) -> &'static str {
@@ -55,6 +58,7 @@ impl Quantity {
             Self::BoundaryCorners => "boundary-corners",
             Self::HoleEdges => "hole-edges",
             Self::Neighbors => "neighbors",
+            Self::TimeStep => "time-step",
         }
     }
 
@@ -70,7 +74,7 @@ impl Quantity {
     pub(crate) fn part(self) -> Part {
         match self {
             Self::Measure(measure) if measure.is_of_edges() => Part::Edge,
-            Self::Measure(_) | Self::BoundaryCorners => Part::Triangle,
+            Self::Measure(_) | Self::BoundaryCorners | Self::TimeStep => Part::Triangle,
             Self::HoleEdges => Part::Hole,
             Self::Neighbors => Part::Vertex,
         }
@@ -81,22 +85,23 @@ impl Quantity {
         match self {
             Self::Measure(measure) => Some(measure.definition().better),
             Self::BoundaryCorners => Some(Better::Lower),
-            Self::HoleEdges => Some(Better::Higher),
+            Self::HoleEdges | Self::TimeStep => Some(Better::Higher),
             Self::Neighbors => None,
         }
     }
 
-    /// Returns the unit that follows a value, empty for a ratio or a number of parts.
+    /// Returns the unit that follows a value, with a blank if necessary; empty for a ratio or a number of parts.
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::Measure(measure) => measure.definition().unit,
+            Self::TimeStep => " s",
             Self::BoundaryCorners | Self::HoleEdges | Self::Neighbors => "",
         }
     }
 
     /// Returns whether values are whole numbers.
     pub(crate) fn is_count(self) -> bool {
-        Self::COUNTS.contains(&self)
+        !matches!(self, Self::Measure(_) | Self::TimeStep)
     }
 }
 
@@ -112,12 +117,12 @@ impl FromStr for Quantity {
     /// Parses a name. Underscores may replace hyphens.
     fn from_str(text: &str) -> Result<Self, String> {
         let name = text.trim().to_ascii_lowercase().replace('_', "-");
-        match Self::COUNTS.into_iter().find(|count| count.name() == name) {
-            Some(count) => Ok(count),
+        match Self::OWN.into_iter().find(|own| own.name() == name) {
+            Some(own) => Ok(own),
             None => text
                 .parse()
                 .map(Self::Measure)
-                .map_err(|error| format!("{error}, {}", Self::COUNTS.map(Self::name).join(", "))),
+                .map_err(|error| format!("{error}, {}", Self::OWN.map(Self::name).join(", "))),
         }
     }
 }

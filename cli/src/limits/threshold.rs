@@ -56,6 +56,12 @@ impl Threshold {
         Ok(threshold)
     }
 
+    /// Returns an empty range of a quantity.
+    pub(crate) fn none(quantity: Quantity) -> Self {
+        let is_below = quantity.better() != Some(Better::Lower);
+        Self { quantity, is_below, or_equal: false, value: f64::NAN }
+    }
+
     /// Returns whether a value of the quantity is in the range.
     pub(crate) fn is_met(&self, value: f64) -> bool {
         self.is_worse(value, self.value) || self.or_equal && value == self.value
@@ -120,6 +126,7 @@ mod tests {
             ("neighbors<4", Part::Vertex, "neighbors<4"),
             ("boundary-corners>=3", Part::Triangle, "boundary-corners>=3"),
             ("hole-edges<7", Part::Hole, "hole-edges<7"),
+            ("time_step < .5", Part::Triangle, "time-step<0.5"),
         ] {
             let threshold = parse(text);
             assert_eq!((threshold.quantity.part(), &*threshold.to_string()), (part, own));
@@ -136,6 +143,6 @@ mod tests {
         assert!(error("orthogonality<0.02").contains("no edge may have, and high values"));
         assert!(error("orthogonality<0.02").ends_with("write 'orthogonality>0.02'"));
         assert!(error("boundary-corners<3").ends_with("write 'boundary-corners>3'"));
-        assert!(error("roundness<1").ends_with(", boundary-corners, hole-edges, neighbors"));
+        assert!(error("roundness<1").ends_with(", hole-edges, neighbors, time-step"));
     }
 }

@@ -1,6 +1,7 @@
 //! Meshes of the command line: the content of a file, and the selection of movable vertices.
 
 pub(crate) mod conversion;
+mod depths;
 pub(crate) mod destination;
 pub(crate) mod explain;
 mod fields;
@@ -18,6 +19,7 @@ mod surface;
 mod targets;
 mod walls;
 
+pub(crate) use depths::depths;
 pub(crate) use fields::InterpolatedFields;
 pub(crate) use fixed::{FixedBy, nothing_free};
 pub(crate) use mesh::LoadedMesh;

@@ -16,11 +16,12 @@ pub(crate) struct Profile {
     pub(crate) title: String,
     /// The metric by which runs for the solver smooth meshes; `None` if the default metric suits the solver.
     pub(crate) scheme: Option<Metric>,
-    /// The limits in the order of the file. A profile has at least one limit.
+    /// The limits in the order of the file, then the listed quantities, which have no range. A profile has at least one
+    /// limit.
     pub(crate) limits: Vec<Limit>,
 }
 
-/// Ranges of values of a quantity that are bad for a solver.
+/// Ranges of values of a quantity that are bad for a solver. A listed quantity has neither range.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "GivenLimit")]
 pub(crate) struct Limit {
@@ -50,7 +51,22 @@ struct GivenProfile {
     title: String,
     #[serde(default, deserialize_with = "metric")]
     scheme: Option<Metric>,
+    #[serde(default)]
+    listed: Vec<Listed>,
     limits: Vec<Limit>,
+}
+
+/// A quantity whose worst value is shown without a limit.
+#[derive(Deserialize)]
+#[serde(try_from = "String")]
+struct Listed(Quantity);
+
+impl TryFrom<String> for Listed {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        name.parse().map(Self).map_err(|problem| format!("listed: {problem}"))
+    }
 }
 
 /// The keys of a limit.
@@ -71,6 +87,18 @@ fn metric<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Metric>, 
 }
 
 impl Profile {
+    /// Returns the quantities that have limits.
+    pub(crate) fn limited(&self) -> impl Iterator<Item = Quantity> + '_ {
+        let limits =
+            self.limits.iter().filter(|limit| limit.warn.is_some() || limit.fail.is_some());
+        limits.map(|limit| limit.quantity)
+    }
+
+    /// Returns whether depths are necessary for a limit or a listed quantity.
+    pub(crate) fn needs_depths(&self) -> bool {
+        self.limits.iter().any(|limit| limit.quantity == Quantity::TimeStep)
+    }
+
     /// Parses the text of a file.
     ///
     /// # Errors
@@ -90,9 +118,12 @@ impl TryFrom<GivenProfile> for Profile {
     type Error = String;
 
     fn try_from(given: GivenProfile) -> Result<Self, String> {
-        let GivenProfile { name, title, scheme, limits } = given;
+        let GivenProfile { name, title, scheme, listed, mut limits } = given;
         if limits.is_empty() {
             return Err("a profile needs a limit, as in [[limits]]".into());
+        }
+        for Listed(quantity) in listed {
+            limits.push(Limit { quantity, warn: None, fail: None, source: String::new() });
         }
         Ok(Self { name, title, scheme, limits })
     }
@@ -155,6 +186,12 @@ mod tests {
             ("fail = \"< 20\"", "fails = \"< 20\"", 7, "unknown field `fails`"),
             ("warn = \"< 30\"\nfail = \"< 20\"\n", "", 4, "needs warn or fail"),
             ("acute", "round", 2, "scheme: no metric is called 'round'"),
+            (
+                "scheme = \"acute\"",
+                "listed = [\"depth\"]",
+                2,
+                "listed: no measure is called 'depth'",
+            ),
             ("name = \"ours\"\n", "", 1, "missing field `name`"),
             ("\"< 20\"", "20", 7, "expected a string"),
             ("\"< 20\"", "\"< twenty\"", 4, "fail of min-angle: 'twenty' is not a number"),

@@ -6,7 +6,7 @@ use gpu_smooth::Metric;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use crate::limits::{Part, Threshold};
+use crate::limits::{Part, Quantity, Threshold};
 use crate::profiles::{Limit, Profile};
 use crate::report::quantities::{Finding, Quantities, Worst, written};
 use crate::report::reasons::{Reason, reasons};
@@ -46,6 +46,8 @@ pub(crate) struct LimitReport {
     /// The parts of the mesh in the range of `warn`, which includes the range of `fail`; `None` without such a range.
     warn: Option<Finding>,
     fail: Option<Finding>,
+    /// The worst part by a listed quantity, which has neither range.
+    listed: Option<Finding>,
 }
 
 /// Widths of the columns in front of the numbers, in characters.
@@ -59,12 +61,17 @@ impl ProfileReport {
             limit: limit.clone(),
             warn: limit.warn.as_ref().map(|range| quantities.finding(range)),
             fail: limit.fail.as_ref().map(|range| quantities.finding(range)),
+            listed: (limit.warn.is_none() && limit.fail.is_none())
+                .then(|| quantities.finding(&Threshold::none(limit.quantity))),
         };
+        // A listed quantity that no part has, such as the time step without depths, has no line.
+        let is_shown =
+            |limit: &LimitReport| limit.listed.as_ref().is_none_or(|listed| listed.total > 0);
         Self {
             name: profile.name.clone(),
             title: profile.title.clone(),
             scheme: profile.scheme,
-            limits: profile.limits.iter().map(compared).collect(),
+            limits: profile.limits.iter().map(compared).filter(is_shown).collect(),
             reasons: reasons(profile, quantities),
         }
     }
@@ -82,8 +89,10 @@ impl ProfileReport {
         for limit in &self.limits {
             let _ = write!(text, "\n{}{}", limit.ranges(), limit.numbers());
             if let Some(worst) = limit.worst() {
-                let value = written(limit.limit.quantity, worst.value);
-                let _ = write!(text, "  {value}, {}", worst.place);
+                let quantity = limit.limit.quantity;
+                let value = written(quantity, worst.value);
+                let unit = if quantity == Quantity::TimeStep { quantity.unit() } else { "" };
+                let _ = write!(text, "  {value}{unit}, {}", worst.place);
             }
         }
         self.explained(&text)
@@ -156,6 +165,11 @@ impl LimitReport {
         self.fail.as_ref().map_or(0, |fail| fail.count)
     }
 
+    /// Returns the verdict in a word, `listed` for a quantity without a limit.
+    pub(crate) fn judged(&self) -> &'static str {
+        if self.listed.is_some() { "listed" } else { self.verdict().name() }
+    }
+
     pub(crate) fn verdict(&self) -> Verdict {
         match (self.failed(), self.warned()) {
             (0, 0) => Verdict::Good,
@@ -164,8 +178,12 @@ impl LimitReport {
         }
     }
 
+    fn finding(&self) -> Option<&Finding> {
+        self.fail.as_ref().or(self.warn.as_ref()).or(self.listed.as_ref())
+    }
+
     fn worst(&self) -> Option<&Worst> {
-        self.fail.as_ref().or(self.warn.as_ref())?.worst.as_ref()
+        self.finding()?.worst.as_ref()
     }
 
     fn ranges(&self) -> String {
@@ -175,6 +193,9 @@ impl LimitReport {
     }
 
     fn numbers(&self) -> String {
+        if self.listed.is_some() {
+            return " ".repeat(Self::HEAD.len());
+        }
         format!("{:>9}{:>9}  {:<7}", self.warned(), self.failed(), self.verdict().name())
     }
 
@@ -190,6 +211,9 @@ impl LimitReport {
                 }
                 Verdict::Warn | Verdict::Good => warn.sentence(is_plain),
             },
+            (None, None) => {
+                self.listed.as_ref().map(|listed| listed.worst_of_all(is_plain)).unwrap_or_default()
+            }
             (only, None) | (None, only) => {
                 only.as_ref().map(|finding| finding.sentence(is_plain)).unwrap_or_default()
             }
@@ -203,11 +227,11 @@ impl LimitReport {
             object.insert("value".into(), json!(value));
             object
         });
-        let total = self.fail.as_ref().or(self.warn.as_ref()).map(|finding| finding.total);
+        let total = self.finding().map(|finding| finding.total);
         json!({
             "quantity": quantity.name(), "warn": range(warn), "fail": range(fail), "source": source,
             quantity.part().noun(false): total, "warned": self.warned(), "failed": self.failed(),
-            "verdict": self.verdict().name(), "worst": worst,
+            "verdict": self.judged(), "worst": worst,
         })
     }
 }

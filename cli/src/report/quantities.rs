@@ -1,12 +1,15 @@
 //! The parts of a mesh with values in the range of a threshold.
 
 use std::cell::OnceCell;
+use std::f64::consts::PI;
 
 use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
 use gpu_smooth::topology::signed_area;
 
+use crate::error::CliError;
 use crate::limits::{Part, Quantity, Threshold};
 use crate::load::LoadedMesh;
+use crate::load::remarks::degrees;
 use crate::report::place::Place;
 use crate::terminal::numbers::fit8;
 
@@ -14,6 +17,8 @@ use crate::terminal::numbers::fit8;
 pub(crate) struct Quantities<'m> {
     file: &'m LoadedMesh,
     measured: &'m Measured<'m>,
+    /// The depth of each vertex, NaN without one; `None` if no quantity needs depths, or if the file has none.
+    depths: Option<Vec<f64>>,
     edges: OnceCell<Vec<InnerEdge>>,
     is_on_boundary: OnceCell<Vec<bool>>,
 }
@@ -46,8 +51,13 @@ struct Valued {
 
 impl<'m> Quantities<'m> {
     /// Borrows a mesh, and the measures of its triangles at positions before or after a run.
-    pub(crate) fn new(file: &'m LoadedMesh, measured: &'m Measured<'m>) -> Self {
-        Self { file, measured, edges: OnceCell::new(), is_on_boundary: OnceCell::new() }
+    /// `depths` are those of the vertices, if a quantity needs them.
+    pub(crate) fn new(
+        file: &'m LoadedMesh,
+        measured: &'m Measured<'m>,
+        depths: Option<Vec<f64>>,
+    ) -> Self {
+        Self { file, measured, depths, edges: OnceCell::new(), is_on_boundary: OnceCell::new() }
     }
 
     /// Returns the edges between two triangles.
@@ -58,6 +68,24 @@ impl<'m> Quantities<'m> {
     /// Returns the reason for which a triangle keeps an angle of 90 degrees or more; `None` if no reason is known.
     pub(crate) fn why_large(&self, triangle: usize) -> Option<WhyLarge> {
         self.measured.why_large(triangle)
+    }
+
+    /// Checks that the mesh has the data for a quantity.
+    ///
+    /// # Errors
+    /// Returns an input error for time steps if no vertex of the file has a positive depth.
+    pub(crate) fn check(&self, quantity: Quantity) -> Result<(), CliError> {
+        let is_wet = self.depths.iter().flatten().any(|&depth| depth > 0.0);
+        match quantity {
+            Quantity::TimeStep if !is_wet => {
+                let path = self.file.source.path().display();
+                let problem = "no vertex has a positive depth, which time-step needs";
+                Err(CliError::input(format!("{path}: {problem}")).with_remedy(
+                    "docs/quality.md lists the names and signs of depths; if z is data, add --z data",
+                ))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Counts the parts with a value in the range of a threshold, and locates the worst part.
@@ -115,6 +143,17 @@ impl<'m> Quantities<'m> {
                 let holes = topology.boundary_loops().into_iter().filter(is_hole);
                 holes.map(|hole| valued((hole[0] as usize, hole.len() as f64))).collect()
             }
+            Quantity::TimeStep => {
+                let Some(depths) = &self.depths else { return Vec::new() };
+                let in_degrees = self.file.chart().is_some() || degrees(self.file).is_some();
+                let points = self.measured.points();
+                let steps = topology.triangles().iter().enumerate().map(|(t, corners)| {
+                    let depth = corners.iter().map(|&v| depths[v as usize]).fold(0.0, f64::max);
+                    let corners = corners.map(|v| points[v as usize]);
+                    (t, altitude(corners, in_degrees) / (GRAVITY * depth).sqrt())
+                });
+                steps.filter(|(_, step)| step.is_finite()).map(valued).collect()
+            }
             Quantity::Neighbors => {
                 let is_on_boundary = self.is_on_boundary();
                 let is_counted = |&(v, count): &(usize, usize)| {
@@ -151,6 +190,25 @@ impl<'m> Quantities<'m> {
     }
 }
 
+/// Acceleration of gravity, in m/s².
+const GRAVITY: f64 = 9.81;
+
+/// Length of a degree of latitude in meters, on a sphere of the Earth's mean radius of 6,371 km.
+const DEGREE: f64 = 6_371_000.0 * PI / 180.0;
+
+/// Returns the least altitude of a triangle in the unit of its corners, without a sign; in meters if the corners are
+/// longitudes and latitudes in degrees.
+fn altitude(corners: [[f64; 2]; 3], in_degrees: bool) -> f64 {
+    let latitude = corners.iter().map(|corner| corner[1] / 3.0).sum::<f64>();
+    let lengths =
+        if in_degrees { [DEGREE * latitude.to_radians().cos(), DEGREE] } else { [1.0; 2] };
+    let [p, q, r] = corners;
+    let to = |from: [f64; 2], to: [f64; 2]| [0, 1].map(|i| (to[i] - from[i]) * lengths[i]);
+    let [u, v, w] = [to(p, q), to(p, r), to(q, r)];
+    let longest = [u, v, w].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
+    (u[0] * v[1] - u[1] * v[0]).abs() / longest
+}
+
 /// Returns the value of a measure of edges for an edge between two triangles.
 pub(crate) fn of_edge(measure: Measure, edge: &InnerEdge) -> f64 {
     match measure {
@@ -171,15 +229,29 @@ impl Finding {
         };
         match worst {
             None => counted,
-            Some(Worst { place, value }) => {
-                let (quantity, value) = (threshold.quantity, written(threshold.quantity, *value));
-                let unit = match (quantity.unit(), is_plain) {
-                    ("°", true) => " deg",
-                    (unit, _) => unit,
-                };
-                format!("{counted}; the worst is {place}, {quantity} {value}{unit}")
+            Some(worst) => {
+                format!("{counted}; the worst is {}", worst.described(threshold.quantity, is_plain))
             }
         }
+    }
+
+    /// Returns a sentence on the worst value of all. Values have no sign for degrees if `is_plain` is true.
+    pub(crate) fn worst_of_all(&self, is_plain: bool) -> String {
+        let quantity = self.threshold.quantity;
+        let Some(worst) = &self.worst else { return String::new() };
+        let parts = quantity.part().noun(false);
+        format!("the worst of {} {parts} is {}", self.total, worst.described(quantity, is_plain))
+    }
+}
+
+impl Worst {
+    fn described(&self, quantity: Quantity, is_plain: bool) -> String {
+        let value = written(quantity, self.value);
+        let unit = match (quantity.unit(), is_plain) {
+            ("°", true) => " deg",
+            (unit, _) => unit,
+        };
+        format!("{}, {quantity} {value}{unit}", self.place)
     }
 }
 

@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use gpu_smooth::measure::{Change, Measured};
 use gpu_smooth::{Quality, Topology};
+use mesh_io::PointField;
 
 use crate::error::CliError;
-use crate::load::{InterpolatedFields, conversion, streams};
+use crate::load::{InterpolatedFields, conversion, depths, streams};
 use crate::report::{
     Certificate, FileHash, ProfileChange, ProfileReport, Quantities, SpacingReport, TargetReport,
 };
@@ -66,23 +67,26 @@ pub(super) fn measure(
     for note in interpolated.iter().chain(&omission_remark).chain(left_over) {
         follow.remark(note);
     }
-    let profile = profile(input, topology, &outcome.points)?;
+    let profile = profile(input, topology, &outcome.points, fields.fields())?;
     Ok(Measures { after, change, spacing, target, profile, interpolated, at: Instant::now() })
 }
 
-/// Compares a mesh with the limits of its profile before and after a run, with the vertices at `points` after the run.
+/// Compares a mesh with the limits of its profile before and after a run, with the vertices at `points` and the data of
+/// vertices in `fields` after the run.
 fn profile(
     input: &Input<'_>,
     topology: &Topology<'_>,
     points: &[[f64; 2]],
+    fields: &[PointField],
 ) -> Result<Option<ProfileChange>, CliError> {
     let (request, file) = (input.request(), input.file);
     let Some(profile) = &request.profile else { return Ok(None) };
-    let report = |points: &[[f64; 2]]| -> Result<ProfileReport, CliError> {
+    let report = |points: &[[f64; 2]], fields: &[PointField]| -> Result<ProfileReport, CliError> {
         let measured = Measured::on(request.surface, points, topology)?;
-        Ok(ProfileReport::new(profile, &Quantities::new(file, &measured)))
+        let depths = if profile.needs_depths() { depths(file, fields)? } else { None };
+        Ok(ProfileReport::new(profile, &Quantities::new(file, &measured, depths)))
     };
-    let (before, after) = (report(&file.mesh().points)?, report(points)?);
+    let (before, after) = (report(&file.mesh().points, &[])?, report(points, fields)?);
     Ok(Some(ProfileChange { before, after }))
 }
 

@@ -198,6 +198,94 @@ fn a_profile_has_a_line_for_each_limit_and_fails_with_the_mesh() {
     assert_eq!(quality(&folder, &["--for", "own.toml", "-q"]).clean().out, "");
 }
 
+/// A right triangle with legs of 30 and 40, thus an altitude of 24, at depths of 0 to 9.81, and a dry triangle.
+const SHORE: &str =
+    "shore\n2 4\n1 0 0 9.81\n2 30 0 0\n3 0 40 -1\n4 30 40 -3\n1 3 1 2 3\n2 3 2 4 3\n0\n0\n0\n0\n";
+
+#[test]
+fn the_time_step_is_the_altitude_over_the_speed_of_waves_at_the_largest_depth() {
+    let folder = Folder::new(&[("in.14", SHORE)]);
+    // sqrt(9.81 * 9.81) is 9.81.
+    let step = 24.0 / 9.81;
+    let run = quality(&folder, &["--threshold", "time-step<3", "--summary"]);
+    assert_eq!(run.code, Some(1));
+    let told = "in.14: failed: 1 of 1 triangles have time-step<3; the worst is triangle 1 (in.14:7), time-step 2.4465 s";
+    assert_holds(&run.out, &[told]);
+    let table = quality(&folder, &["--for", "adcirc"]).clean().out;
+    let line = table.lines().find(|line| line.starts_with("time-step")).unwrap();
+    let words: Vec<&str> = line.split_whitespace().collect();
+    assert_eq!(words.join(" "), "time-step 2.4465 s, triangle 1 (in.14:7)");
+    let summary = quality(&folder, &["--for", "telemac", "--summary"]).clean().out;
+    let told =
+        "in.14: listed: the worst of 1 triangles is triangle 1 (in.14:7), time-step 2.4465 s";
+    assert_holds(&summary, &[told]);
+    let value = |folder: &Folder, options: &str| {
+        let told = folder.line(&format!("quality {options} --for adcirc --json")).clean().out;
+        let told: Value = serde_json::from_str(&told).unwrap();
+        let limits = told["profile"]["limits"].as_array().unwrap().clone();
+        limits.into_iter().find(|limit| limit["quantity"] == "time-step")
+    };
+    let listed = value(&folder, "in.14").unwrap();
+    assert_eq!((&listed["verdict"], &listed["triangles"]), (&"listed".into(), &1.into()));
+    assert!(listed["warn"].is_null() && listed["fail"].is_null());
+    assert!((number(&listed["worst"]["value"]) / step - 1.0).abs() < 1e-12);
+    // Heights of a 2dm have the other sign.
+    folder.line("convert in.14 in.2dm").clean();
+    let of_2dm = value(&folder, "in.2dm").unwrap();
+    assert!((number(&of_2dm["worst"]["value"]) / step - 1.0).abs() < 1e-12);
+    // In degrees at 60 degrees of latitude, a degree of longitude is half as long as one of latitude. The triangle has legs
+    // of 0.008 and 0.003 degrees, in meters as 4 to 3.
+    let degrees = SHORE.replace("1 0 0 ", "1 10 60 ").replace("2 30 0 ", "2 10.008 60 ");
+    let degrees =
+        degrees.replace("3 0 40 ", "3 10 60.003 ").replace("4 30 40 ", "4 10.008 60.003 ");
+    std::fs::write(folder.path("degrees.14"), degrees).unwrap();
+    let of_degrees = value(&folder, "degrees.14 --surface sphere").unwrap();
+    let meters = 0.0024 * 6_371_000.0 * std::f64::consts::PI / 180.0;
+    assert!((number(&of_degrees["worst"]["value"]) * 9.81 / meters - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn a_mesh_without_depths_has_no_time_step() {
+    let folder = small();
+    folder
+        .line("quality in --threshold time-step<1")
+        .refused(&["in.node: no vertex has a positive depth", "--z data"]);
+    let table = folder.line("quality in --for adcirc");
+    assert!(!table.out.contains("time-step"), "{}", table.out);
+    let own = "name = \"ours\"\n[[limits]]\nquantity = \"time-step\"\nwarn = \"< 1\"\n";
+    std::fs::write(folder.path("own.toml"), own).unwrap();
+    // Depths of the wrong sign.
+    std::fs::write(folder.path("dry.14"), SHORE.replace("9.81", "-9.81")).unwrap();
+    folder
+        .line("quality dry.14 --threshold time-step<1")
+        .refused(&["no vertex has a positive depth", "signs"]);
+    folder.line("quality in --for own.toml").refused(&["no vertex has a positive depth"]);
+}
+
+#[test]
+fn a_run_lists_the_time_step_at_the_depths_that_it_writes() {
+    // The vertex inside moves to the middle. Its depth is interpolated or kept.
+    let deep = QUADRILATERAL.replace("5 2 0.5 1", "5 2 0.5 100");
+    let folder = Folder::new(&[("in.14", &deep)]);
+    let step = |state: &Value| {
+        let limits = state["limits"].as_array().unwrap();
+        let listed = limits.iter().find(|limit| limit["quantity"] == "time-step").unwrap();
+        number(&listed["worst"]["value"])
+    };
+    for options in ["", "--interpolate depth"] {
+        let line =
+            format!("in.14 out.14 --force --engine cpu --for adcirc --report r.json {options}");
+        let run = folder.line(&line);
+        assert_holds(&run.out, &["\ntime-step "]);
+        let profile = &folder.json("r.json")["profile"];
+        for (mesh, state) in [("in.14", "before"), ("out.14", "after")] {
+            let told = folder.line(&format!("quality {mesh} --for adcirc --json")).out;
+            let told: Value = serde_json::from_str(&told).unwrap();
+            assert_eq!(step(&told["profile"]), step(&profile[state]), "{mesh} {options}");
+        }
+    }
+}
+
 #[test]
 fn a_profile_that_cannot_be_read_is_refused_with_its_line_or_with_the_names() {
     let folder = quadrilateral();

@@ -126,7 +126,7 @@ fn summary(qualities: &[MeshQuality], style: &Style) -> String {
     for quality in qualities {
         let path = quality.path.display();
         for limit in quality.profile.iter().flat_map(|profile| &profile.limits) {
-            let verdict = limit.verdict().name();
+            let verdict = limit.judged();
             lines.push(format!("{path}: {verdict}: {}", limit.sentence(style.plain)));
         }
         if quality.findings.is_empty() && quality.profile.is_none() {

@@ -14,10 +14,11 @@ use mesh_io::{Group, Groups, SourceLocation};
 
 use crate::args::QualityArgs;
 use crate::commands::quality::worst::{WorstPart, worst};
+use crate::limits::Quantity;
 use crate::load::explain::{self, BadTriangleReport};
-use crate::load::lay_out;
 use crate::load::remarks;
 use crate::load::streams::read;
+use crate::load::{depths, lay_out};
 use crate::profiles::Profile;
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
@@ -135,7 +136,14 @@ impl MeshQuality {
             })
         });
         let page = page.transpose()?;
-        let quantities = Quantities::new(&file, &measured);
+        let limited = args.threshold.iter().map(|threshold| threshold.quantity);
+        let limited: Vec<Quantity> =
+            limited.chain(profile.into_iter().flat_map(Profile::limited)).collect();
+        let needs_depths =
+            limited.contains(&Quantity::TimeStep) || profile.is_some_and(Profile::needs_depths);
+        let depths = if needs_depths { depths(&file, &[])? } else { None };
+        let quantities = Quantities::new(&file, &measured, depths);
+        limited.iter().try_for_each(|&quantity| quantities.check(quantity))?;
         let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
         Ok(Self {
             path: path.to_owned(),
