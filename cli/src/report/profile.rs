@@ -76,6 +76,18 @@ impl ProfileReport {
         }
     }
 
+    /// Returns the name of the profile.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Returns the numbers of parts of the mesh beyond limits that fail, and beyond limits that warn alone, summed over all
+    /// limits.
+    pub(crate) fn beyond(&self) -> [usize; 2] {
+        let sum = |count: fn(&LimitReport) -> usize| self.limits.iter().map(count).sum();
+        [sum(LimitReport::failed), sum(LimitReport::warned)]
+    }
+
     /// Returns the worst verdict of all limits.
     pub(crate) fn verdict(&self) -> Verdict {
         self.limits.iter().map(LimitReport::verdict).max().unwrap_or(Verdict::Good)

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command, CommandFactory};
+use gpu_smooth::Metric;
 
 use crate::args::Cli;
 use crate::request::command_line::checked;
@@ -24,6 +25,12 @@ const ROWS: [&[&str]; 9] = [
     &["--target", "keep-shape"],
     &["--target", "keep-shape", "--improve-worst"],
     &["--target", "keep-shape", "--improve-worst=min-angle"],
+];
+
+/// Further options for a profile that needs acute triangles, which the targets of [`ROWS`] do not make.
+const ROWS_OF_ACUTE: [&[&str]; 2] = [
+    &["--target", "keep-size", "--scheme", "acute-size"],
+    &["--target", "keep-size", "--scheme", "acute-size", "--improve-worst"],
 ];
 
 /// A run to try.
@@ -60,9 +67,14 @@ impl TrialRun {
             let mut request = SmoothRequest::new(checked(words.clone())?.smooth)
                 .map_err(|error| Cli::command().error(ErrorKind::ArgumentConflict, error))?;
             request.extent = RunExtent::Unwritten;
-            Ok(Self { options, words, request })
+            Ok::<_, clap::Error>(Self { options, words, request })
         };
-        ROWS.into_iter().map(row).collect()
+        let mut runs = ROWS.into_iter().map(row).collect::<Result<Vec<_>, _>>()?;
+        let profile = runs.first().and_then(|run| run.request.profile.as_ref());
+        if profile.is_some_and(|profile| profile.scheme == Some(Metric::Acute)) {
+            runs.extend(ROWS_OF_ACUTE.into_iter().map(row).collect::<Result<Vec<_>, _>>()?);
+        }
+        Ok(runs)
     }
 }
 

@@ -65,6 +65,39 @@ fn each_mesh_ends_as_in_a_run_by_itself_and_a_bad_one_stops_none() {
 }
 
 #[test]
+fn each_mesh_has_a_line_with_what_is_beyond_the_limits_of_a_solver() {
+    let folder = several();
+    let run = folder
+        .line("a.1.node b.msh --out-dir out --for dflowfm --engine cpu --report r.json")
+        .clean();
+    let table = run.out.split("\n\nlimits of dflowfm").nth(1).unwrap();
+    let rows: Vec<Vec<&str>> =
+        table.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(rows[0], ["failed", "after", "warned", "after", "verdict"]);
+    let report = folder.json("r.json");
+    let list =
+        json(&folder.line("a.1.node b.msh --out-dir again --for dflowfm --engine cpu --json"));
+    for (i, row) in rows[1..3].iter().enumerate() {
+        let profile = &report["meshes"][i]["report"]["profile"];
+        let sum = |state: &str, key: &str| {
+            let limits = profile[state]["limits"].as_array().unwrap().iter();
+            limits.map(|limit| limit[key].as_u64().unwrap()).sum::<u64>()
+        };
+        let columns =
+            [("failed", "before"), ("failed", "after"), ("warned", "before"), ("warned", "after")];
+        for (column, (key, state)) in (1..).zip(columns) {
+            assert_eq!(row[column], sum(state, key).to_string());
+            assert_eq!(list[i][format!("{key}_{state}")], sum(state, key));
+        }
+        assert!(sum("before", "warned") > sum("after", "warned"));
+        assert_eq!(row[5], profile["after"]["verdict"]);
+        assert_eq!(list[i]["verdict"], row[5]);
+    }
+    let plain = folder.line("a.1.node --out-dir plain --engine cpu").clean().out;
+    assert!(!plain.contains("limits of"), "{plain}");
+}
+
+#[test]
 fn the_table_is_printed_as_csv_and_json_too() {
     let folder = several();
     let line = format!("{ALL} --out-dir out --engine cpu");

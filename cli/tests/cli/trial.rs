@@ -116,6 +116,56 @@ fn no_row_is_marked_where_every_run_makes_an_angle_sharper_or_moves_nothing() {
 }
 
 #[test]
+fn the_best_row_for_a_solver_has_the_fewest_parts_beyond_its_limits() {
+    let folder = small();
+    let tried = tried(&folder, "in.node --for dflowfm");
+    let counts = |profile: &Value| {
+        let limits = profile["limits"].as_array().unwrap().iter();
+        limits.fold([0, 0], |[failed, warned], limit| {
+            let count = |key: &str| limit[key].as_u64().unwrap();
+            [failed + count("failed"), warned + count("warned")]
+        })
+    };
+    let rows = tried["runs"].as_array().unwrap();
+    assert_eq!(rows.len(), 11);
+    let options = best(&tried);
+    let of_best = counts(&rows.iter().find(|row| row["best"] == true).unwrap()["profile"]);
+    for row in rows {
+        let [failed, warned] = counts(&row["profile"]);
+        assert!(
+            of_best[0] < failed || of_best[0] == failed && of_best[1] as f64 <= 1.1 * warned as f64,
+            "{row:#}"
+        );
+    }
+    assert!(counts(&tried["profile"]) > of_best, "{options:?}");
+    let command = tried["command"].as_str().unwrap();
+    assert_holds(command, &["--for dflowfm"]);
+    assert_holds(
+        tried["rule"].as_str().unwrap(),
+        &["with the fewest failed and about the fewest warned (within 10 %)"],
+    );
+    // The command of the best row gives the counts of the row.
+    folder
+        .line(&format!("{} --report r.json", command.strip_prefix("gpu-smooth ").unwrap()))
+        .clean();
+    assert_eq!(counts(&folder.json("r.json")["profile"]["after"]), of_best);
+    let text = folder.line("try in.node --for dflowfm --engine cpu").clean().out;
+    assert_holds(
+        &text,
+        &[
+            "failed  warned ",
+            "beyond the limits of dflowfm\n",
+            " with the fewest failed and about the fewest warned (within 10 %)",
+        ],
+    );
+    let row = text.lines().find(|line| line.starts_with("* ")).unwrap();
+    let words: Vec<&str> = row.split_whitespace().skip(1 + options.len().max(1)).collect();
+    let skipped = if options.is_empty() { 1 } else { 0 };
+    assert_eq!(words[skipped..skipped + 2], of_best.map(|count| count.to_string()));
+    folder.line("try in.node --for none.toml").refused(&["none.toml: "]);
+}
+
+#[test]
 fn a_mesh_without_bad_triangles_is_not_tried() {
     let folder = small();
     let run = folder.line("try in --only-bad 1000 --engine cpu");

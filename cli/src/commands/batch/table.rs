@@ -9,7 +9,7 @@ use unicode_width::UnicodeWidthStr;
 use crate::commands::batch::entry::{BatchStatus, Entry};
 use crate::error::CliError;
 use crate::render::columns::{left, quoted, right, shortened};
-use crate::report::{Report, versioned_json};
+use crate::report::{ProfileChange, Report, versioned_json};
 use crate::terminal::numbers::fit8;
 
 /// Widths of the columns of numbers. A narrow terminal does not show the first two.
@@ -70,10 +70,35 @@ pub(crate) fn text(entries: &[Entry], seconds: f64, terminal: Option<usize>) -> 
             }
         }
     }
+    text += &limits(entries, &widths);
     let _ = write!(text, "\n\n{}", counts(entries));
     let vertices: usize =
         entries.iter().filter_map(|entry| Some(entry.status.report()?.mesh.vertices)).sum();
     let _ = write!(text, "; {vertices} vertices in {seconds:.3} s");
+    text
+}
+
+/// Returns a table of the parts beyond the limits of a profile, before and after, with a row for each smoothed mesh; empty
+/// without a profile.
+fn limits(entries: &[Entry], widths: &Widths) -> String {
+    let mut text = String::new();
+    for entry in entries {
+        let Some(profile) = entry.status.report().and_then(|report| report.profile.as_ref()) else {
+            continue;
+        };
+        if text.is_empty() {
+            let title = left(&format!("limits of {}", profile.after.name()), widths.name);
+            text = format!(
+                "\n\n{title}{:>9}{:>9}{:>9}{:>9}  verdict",
+                "failed", "after", "warned", "after"
+            );
+        }
+        let (before, after) = (profile.before.beyond(), profile.after.beyond());
+        let name = left(&shortened(&name(entry), widths.name), widths.name);
+        let verdict = profile.after.verdict().name();
+        let [failed, warned] = [0, 1].map(|k| format!("{:>9}{:>9}", before[k], after[k]));
+        let _ = write!(text, "\n{name}{failed}{warned}  {verdict}");
+    }
     text
 }
 
@@ -129,7 +154,7 @@ pub(crate) fn failures(entries: &[Entry]) -> Option<CliError> {
 }
 
 /// Columns of CSV, and keys of JSON.
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 23] = [
     "mesh",
     "out",
     "status",
@@ -145,6 +170,11 @@ const KEYS: [&str; 18] = [
     "min_angle_after",
     "worst_imr_before",
     "worst_imr_after",
+    "failed_before",
+    "failed_after",
+    "warned_before",
+    "warned_after",
+    "verdict",
     "engine",
     "seconds",
     "problem",
@@ -158,6 +188,17 @@ fn values(entry: &Entry) -> [Value; KEYS.len()] {
         Some(report) => {
             let Report { mesh, before, after, .. } = report;
             let base = report.base();
+            let profile = report.profile.as_ref();
+            let [failed, warned] = [0, 1].map(|k| {
+                let counts = |profile: &ProfileChange| {
+                    [&profile.before, &profile.after].map(|state| state.beyond()[k])
+                };
+                profile
+                    .map(counts)
+                    .map_or([Value::Null, Value::Null], |counts| counts.map(Value::from))
+            });
+            let [failed_before, failed_after] = failed;
+            let [warned_before, warned_after] = warned;
             [
                 json!(mesh.vertices),
                 json!(mesh.triangles),
@@ -171,13 +212,18 @@ fn values(entry: &Entry) -> [Value; KEYS.len()] {
                 json!(after.min_angle),
                 json!(before.worst_imr),
                 json!(after.worst_imr),
+                failed_before,
+                failed_after,
+                warned_before,
+                warned_after,
+                json!(profile.map(|profile| profile.after.verdict().name())),
                 json!(report.engine.kind),
                 json!(report.seconds.total),
             ]
         }
     };
     let mut all =
-        head.into_iter().chain::<[Value; 14]>(numbers).chain([json!(entry.status.problem())]);
+        head.into_iter().chain::<[Value; 19]>(numbers).chain([json!(entry.status.problem())]);
     std::array::from_fn(|_| all.next().unwrap_or_default())
 }
 

@@ -36,6 +36,8 @@ pub(super) struct Gains {
     /// Values that 19 of 20 vertices do not exceed: the move in lengths of an edge, and the factor of sizes.
     moved: f64,
     size: f64,
+    /// Numbers of parts of the mesh beyond limits that fail and that warn, before and after; `None` without a profile.
+    beyond: Option<[[usize; 2]; 2]>,
 }
 
 impl From<&Report> for Gains {
@@ -46,15 +48,20 @@ impl From<&Report> for Gains {
             worst_imr: [report.before.worst_movable_imr, report.after.worst_movable_imr],
             moved: report.change.moved.p95,
             size: report.change.size.p95,
+            beyond: (report.profile.as_ref())
+                .map(|profile| [profile.before.beyond(), profile.after.beyond()]),
         }
     }
 }
 
 impl Gains {
-    /// Returns whether the run makes the mesh better in some way, and the worst element no worse: neither the least angle
-    /// nor the worst imr.
+    /// Returns whether the run has fewer parts of the mesh beyond limits, or makes the mesh better in some way and the worst
+    /// element no worse: neither the least angle nor the worst imr.
     pub(super) fn helps(self) -> bool {
-        let Self { f, least_angle: angle, worst_imr: imr, .. } = self;
+        let Self { f, least_angle: angle, worst_imr: imr, beyond, .. } = self;
+        if beyond.is_some_and(|[before, after]| after < before) {
+            return true;
+        }
         let keeps_worst =
             angle[1] >= angle[0] * (1.0 - ROUNDING) && imr[1] <= imr[0] * (1.0 + ROUNDING);
         keeps_worst && (f[1] < f[0] || angle[1] > angle[0] || imr[1] < imr[0])
@@ -65,6 +72,22 @@ impl Gains {
         let lowers = self.f[1] <= self.f[0];
         lowers && self.moved <= MAX_MOVE && self.size <= MAX_SIZE_CHANGE
     }
+}
+
+/// Leaves out the runs with more parts of the mesh beyond limits than others that help: the rest has the fewest that fail, and
+/// of these runs about the fewest that warn (within 10 %). Leaves all runs without a profile.
+pub(super) fn within_limits(runs: &[Option<Gains>]) -> Vec<Option<Gains>> {
+    let helping = || runs.iter().flatten().filter(|gains| gains.helps());
+    let beyond = || helping().filter_map(|gains| gains.beyond.map(|[_, after]| after));
+    let fewest = beyond().map(|[failed, _]| failed).min();
+    let of_fewest = beyond().filter(|[failed, _]| Some(*failed) == fewest);
+    let warned = of_fewest.map(|[_, warned]| warned).min().unwrap_or_default() as f64;
+    let is_left = |gains: &Gains| {
+        gains.beyond.is_none_or(|[_, [failed, warns]]| {
+            Some(failed) == fewest && warns as f64 <= ABOUT_LEAST * warned
+        })
+    };
+    runs.iter().map(|gains| gains.filter(is_left)).collect()
 }
 
 /// Returns the best of the runs that help, or `None` if no run helps. A run that failed is `None` in the list. Of the runs
@@ -98,7 +121,7 @@ mod tests {
 
     fn gains(f: f64, worst_imr: f64, moved: f64, size: f64) -> Option<Gains> {
         let worst_imr = [2.0, worst_imr];
-        Some(Gains { f: [1.3, f], least_angle: [20.0; 2], worst_imr, moved, size })
+        Some(Gains { f: [1.3, f], least_angle: [20.0; 2], worst_imr, moved, size, beyond: None })
     }
 
     fn row(runs: &[Option<Gains>]) -> Option<(usize, bool)> {
@@ -126,6 +149,27 @@ mod tests {
         assert_eq!(row(&[None, far, near]), Some((2, false)));
         assert_eq!(row(&[far, near, nearly]), Some((2, false)));
         assert_eq!(row(&[None, None]), None);
+    }
+
+    #[test]
+    fn the_best_run_for_a_solver_has_the_fewest_parts_beyond_its_limits() {
+        let with = |gains: Option<Gains>, beyond| {
+            gains.map(|g| Gains { beyond: Some([[9, 9], beyond]), ..g })
+        };
+        let (good, better) = (gains(1.2, 1.5, 0.2, 1.1), gains(1.2, 1.4, 0.2, 1.1));
+        let chosen = |runs: &[Option<Gains>]| row(&within_limits(runs)).map(|best| best.0);
+        assert_eq!(chosen(&[with(better, [1, 0]), with(good, [0, 90]), None]), Some(1));
+        assert_eq!(chosen(&[with(better, [0, 12]), with(good, [0, 10])]), Some(1));
+        assert_eq!(chosen(&[with(good, [0, 10]), with(better, [0, 11])]), Some(1));
+        // A run with fewer parts beyond limits helps, though its worst element is worse.
+        assert_eq!(
+            chosen(&[with(gains(1.2, 2.5, 0.2, 1.1), [0, 3]), with(better, [1, 3])]),
+            Some(0)
+        );
+        // A run that does not help sets no bound.
+        let unlike = with(gains(1.3, 2.1, 0.1, 1.0), [9, 9]);
+        assert_eq!(chosen(&[unlike, with(good, [9, 9])]), Some(1));
+        assert_eq!(chosen(&[good, better]), Some(1));
     }
 
     #[test]

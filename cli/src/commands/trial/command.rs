@@ -28,6 +28,10 @@ pub(crate) fn run(args: &TryArgs, verbosity: Verbosity) -> Result<(), CliError> 
         )
         .with_remedy("Name a file"));
     }
+    if let Some(profile) = &args.profile {
+        // The message on a damaged file is not that of a wrong command line.
+        profile.read()?;
+    }
     let runs = TrialRun::of_command_line(&args.mesh).unwrap_or_else(|error| error.exit());
     let Some(first) = runs.first() else { return Ok(()) };
     interrupt::watch(verbosity.quiet);
@@ -53,7 +57,7 @@ pub(crate) fn run(args: &TryArgs, verbosity: Verbosity) -> Result<(), CliError> 
     }
     let gains: Vec<_> =
         tried.iter().map(|tried| tried.result.as_ref().ok().map(Into::into)).collect();
-    let best: Option<Best> = best::best(&gains);
+    let best: Option<Best> = best::best(&best::within_limits(&gains));
     if args.json {
         tell::say_data(&format!("{:#}", table::json(args, &tried, best)));
     } else {

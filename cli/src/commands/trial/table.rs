@@ -8,15 +8,26 @@ use crate::args::TryArgs;
 use crate::commands::trial::best::{ABOUT_LEAST, Best, Gains, MAX_MOVE, MAX_SIZE_CHANGE};
 use crate::commands::trial::tried::Tried;
 use crate::render::columns::{left, right};
-use crate::report::{MeshReport, QualityReport, Report, change_of, spacing_change};
+use crate::report::{MeshReport, ProfileReport, QualityReport, Report, change_of, spacing_change};
 use crate::request::TrialRun;
 use crate::terminal::numbers::sig6;
 use crate::terminal::shell_words;
 
-const COLUMNS: [&str; 8] =
-    ["f imr", "min angle", "max angle", "worst imr", "sizes", "moved", "spacing", "s"];
-const WIDTHS: [usize; 8] = [10, 10, 10, 10, 11, 8, 11, 8];
-const EMPTY: [&str; 8] = [""; 8];
+/// The first two columns are shown with a profile alone.
+const COLUMNS: [&str; 10] = [
+    "failed",
+    "warned",
+    "f imr",
+    "min angle",
+    "max angle",
+    "worst imr",
+    "sizes",
+    "moved",
+    "spacing",
+    "s",
+];
+const WIDTHS: [usize; 10] = [8, 8, 10, 10, 10, 10, 11, 8, 11, 8];
+const EMPTY: [&str; 10] = [""; 10];
 
 /// Returns the options of a run as a row of the table names them.
 pub(super) fn label(run: &TrialRun) -> String {
@@ -44,9 +55,11 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
         "{}: {format}, {vertices} vertices ({free} free), {triangles} triangles\n\n",
         args.mesh.display()
     );
-    let mut line = |name: &str, fields: [&str; 8]| {
+    let profile = first.profile.as_ref();
+    let skipped = if profile.is_some() { 0 } else { 2 };
+    let mut line = |name: &str, fields: [&str; 10]| {
         text += &left(name, width);
-        for (field, width) in fields.iter().zip(WIDTHS) {
+        for (field, width) in fields.iter().zip(WIDTHS).skip(skipped) {
             text += &right(field, width);
         }
         text.truncate(text.trim_end().len());
@@ -54,7 +67,8 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
     };
     line("", COLUMNS);
     let [f, least, greatest, imr] = quality(&first.before);
-    line("  before", [&f, &least, &greatest, &imr, "", "", "", ""]);
+    let [failed, warned] = beyond(profile.map(|profile| &profile.before));
+    line("  before", [&failed, &warned, &f, &least, &greatest, &imr, "", "", "", ""]);
     for (row, tried) in tried.iter().enumerate() {
         let is_best = best.is_some_and(|best| best.row == row);
         let name = format!("{} {}", if is_best { "*" } else { " " }, label(tried.run));
@@ -65,8 +79,11 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
                 let moved = format!("{:.2}", report.change.moved.p95);
                 let spacing = spacing_change(&report.spacing).map(change_of).unwrap_or_default();
                 let seconds = format!("{:.3}", report.seconds.total);
-                let fields = [&f, &least, &greatest, &imr, &sizes, &moved, &spacing, &seconds];
-                line(&name, fields.map(String::as_str));
+                let [failed, warned] =
+                    beyond(report.profile.as_ref().map(|profile| &profile.after));
+                let fields =
+                    [failed, warned, f, least, greatest, imr, sizes, moved, spacing, seconds];
+                line(&name, fields.each_ref().map(String::as_str));
             }
             Err(_) => line(&format!("{name} failed"), EMPTY),
         }
@@ -81,12 +98,16 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
         "\nworst imr: of the triangles with a free vertex. sizes, moved: 19 of 20 vertices change the size of the elements\n\
          around them, and move in lengths of an edge, by no more\n"
     );
+    if let Some(profile) = profile {
+        let name = profile.before.name();
+        let _ = writeln!(text, "failed, warned: the parts of the mesh beyond the limits of {name}");
+    }
     if spacing_change(&first.spacing).is_some() {
         text += "spacing: no vertex next to a wall with flat triangles changes its distance from the wall by more\n";
     }
     match best {
         Some(best) => {
-            let _ = writeln!(text, "* the best row: {}\n", rule(best));
+            let _ = writeln!(text, "* the best row: {}\n", rule(best, profile.is_some()));
             let _ = write!(text, "{}", command(tried[best.row].run));
         }
         None => {
@@ -102,30 +123,42 @@ fn quality(report: &QualityReport) -> [String; 4] {
     [sig6(report.f["imr"]), least, greatest, sig6(report.worst_movable_imr)]
 }
 
+/// Returns the numbers of parts of the mesh beyond limits that fail and that warn; empty without a profile.
+fn beyond(profile: Option<&ProfileReport>) -> [String; 2] {
+    profile.map(|profile| profile.beyond().map(|count| count.to_string())).unwrap_or_default()
+}
+
 /// The sentence for runs none of which is the best.
 const NO_BEST: &str =
     "no row helps: each makes the least angle or the worst imr worse, or leaves the mesh as it was";
 
-/// Returns the rule by which a run is the best.
-fn rule(best: Best) -> String {
+/// Returns the rule by which a run is the best. `with_limits` says whether the runs have a profile.
+fn rule(best: Best, with_limits: bool) -> String {
     let sizes = change_of(MAX_SIZE_CHANGE);
-    match best.keeps_mesh {
-        true => format!(
-            "of the rows that lower f and make neither the least angle nor the worst imr worse, with sizes up to {sizes} and\n  \
-             moved up to {MAX_MOVE}, the row with the least worst imr, and of rows within 1 % of that, the row with the least f"
+    let near = format!("{:.0} %", 100.0 * (ABOUT_LEAST - 1.0));
+    let last = "the row with the least worst imr, and of rows within 1 % of that,\n  the row with the least f";
+    let keeping = format!("with sizes up to {sizes} and moved up to {MAX_MOVE}");
+    match (with_limits, best.keeps_mesh) {
+        (true, true) => format!(
+            "of the rows with the fewest failed and about the fewest warned (within {near}) that lower f,\n  {keeping}, {last}"
         ),
-        false => format!(
-            "no row lowers f, makes neither the least angle nor the worst imr worse, and has sizes up to {sizes} and moved up to\n  \
-             {MAX_MOVE}. Of the rows that make neither worse, with about the least moved (within {:.0} %), the row with the least\n  \
-             worst imr, and of rows within 1 % of that, the row with the least f",
-            100.0 * (ABOUT_LEAST - 1.0)
+        (true, false) => format!(
+            "no row with the fewest failed and about the fewest warned (within {near}) lowers f\n  {keeping}. \
+             Of these rows with about the least moved (within {near}),\n  {last}"
+        ),
+        (false, true) => format!(
+            "of the rows that lower f and make neither the least angle nor the worst imr worse,\n  {keeping}, {last}"
+        ),
+        (false, false) => format!(
+            "no row lowers f and makes neither the least angle nor the worst imr worse\n  {keeping}. \
+             Of the rows that make neither worse, with about the least moved (within {near}),\n  {last}"
         ),
     }
 }
 
 /// Returns the runs as JSON, with the rule and the command line of the best run.
 pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> Value {
-    let mut before = Value::Null;
+    let (mut before, mut profile) = (Value::Null, None);
     let mut rows = Vec::new();
     for (row, tried) in tried.iter().enumerate() {
         let mut object = json!({
@@ -136,6 +169,10 @@ pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> V
         match &tried.result {
             Ok(report) => {
                 before = json!(report.before);
+                if let Some(change) = &report.profile {
+                    profile = Some(json!(change.before));
+                    object["profile"] = json!(change.after);
+                }
                 object["after"] = json!(report.after);
                 object["change"] = json!(report.change);
                 object["spacing"] = json!(report.spacing);
@@ -149,11 +186,17 @@ pub(super) fn json(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> V
         }
         rows.push(object);
     }
-    json!({
+    let mut value = json!({
         "file": args.mesh.display().to_string(),
         "before": before,
         "runs": rows,
-        "rule": best.map_or(NO_BEST.to_owned(), |best| rule(best).replace("\n  ", " ")),
+        "rule": best.map_or(NO_BEST.to_owned(), |best| {
+            rule(best, profile.is_some()).replace("\n  ", " ")
+        }),
         "command": best.map(|best| command(tried[best.row].run)),
-    })
+    });
+    if let Some(profile) = profile {
+        value["profile"] = profile;
+    }
+    value
 }
