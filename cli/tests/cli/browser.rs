@@ -320,6 +320,25 @@ fn a_browser_draws_a_large_mesh_by_each_measure() {
 
 #[test]
 #[ignore = "needs a browser: GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored"]
+fn a_browser_colors_edges_between_pale_triangles() {
+    let folder = Folder::new(&[]);
+    let plate = plate_path().to_str().unwrap();
+    let counts = |measure: &str| {
+        folder
+            .line(&format!("quality {plate} --picture-measure {measure} --html page.html"))
+            .clean();
+        let drawn = picture(&folder, "", LIGHT, [1200, 1100]);
+        // Pale, and the ends of the scale.
+        [[236, 238, 241], [68, 1, 84], [253, 231, 37]].map(|color| drawn.count(|p| p == color))
+    };
+    let [pale, bad, good] = counts("orthogonality");
+    assert!(pale > 20_000 && bad > 2000 && good > 2000, "{pale} {bad} {good}");
+    // Blended pixels may have the pale color by chance.
+    assert!(counts("shape")[0] < 100);
+}
+
+#[test]
+#[ignore = "needs a browser: GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored"]
 fn a_browser_draws_quadrilaterals_in_gray() {
     let folder = Folder::new(&[("in.off", super::html::MIXED)]);
     folder.line("quality in.off --html page.html").clean();
