@@ -398,3 +398,18 @@ fn targets_keep_the_rows_of_quadrilaterals() {
         assert!((ratio - 1.0).abs() < 0.1, "vertex {v}: {ratio}");
     }
 }
+
+#[test]
+fn default_runs_keep_small_angles_and_the_worst_corner() {
+    for lattice in [squares(9), mixed(9)] {
+        for most in [0.1, 0.2, 0.3] {
+            let mesh = perturbed(&lattice, most);
+            let outcome = run(&mesh, &Options::default());
+            let topology = Topology::new(&mesh).unwrap();
+            let of = |points: &[[f64; 2]]| Quality::of(points, &topology).unwrap();
+            let [before, after] = [of(&mesh.points), of(&outcome.points)];
+            assert!(after.min_angle >= before.min_angle.min(60.0) - 1e-6, "{before:?} {after:?}");
+            assert!(after.worst_imr <= before.worst_imr * (1.0 + 1e-8), "{before:?} {after:?}");
+        }
+    }
+}

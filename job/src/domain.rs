@@ -25,6 +25,8 @@ pub struct Domain {
     interface_edges: Vec<[u32; 2]>,
     has_free_interfaces: bool,
     has_free_lines: bool,
+    /// Whether vertices of quadrilaterals move.
+    moves_quadrilaterals: bool,
     /// Vertices that neither move nor slide. In any order, with repeats.
     anchored: Vec<u32>,
     /// Edges of lines, between which vertices slide. Empty after [`free_lines`](Self::free_lines).
@@ -80,8 +82,8 @@ pub struct Curves {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct NearBad {
-    /// Number of bad triangles.
-    pub triangles: usize,
+    /// Number of bad triangles and quadrilaterals.
+    pub elements: usize,
     /// Number of free vertices afterwards and before.
     pub free: [usize; 2],
 }
@@ -112,6 +114,40 @@ impl Domain {
             has_unread_pairs: *has_unread_pairs,
             ..Self::with(points, triangles, vertices.clone(), file.interface_vertices())
         }
+    }
+
+    /// Makes the domain of a file as [`of_file`](Self::of_file) does, but with its quadrilaterals in the mesh. Their vertices may
+    /// move, unless they are fixed for another reason. A quadrilateral that lists a vertex twice is no element, and its vertices
+    /// stay.
+    pub fn of_elements(file: &MeshFile) -> Self {
+        let Constraints { vertices, anchored, .. } = file.constraints_beside_quadrilaterals();
+        let (interfaces, interface_edges) = file.interfaces_of_elements();
+        let of_triangles = Self::of_file(file);
+        let is_proper = |corners: &&[u32; 4]| (1..4).all(|k| !corners[..k].contains(&corners[k]));
+        let quadrilaterals = file.quadrilaterals().iter().filter(is_proper).copied().collect();
+        let Mesh { points, triangles, .. } = of_triangles.mesh;
+        let Self { mesh, interfaces, between_regions, .. } =
+            Self::with(points, triangles, vertices, interfaces);
+        Self {
+            mesh: Mesh { quadrilaterals, ..mesh },
+            interfaces,
+            between_regions,
+            interface_edges,
+            anchored,
+            moves_quadrilaterals: true,
+            ..of_triangles
+        }
+    }
+
+    /// Returns whether vertices of quadrilaterals move.
+    pub fn moves_quadrilaterals(&self) -> bool {
+        self.moves_quadrilaterals
+    }
+
+    /// Returns the vertices inside the mesh at which elements of different regions meet, also those fixed for another reason,
+    /// ascending. Empty after [`free_interfaces`](Self::free_interfaces).
+    pub fn between_regions(&self) -> &[u32] {
+        &self.between_regions
     }
 
     /// Makes the domain of points and triangles. The vertices of `lines` and inner vertices between different `regions` of the
@@ -285,24 +321,25 @@ impl Domain {
         Ok(())
     }
 
-    /// Fixes the vertices that are far from bad triangles, those with an inverse mean ratio above `limit`. Vertices within
-    /// `rings` rings of triangles around a bad triangle are near. Without a bad triangle, [`Self::layers`] has all vertices, so
+    /// Fixes the vertices that are far from bad elements, those with an inverse mean ratio above `limit`. Vertices within
+    /// `rings` rings of elements around a bad element are near. Without a bad element, [`Self::layers`] has all vertices, so
     /// that runs end before the first sweep.
     ///
     /// # Errors
     /// [`MeshError`] if the mesh cannot be smoothed; see [`Topology::new`].
     pub fn fix_far_from_bad(&mut self, limit: f64, rings: u32) -> Result<NearBad, MeshError> {
         let topology = Topology::new(self.mesh())?;
-        let bad = select::triangles_above(&self.mesh().points, &topology, limit);
+        let bad = select::corners_above(&self.mesh().points, &topology, limit);
         let near = select::vertices_near(&topology, &bad, rings);
         let is_free = |vertex: &&u32| topology.free()[**vertex as usize];
         let free = [near.iter().filter(is_free).count(), topology.free_count()];
+        let elements = topology.elements(&bad).len();
         drop(topology);
         match bad.is_empty() {
             true => self.keeps_all = true,
             false => self.fix_all_but(&near)?,
         }
-        Ok(NearBad { triangles: bad.len(), free })
+        Ok(NearBad { elements, free })
     }
 
     /// Returns whether all vertices stay, because [`Self::fix_far_from_bad`] has found no bad triangle.
@@ -365,6 +402,15 @@ impl Domain {
             let vertices = (0..points.len() as u32).collect();
             return Ok(Layers { vertices, ..Layers::default() });
         }
+        // Quadrilaterals that move are elements of the topology.
+        let kept: Vec<Vec<u32>>;
+        let faces = match self.moves_quadrilaterals {
+            true => {
+                kept = faces.iter().filter(|face| face.len() != 4).cloned().collect();
+                &kept
+            }
+            false => faces,
+        };
         keep.find(&Elements { topology, points, faces, lines }, walls)
     }
 

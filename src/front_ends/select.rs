@@ -10,43 +10,49 @@
 //!     ..Mesh::default(),
 //! };
 //! let topology = Topology::new(&mesh)?;
-//! let bad = select::triangles_above(&mesh.points, &topology, 3.0);
+//! let bad = select::corners_above(&mesh.points, &topology, 3.0);
 //! assert_eq!(bad, [1]);
 //! assert_eq!(select::vertices_near(&topology, &bad, 0), [1, 2, 4]);
 //! assert_eq!(select::vertices_near(&topology, &bad, 1), [0, 1, 2, 3, 4]);
 //! # Ok::<(), gpu_smooth::MeshError>(())
 //! ```
 
+use crate::mesh::Element;
 use crate::metric::{Corner, Ideal};
 use crate::topology::Topology;
 
-/// Returns the triangles with an inverse mean ratio above `limit`, ascending. The inverse mean ratio is 1 for an
-/// equilateral triangle, and infinite for a triangle that is flat or inverted or has a coordinate that is not finite.
+/// Returns the [corners](Topology::corners) with an inverse mean ratio above `limit`, ascending: triangles, and corners of
+/// quadrilaterals. The inverse mean ratio is 1 for an equilateral triangle and for a corner of a square, and infinite for a
+/// corner that is flat or inverted or has a coordinate that is not finite.
 ///
-/// The ratio is also infinite if `points` lacks a vertex of the triangle.
-pub fn triangles_above(points: &[[f64; 2]], topology: &Topology<'_>, limit: f64) -> Vec<u32> {
-    let is_above = |corners: &[u32; 3]| inverse_mean_ratio(points, corners) > limit;
-    let triangles = (0..).zip(topology.triangles());
-    triangles.filter(|(_, corners)| is_above(corners)).map(|(triangle, _)| triangle).collect()
+/// The ratio is also infinite if `points` lacks a vertex of the corner.
+pub fn corners_above(points: &[[f64; 2]], topology: &Topology<'_>, limit: f64) -> Vec<u32> {
+    let corners = 0..topology.corners().len() as u32;
+    corners.filter(|&corner| inverse_mean_ratio(points, topology, corner) > limit).collect()
 }
 
-/// Returns the largest inverse mean ratio of a triangle, 1 at best.
+/// Returns the largest inverse mean ratio of a triangle or of a corner of a quadrilateral, 1 at best.
 pub fn worst(points: &[[f64; 2]], topology: &Topology<'_>) -> f64 {
-    let ratios = topology.triangles().iter().map(|corners| inverse_mean_ratio(points, corners));
-    ratios.fold(1.0, f64::max)
+    let corners = 0..topology.corners().len() as u32;
+    corners.map(|corner| inverse_mean_ratio(points, topology, corner)).fold(1.0, f64::max)
 }
 
-fn inverse_mean_ratio(points: &[[f64; 2]], corners: &[u32; 3]) -> f64 {
+fn inverse_mean_ratio(points: &[[f64; 2]], topology: &Topology<'_>, corner: u32) -> f64 {
+    let corners = topology.corners()[corner as usize];
     let [Some(p), Some(q), Some(r)] = corners.map(|vertex| points.get(vertex as usize)) else {
         return f64::INFINITY;
     };
     let to = |end: &[f64; 2]| [end[0] - p[0], end[1] - p[1]];
-    let ratio = Corner { a: to(q), b: to(r), ideal: Ideal::of_area(1.0) }.inverse_mean_ratio();
+    let corner_of_triangle = Corner { a: to(q), b: to(r), ideal: Ideal::of_area(1.0) };
+    let ratio = match topology.element(corner) {
+        Element::Triangle(_) => corner_of_triangle.inverse_mean_ratio(),
+        Element::Quadrilateral(_) => corner_of_triangle.of_right_angle().inverse_mean_ratio(),
+    };
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }
 
-/// Returns the vertices of the given triangles and of `rings` rings of triangles around them, ascending. Indices of
-/// nonexistent triangles are ignored.
+/// Returns the vertices of the given [corners](Topology::corners) and of `rings` rings of elements around them, ascending.
+/// Indices of nonexistent corners are ignored.
 pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> Vec<u32> {
     let all = topology.corners();
     let mut found = vec![false; topology.free().len()];
@@ -76,8 +82,8 @@ pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> 
     indices(&found)
 }
 
-/// Returns the vertices whose triangles are all in `triangles`, ascending. Vertices that no triangle uses are not
-/// included.
+/// Returns the vertices whose elements are all in `triangles`, ascending. Vertices that no triangle uses, and vertices of
+/// quadrilaterals, are not included.
 pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
     let all = topology.triangles();
     let mut chosen = vec![false; all.len()];
@@ -93,6 +99,7 @@ pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
     for (corners, _) in all.iter().zip(&chosen).filter(|(_, chosen)| !**chosen) {
         corners.iter().for_each(|&vertex| inside[vertex as usize] = false);
     }
+    topology.quadrilaterals().flatten().for_each(|vertex| inside[vertex as usize] = false);
     indices(&inside)
 }
 
@@ -171,12 +178,12 @@ mod tests {
         mesh.points[2][0] = 2.9;
         let topology = Topology::new(&mesh).unwrap();
         // The move makes two triangles of this vertex nearly equilateral.
-        assert_eq!(triangles_above(&mesh.points, &topology, 1.15), [0, 1, 3, 4, 6, 7, 8, 9]);
-        assert_eq!(triangles_above(&mesh.points, &topology, 1.2), [4]);
-        assert_eq!(triangles_above(&mesh.points, &topology, 6.0), []);
+        assert_eq!(corners_above(&mesh.points, &topology, 1.15), [0, 1, 3, 4, 6, 7, 8, 9]);
+        assert_eq!(corners_above(&mesh.points, &topology, 1.2), [4]);
+        assert_eq!(corners_above(&mesh.points, &topology, 6.0), []);
         let worst = worst(&mesh.points, &topology);
         // Edges (0.1, 0), (0.1, 1) and (0, 1): (0.01 + 1.01 + 1) / (4 √3 · 0.05).
         assert!((worst - 2.02 / (4.0 * 3f64.sqrt() * 0.05)).abs() < 1e-12, "{worst}");
-        assert_eq!(triangles_above(&[], &topology, 1e300).len(), 10);
+        assert_eq!(corners_above(&[], &topology, 1e300).len(), 10);
     }
 }

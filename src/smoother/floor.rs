@@ -1,5 +1,5 @@
-//! The floor under the worst triangles: a run with default options leaves no smaller angle and no larger inverse mean
-//! ratio than the mesh before the run had, among the triangles that can move and in the coordinates as stored.
+//! The floor under the worst elements: a run with default options leaves no smaller angle and no larger inverse mean
+//! ratio than the mesh before the run had, among the elements that can move and in the coordinates as stored.
 
 use glam::DVec2;
 
@@ -81,11 +81,7 @@ impl Smoother<'_> {
             && options.guard == usual.guard
             && options.improve_worst != Some(WorstBy::Altitude)
             && options.stopping.goal().is_none();
-        if !is_usual
-            || self.problem.has_quadrilaterals()
-            || self.problem.targets().is_some()
-            || self.field.is_some()
-        {
+        if !is_usual || self.problem.targets().is_some() || self.field.is_some() {
             return None;
         }
         let movable = Movable::new(self);
@@ -95,7 +91,7 @@ impl Smoother<'_> {
 }
 
 impl Movable<'_> {
-    /// Returns the worst shapes of the triangles that can move, for each of some lists of points.
+    /// Returns the worst shapes of the corners that can move, for each of some lists of points.
     pub(super) async fn worst_shapes<const LISTS: usize>(
         &self,
         lists: [&[[f64; 2]]; LISTS],

@@ -224,6 +224,13 @@ impl<'m> Topology<'m> {
         self.corners.element_count()
     }
 
+    /// Returns the elements of corners that ascend, each element once.
+    pub fn elements(&self, corners: &[u32]) -> Vec<Element> {
+        let mut elements: Vec<Element> = corners.iter().map(|&c| self.element(c)).collect();
+        elements.dedup();
+        elements
+    }
+
     /// Returns the element of a corner.
     pub fn element(&self, corner: u32) -> Element {
         self.corners.element(corner)

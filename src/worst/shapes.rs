@@ -6,6 +6,10 @@ use crate::topology::predicates::orientation;
 /// 2√3: a triangle's inverse mean ratio is the sum of its squared edge lengths, divided by 2√3 times twice its area.
 const TWO_SQRT_3: f64 = 3.464_101_615_137_754_6;
 
+/// Cotangent of 60 degrees. Larger angles of quadrilaterals are not small: a triangle has no larger smallest angle, and rectangles
+/// of unequal sides become better by their inverse mean ratios only if their right angles change.
+const NO_SMALL_ANGLE: f64 = 0.577_350_269_189_625_8;
+
 /// Share by which a shape may be beyond a limit. On a regular mesh, a vertex may have to stay on a straight line, which
 /// penalties approach only up to rounding. The least angle of right isosceles triangles may fall by 3e-8 degrees.
 const ROUNDING: f64 = 1e-9;
@@ -37,7 +41,8 @@ impl WorstShapes {
     ) -> Self {
         let Products { dots, squares, sides, doubled_area } = Products::of(surface, points, corner);
         if is_right {
-            let (cotangent, imr) = (dots[0] / doubled_area, sides / (2.0 * doubled_area));
+            let imr = sides / (2.0 * doubled_area);
+            let cotangent = (dots[0] / doubled_area).max(NO_SMALL_ANGLE);
             return if doubled_area > 0.0 && imr > 0.0 {
                 Self { cotangent, imr }
             } else {

@@ -23,7 +23,7 @@ pub(crate) use cli::{
 };
 pub(crate) use fields::FieldArgs;
 pub(crate) use form::FormArgs;
-pub(crate) use movable::MoveArgs;
+pub(crate) use movable::{MoveArgs, Quadrilaterals};
 pub(crate) use picture::PictureArgs;
 pub(crate) use quality::QualityArgs;
 pub(crate) use read::ReadArgs;

@@ -19,7 +19,8 @@ const LISTED: usize = 10;
 /// Compares two files. Returns an error if the files differ in anything but movable vertices and
 /// interpolated data.
 pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
-    let (reading, settings) = (ReadRequest::from(&args.reading), args.options.settings());
+    let settings = args.options.settings();
+    let reading = ReadRequest::from(&args.reading).moving(&args.moving);
     let (surface, z) = (settings.surface, ThirdCoordinate::of(settings, &args.fields.interpolate));
     let movable = MovableRequest::of(args.moving, settings);
     let holds_lines = !movable.free_lines;
@@ -67,7 +68,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
             )),
         });
     }
-    let Proof { moved, held, bad, .. } = &proof;
+    let Proof { moved, held, bad, concave, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);
     problems.extend(proof.problem());
     let mut list = Vec::new();
@@ -79,6 +80,10 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
     {
         list.push(format!("{place}: triangle {}", place.id));
     }
+    let concave = concave.iter().map(|bad| bad.quadrilateral).take(LISTED);
+    for place in after.source.quadrilateral_locations(concave).values() {
+        list.push(format!("{place}: quadrilateral {}", place.id));
+    }
     if !held.is_empty() {
         let hint = match slide {
             None => "if they slid along lines in a run with --slide, give --slide here too",
@@ -88,7 +93,15 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
             }
         };
         list.push(hint.to_owned());
-        let of_lines = &before.source.constraints().vertices;
+        let is_held = |vertex: &u32| held.binary_search(vertex).is_ok();
+        let of_quadrilaterals = before.source.quadrilaterals().as_flattened();
+        if !before.domain.moves_quadrilaterals() && of_quadrilaterals.iter().any(is_held) {
+            list.push(
+                "if they moved in a run with --quadrilaterals move, give --quadrilaterals move here too"
+                    .to_owned(),
+            );
+        }
+        let of_lines = &before.constraints().vertices;
         if holds_lines && of_lines.iter().any(|vertex| held.binary_search(vertex).is_ok()) {
             list.push(
                 "if they moved in a run with --free-lines, give --free-lines here too".to_owned(),
@@ -150,9 +163,16 @@ fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof, is_converted:
     };
     let farthest = moved.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     let triangles = after.mesh().triangles.len();
+    let elements = match (triangles, after.mesh().quadrilaterals.len()) {
+        (triangles, 0) => format!("none of {triangles} triangles is inverted or flat"),
+        (0, count) => format!("each of {count} quadrilaterals is convex"),
+        (triangles, count) => format!(
+            "none of {triangles} triangles is inverted or flat, and each of {count} quadrilaterals is convex"
+        ),
+    };
     let mut text = format!(
         "{}: {} of {} vertices have moved\n\
-         {slides}every vertex that must stay has the same {}; none of {triangles} triangles is inverted or flat",
+         {slides}every vertex that must stay has the same {}; {elements}",
         if is_converted { "the triangles are the same" } else { "only coordinates differ" },
         moved.len(),
         after.source.points().len(),

@@ -22,7 +22,8 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     let outputs = Outputs::of_mesh(MeshOutput::Converted);
     let (read, out) = (slice::from_ref(&args.input), &args.output);
     outputs.check(read, slice::from_ref(out))?;
-    let file = streams::read(&args.input, &(&args.reading).into())?;
+    let reading = ReadRequest::from(&args.reading).taking_quadrilaterals();
+    let file = streams::read(&args.input, &reading)?;
     let (_, converted) = form.checked(&file, format, out)?;
     for note in conversion::notes(&converted) {
         tell::note(show.quiet, &note);
@@ -30,14 +31,18 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     let written = conversion::destinations(&converted, out)?;
     outputs.check_files(&file.paths(), &written, ErrorKind::Output)?;
     if !args.force {
-        check_overwrite(&file, &converted, &written, (&args.reading).into())?;
+        check_overwrite(&file, &converted, &written, reading)?;
     }
     conversion::write(&converted, out)?;
     if !show.quiet && !streams::is_standard(out) {
         let mesh = file.mesh();
-        let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
+        let vertices = mesh.points.len();
+        let elements = match mesh.triangles.len() {
+            0 => format!("{} quadrilaterals", mesh.quadrilaterals.len()),
+            triangles => format!("{triangles} triangles"),
+        };
         tell::say(&format!(
-            "{vertices} vertices and {triangles} triangles, with all else that {format} holds of {}: {}",
+            "{vertices} vertices and {elements}, with all else that {format} holds of {}: {}",
             file.source.format(),
             out.display()
         ));

@@ -8,11 +8,12 @@ use crate::args::GroupsArgs;
 use crate::error::CliError;
 use crate::load::streams::read;
 use crate::render::columns::{left, right};
+use crate::request::ReadRequest;
 use crate::terminal::tell;
 
 /// Prints the groups of a mesh with the names that options accept, and the names of vertex data.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
-    let file = read(&args.mesh, &(&args.reading).into())?;
+    let file = read(&args.mesh, &ReadRequest::from(&args.reading).taking_quadrilaterals())?;
     let groups = file.source.groups()?;
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {

@@ -77,13 +77,13 @@ impl FixedBy {
             own.for_each(|v| _ = reasons[v as usize].get_or_insert(reason));
         };
         let all = 0..count as u32;
-        let (constraints, domain) = (file.source.constraints(), &file.domain);
+        let (constraints, domain) = (file.constraints(), &file.domain);
         give(Self::NoTriangle, &mut all.clone().filter(|&v| topology.star(v).is_empty()));
         give(Self::Boundary, &mut topology.boundary_edges().into_iter().flatten());
         give(Self::Element, &mut constraints.anchored.iter().copied());
         let held = constraints.vertices.iter().filter(|_| domain.holds_lines());
         give(Self::Line, &mut held.copied());
-        let between = file.source.interface_vertices();
+        let between = file.interface_vertices();
         give(Self::Interface, &mut between.into_iter().filter(|_| domain.holds_interfaces()));
         give(Self::Layer, &mut layers.iter().copied());
         give(Self::Option, &mut file.mesh().fixed.iter().copied());

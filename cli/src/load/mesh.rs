@@ -8,7 +8,8 @@ use gpu_smooth::{
     options::Precision,
 };
 use gpu_smooth_job::{Domain, smoother_precision};
-use mesh_io::{MeshFile, PointField, SourceLocation, WriteError};
+use mesh_io::{Constraints, MeshFile, PointField, SourceLocation, WriteError};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -26,6 +27,27 @@ impl LoadedMesh {
     /// Makes the mesh of a file. Constrained vertices and vertices between regions are fixed.
     pub(crate) fn new(source: MeshFile) -> Self {
         Self { domain: Domain::of_file(&source), source }
+    }
+
+    /// Makes the mesh of a file as [`new`](Self::new) does, but with its quadrilaterals, whose vertices may move.
+    pub(crate) fn of_elements(source: MeshFile) -> Self {
+        Self { domain: Domain::of_elements(&source), source }
+    }
+
+    /// Returns the constraints of the file, without those on vertices of quadrilaterals that may move.
+    pub(crate) fn constraints(&self) -> Cow<'_, Constraints> {
+        match self.domain.moves_quadrilaterals() {
+            true => Cow::Owned(self.source.constraints_beside_quadrilaterals()),
+            false => Cow::Borrowed(self.source.constraints()),
+        }
+    }
+
+    /// Returns the vertices inside the mesh at which elements of different regions meet, ascending.
+    pub(crate) fn interface_vertices(&self) -> Vec<u32> {
+        match self.domain.moves_quadrilaterals() {
+            true => self.source.interfaces_of_elements().0,
+            false => self.source.interface_vertices(),
+        }
     }
 
     /// Returns the paths of all files that were read.
@@ -124,7 +146,7 @@ impl LoadedMesh {
         let mut is_held = vec![false; self.mesh().points.len()];
         self.mesh().fixed.iter().for_each(|&v| is_held[v as usize] = true);
         self.domain.interface_vertices().iter().for_each(|&v| is_held[v as usize] = false);
-        let mut between = self.source.interface_vertices();
+        let mut between = self.interface_vertices();
         between.retain(|&v| is_held[v as usize]);
         between
     }

@@ -199,10 +199,11 @@ impl<'f> SelectionResolver<'f> {
         }
         if let Some(NearBad { above: limit, rings }) = request.near_bad {
             let points = &self.file.mesh().points;
-            let bad = select::triangles_above(points, &self.topology, limit);
+            let bad = select::corners_above(points, &self.topology, limit);
             if bad.is_empty() {
                 let worst = sig6(select::worst(points, &self.topology));
-                let text = format!("no triangle has an imr above {limit}; the worst has {worst}");
+                let kind = self.kind();
+                let text = format!("no {kind} has an imr above {limit}; the worst has {worst}");
                 choice.nothing_to_do = Some(text);
                 return Ok(lists);
             }
@@ -214,12 +215,17 @@ impl<'f> SelectionResolver<'f> {
             };
             choice.notes.push(format!(
                 "--only-bad {limit}: {} above it; {within} {}",
-                counted(bad.len(), "triangle"),
+                counted(self.topology.elements(&bad).len(), self.kind()),
                 may_move(free, of_all)
             ));
             lists.push(vertices);
         }
         Ok(lists)
+    }
+
+    /// Returns the word for an element of the mesh.
+    fn kind(&self) -> &'static str {
+        if self.file.mesh().quadrilaterals.is_empty() { "triangle" } else { "element" }
     }
 
     fn groups(&self) -> Result<Groups, CliError> {

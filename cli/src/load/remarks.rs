@@ -15,7 +15,8 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
         _ => true,
     };
     let told = file.source.remarks().iter().filter(is_told);
-    let mut remarks: Vec<String> = told.map(with_effect).collect();
+    let moves = file.domain.moves_quadrilaterals();
+    let mut remarks: Vec<String> = told.map(|remark| with_effect(remark, moves)).collect();
     match file.domain.interface_vertices().len() {
         0 => {}
         _ if slides => {}
@@ -29,9 +30,13 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
     remarks
 }
 
-/// Adds to a remark of the file how a run treats the affected vertices.
-fn with_effect(remark: &Remark) -> String {
+/// Adds to a remark of the file how a run treats the affected vertices. `moves` tells whether vertices of quadrilaterals may
+/// move.
+fn with_effect(remark: &Remark, moves: bool) -> String {
     match remark {
+        Remark::OtherElements { name, .. } if moves && name.starts_with("quadrilateral") => {
+            format!("{remark}, whose vertices may move")
+        }
         Remark::OtherElements { count, .. } => {
             let their = if *count == 1 { "its" } else { "their" };
             format!("{remark}: {their} vertices stay fixed")

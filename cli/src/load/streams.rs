@@ -12,19 +12,34 @@ use crate::terminal::tell;
 
 /// Reads a mesh from a file, or from standard input if the path is `-`.
 pub(crate) fn read(path: &Path, request: &ReadRequest) -> Result<LoadedMesh, CliError> {
-    read_source(path, request).map(LoadedMesh::new)
+    let source = read_source(path, request)?;
+    Ok(match request.takes_quadrilaterals {
+        true => LoadedMesh::of_elements(source),
+        false => LoadedMesh::new(source),
+    })
 }
 
 fn read_source(path: &Path, request: &ReadRequest) -> Result<MeshFile, CliError> {
     let options = request.options();
     if !is_standard(path) {
-        return Ok(options.read(path)?);
+        let taking_all = options.clone().allow_quadrilaterals_alone(true);
+        return options.read(path).map_err(|error| match taking_all.read(path) {
+            Ok(file) => quadrilaterals_alone(&file),
+            Err(_) => error.into(),
+        });
     }
     let mut bytes = Vec::new();
     std::io::stdin()
         .read_to_end(&mut bytes)
         .map_err(|error| CliError::input(format!("standard input: {error}")))?;
     Ok(options.from_bytes(Path::new("standard input"), bytes)?)
+}
+
+/// Returns the error for a mesh that has quadrilaterals and no triangle, for a command that takes them on request.
+fn quadrilaterals_alone(file: &MeshFile) -> CliError {
+    let (path, count) = (file.path().display(), file.quadrilaterals().len());
+    CliError::input(format!("{path}: {count} quadrilaterals, but no triangle"))
+        .with_remedy("Runs move the vertices of quadrilaterals by --quadrilaterals move, and keep them otherwise")
 }
 
 /// Returns whether a path denotes standard input or output.

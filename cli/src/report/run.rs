@@ -136,6 +136,11 @@ pub(crate) struct FaultReport {
     pub(crate) error: String,
 }
 
+/// Returns whether a number is 0.
+fn is_zero(number: &usize) -> bool {
+    *number == 0
+}
+
 #[derive(Serialize)]
 pub(crate) struct MeshReport {
     pub(crate) format: String,
@@ -144,6 +149,9 @@ pub(crate) struct MeshReport {
     pub(crate) output_format: Option<String>,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
+    /// Number of quadrilaterals whose vertices may move. Absent if there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub(crate) quadrilaterals: usize,
     pub(crate) free: usize,
     pub(crate) colors: usize,
 }

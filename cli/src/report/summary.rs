@@ -75,15 +75,13 @@ impl Report {
     /// Describes the size of the mesh, the engine, the scheme and the untangling.
     pub(crate) fn subject(&self) -> String {
         let mut text = String::new();
-        let MeshReport { vertices, triangles, free, colors, .. } = self.mesh;
+        let MeshReport { vertices, triangles, quadrilaterals, free, colors, .. } = self.mesh;
+        let elements = elements(triangles, quadrilaterals);
         if let Some(output_format) = &self.mesh.output_format {
             let _ = writeln!(text, "{} to {output_format}", self.mesh.format);
         }
         let s = if colors == 1 { "" } else { "s" };
-        let _ = writeln!(
-            text,
-            "{vertices} vertices ({free} free, {colors} color{s}), {triangles} triangles"
-        );
+        let _ = writeln!(text, "{vertices} vertices ({free} free, {colors} color{s}), {elements}");
         let on = self.engine.adapter.as_deref().unwrap_or("all cores");
         let _ = write!(text, "{} on {} ({on})", self.scheme, self.engine.kind);
         if let Some(reason) = &self.engine.reason {
@@ -403,6 +401,15 @@ pub(crate) fn change_of(factor: f64) -> String {
         _ if factor < 1e5 => format!("{factor:.1} times"),
         // A mesh with a nearly flat triangle has factors of many digits.
         _ => format!("{factor:.0e} times"),
+    }
+}
+
+/// Returns the numbers of triangles and of quadrilaterals that may move, each only if the mesh has some.
+pub(crate) fn elements(triangles: usize, quadrilaterals: usize) -> String {
+    match (triangles, quadrilaterals) {
+        (triangles, 0) => format!("{triangles} triangles"),
+        (0, count) => format!("{count} quadrilaterals"),
+        (triangles, count) => format!("{triangles} triangles, {count} quadrilaterals"),
     }
 }
 

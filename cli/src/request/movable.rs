@@ -46,8 +46,8 @@ impl MovableRequest {
         let rings = settings.rings_of_bad();
         let free_lines = settings.frees_lines;
         let near_bad = settings.only_bad.map(|above| NearBad { above, rings });
-        let MoveArgs { free_interfaces, fix, fix_vertices, fix_array, fix_box, only, keep_layers } =
-            args;
+        let MoveArgs { free_interfaces, fix, fix_vertices, fix_array, fix_box, .. } = args;
+        let MoveArgs { only, keep_layers, .. } = args;
         Self {
             free_interfaces,
             free_lines,

@@ -2,7 +2,7 @@
 
 use mesh_io::ReadOptions;
 
-use crate::args::ReadArgs;
+use crate::args::{MoveArgs, Quadrilaterals, ReadArgs};
 
 /// How meshes are read.
 #[derive(Clone)]
@@ -14,6 +14,8 @@ pub(crate) struct ReadRequest {
     pub(crate) allow_outside: bool,
     /// Name of the cell data that number the regions. `None` for the reader's choice.
     pub(crate) regions: Option<String>,
+    /// Whether quadrilaterals are elements of the mesh, whose vertices may move.
+    pub(crate) takes_quadrilaterals: bool,
 }
 
 impl ReadRequest {
@@ -23,6 +25,18 @@ impl ReadRequest {
             .weld(self.weld)
             .allow_outside(self.allow_outside)
             .regions(self.regions.clone())
+            .allow_quadrilaterals_alone(self.takes_quadrilaterals)
+    }
+
+    /// Returns the request with quadrilaterals as elements of the mesh.
+    pub(crate) fn taking_quadrilaterals(self) -> Self {
+        Self { takes_quadrilaterals: true, ..self }
+    }
+
+    /// Returns the request with quadrilaterals as elements of the mesh, if the options let their vertices move.
+    pub(crate) fn moving(self, args: &MoveArgs) -> Self {
+        let takes_quadrilaterals = args.quadrilaterals == Quadrilaterals::Move;
+        Self { takes_quadrilaterals, ..self }
     }
 
     /// Returns the options by which a file is read that a command may replace. Its cell data may have other names.
@@ -33,6 +47,11 @@ impl ReadRequest {
 
 impl From<&ReadArgs> for ReadRequest {
     fn from(args: &ReadArgs) -> Self {
-        Self { weld: args.weld, allow_outside: args.allow_outside, regions: args.regions.clone() }
+        Self {
+            weld: args.weld,
+            allow_outside: args.allow_outside,
+            regions: args.regions.clone(),
+            takes_quadrilaterals: false,
+        }
     }
 }

@@ -145,7 +145,13 @@ pub(super) fn set_up<'a>(
         true => OpenEngine::new(
             Backend::Cpu,
             Some(
-                "vertices slide on the CPU if the mesh is on a sphere or has no free vertex".into(),
+                match mesh.quadrilaterals.is_empty() {
+                    true => {
+                        "vertices slide on the CPU if the mesh is on a sphere or has no free vertex"
+                    }
+                    false => "a mesh with quadrilaterals is smoothed on the CPU",
+                }
+                .into(),
             ),
         ),
         false => taken,

@@ -1,7 +1,10 @@
 //! Comparison of two mesh files, to prove that they differ only by moved vertices.
 
 use crate::load::LoadedMesh;
-use gpu_smooth::{MeshError, Slide, Topology, topology::BadTriangle};
+use gpu_smooth::{
+    MeshError, Slide, Topology,
+    topology::{BadQuadrilateral, BadTriangle},
+};
 use mesh_io::Difference;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
@@ -26,6 +29,9 @@ pub(crate) struct Proof {
     pub(crate) coincident: usize,
     /// Inverted or flat triangles of the second file, by exact predicates.
     pub(crate) bad: Vec<BadTriangle>,
+    /// Corners of quadrilaterals of the second file that are not convex, by exact predicates. Empty unless vertices of
+    /// quadrilaterals may move.
+    pub(crate) concave: Vec<BadQuadrilateral>,
 }
 
 /// A mesh before or after a run, with its interpolated fields.
@@ -71,7 +77,8 @@ impl Proof {
         difference: Option<Difference>,
         slide: Option<&Slide>,
     ) -> Result<Self, MeshError> {
-        let (mut moved, mut held, mut bad) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut moved, mut held) = (Vec::new(), Vec::new());
+        let (mut bad, mut concave) = (Vec::new(), Vec::new());
         let (mut slid, mut pairs, mut coincident) = (0, 0, 0);
         if difference.is_none() {
             let topology = Topology::new(before.mesh())?;
@@ -102,8 +109,9 @@ impl Proof {
                 // reversed.
                 bad = Topology::new(after.mesh())?.bad_triangles(new)?;
             }
+            concave = topology.bad_quadrilaterals(new)?;
         }
-        Ok(Self { difference, moved, held, slid, pairs, coincident, bad })
+        Ok(Self { difference, moved, held, slid, pairs, coincident, bad, concave })
     }
 
     /// Returns a sentence on the problems found; `None` if the proof succeeds.
@@ -123,6 +131,11 @@ impl Proof {
             0 => {}
             1 => problems.push("1 triangle is inverted or flat".to_owned()),
             count => problems.push(format!("{count} triangles are inverted or flat")),
+        }
+        match self.concave.len() {
+            0 => {}
+            1 => problems.push("1 corner of a quadrilateral is not convex".to_owned()),
+            count => problems.push(format!("{count} corners of quadrilaterals are not convex")),
         }
         (!problems.is_empty()).then(|| problems.join(", "))
     }

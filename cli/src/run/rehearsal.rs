@@ -23,6 +23,8 @@ pub(crate) struct Rehearsal {
     pub(crate) format: String,
     pub(crate) vertices: usize,
     pub(crate) triangles: usize,
+    /// Number of quadrilaterals whose vertices may move.
+    pub(crate) quadrilaterals: usize,
     /// Number of vertices that would move.
     pub(crate) free: usize,
     /// Number of vertices that would slide; `None` without `--slide`, or if the mesh would be untangled first.
@@ -74,6 +76,7 @@ fn of_topology(input: &Input<'_>, topology: &Topology<'_>, taken: &OpenEngine) -
         format: run_report::formats(input),
         vertices: file.source.points().len(),
         triangles: file.mesh().triangles.len(),
+        quadrilaterals: file.mesh().quadrilaterals.len(),
         free: topology.free_count(),
         sliding: None,
         fixed: FixedBy::counts(file, topology, &input.choice.layers),

@@ -188,6 +188,7 @@ fn mesh_report(input: &Input<'_>, smoother: &Smoother<'_>) -> MeshReport {
         output_format: input.form.map(|form| form.format.to_string()),
         vertices: file.source.points().len(),
         triangles: file.mesh().triangles.len(),
+        quadrilaterals: file.mesh().quadrilaterals.len(),
         free: smoother.topology().free_count(),
         colors: smoother.colors(),
     }

@@ -38,6 +38,7 @@ mod picture;
 mod planes;
 mod plate;
 mod progress;
+mod quadrilaterals;
 mod quality;
 mod refusals;
 mod regions;

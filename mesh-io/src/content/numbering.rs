@@ -30,6 +30,11 @@ pub(crate) fn further_name(before: u32, number: i64) -> [i64; 2] {
     [i64::MIN + i64::from(before), number]
 }
 
+/// Returns the region to which the name of [`further_name`] adds a number; `None` for two integers of the file.
+pub(crate) fn earlier(name: [i64; 2]) -> Option<u32> {
+    (name[0] < EARLIER_END).then(|| (name[0] - i64::MIN) as u32)
+}
+
 /// Joins regions of triangles that differ by numbers alone that count triangles. `names` are the names of the regions in
 /// the order of their numbers: two integers of the file, or a name of [`further_name`]. Returns the regions of the
 /// triangles, numbered from 0 in the order of `names`; `None` if neither integer counts triangles.
@@ -37,7 +42,7 @@ pub(crate) fn joined_regions(regions: &[u32], names: &[[i64; 2]]) -> Option<Vec<
     if !counts_triangles(names.len(), regions.len()) {
         return None;
     }
-    let is_further = |name: &[i64; 2]| name[0] < EARLIER_END;
+    let is_further = |name: &[i64; 2]| earlier(*name).is_some();
     let is_counter = [0, 1].map(|place| {
         // A further number is a second number of the first kind.
         let own = |name: &[i64; 2]| match is_further(name) {

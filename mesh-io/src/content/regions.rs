@@ -70,11 +70,50 @@ impl TriangleRegions {
         }
     }
 
+    /// Returns the region of each element.
+    pub(crate) fn into_numbers(self) -> Vec<u32> {
+        if self.numbers.is_empty() { vec![0; self.triangles] } else { self.numbers }
+    }
+
     /// Returns the region of each triangle; `None` if all triangles have equal regions.
     pub(crate) fn finish(self) -> Option<Vec<u32>> {
         let first = self.numbers.first()?;
         self.numbers.iter().any(|region| region != first).then_some(self.numbers)
     }
+}
+
+/// Returns the interior vertices at which elements of different regions meet, and the edges between such elements, both
+/// ascending. `elements` are lists of vertices in order around an element, each below `vertices`, with the region of the
+/// element. Boundary vertices are left out.
+pub(crate) fn interfaces<'e>(
+    elements: impl Iterator<Item = (&'e [u32], u32)> + Clone,
+    vertices: usize,
+) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let mut region = vec![None; vertices];
+    let mut is_between = vec![false; vertices];
+    // Exclusive or of the neighbors over all elements of a vertex; 0 inside the mesh, as each neighbor occurs twice.
+    let mut neighbors = vec![0; vertices];
+    for (corners, own) in elements.clone() {
+        let count = corners.len();
+        for (k, &v) in corners.iter().enumerate() {
+            is_between[v as usize] |= *region[v as usize].get_or_insert(own) != own;
+            neighbors[v as usize] ^= corners[(k + 1) % count] ^ corners[(k + count - 1) % count];
+        }
+    }
+    let mut sides = Vec::new();
+    for (corners, own) in elements {
+        let next = corners.iter().cycle().skip(1);
+        let ends = corners.iter().zip(next).map(|(&a, &b)| [a.min(b), a.max(b)]);
+        let between = ends.filter(|ends| ends.iter().all(|&v| is_between[v as usize]));
+        sides.extend(between.map(|ends| (ends, own)));
+    }
+    sides.sort_unstable();
+    sides.dedup();
+    let twice = sides.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    let mut edges: Vec<[u32; 2]> = twice.map(|pair| pair[0].0).collect();
+    edges.dedup();
+    let inside = (0..vertices).filter(|&v| is_between[v] && neighbors[v] == 0);
+    (inside.map(|v| v as u32).collect(), edges)
 }
 
 /// Returns the interior vertices at which triangles of different regions meet, ascending. Boundary vertices are left

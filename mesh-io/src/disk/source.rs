@@ -24,6 +24,7 @@ pub struct ReadOptions {
     pub(crate) welds: bool,
     pub(crate) allows_outside: bool,
     pub(crate) regions: Option<String>,
+    pub(crate) allows_quadrilaterals_alone: bool,
 }
 
 impl ReadOptions {
@@ -48,6 +49,13 @@ impl ReadOptions {
     #[must_use]
     pub fn allow_outside(self, allows_outside: bool) -> ReadOptions {
         ReadOptions { allows_outside, ..self }
+    }
+
+    /// Sets whether a mesh may have quadrilaterals and no triangle, for a program that takes
+    /// [quadrilaterals](crate::MeshFile::quadrilaterals). Off by default: such a mesh is then an error.
+    #[must_use]
+    pub fn allow_quadrilaterals_alone(self, allows: bool) -> ReadOptions {
+        ReadOptions { allows_quadrilaterals_alone: allows, ..self }
     }
 
     /// Sets the cell data that number the regions of the triangles, in place of those that the reader finds. The data

@@ -2,7 +2,7 @@
 
 use crate::content::constraints::{Constraints, edges_between_regions};
 use crate::content::faces::Faces;
-use crate::content::regions::interface_vertices;
+use crate::content::regions::{interface_vertices, interfaces};
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, Offsets};
@@ -44,13 +44,15 @@ impl MeshFile {
     /// Makes a mesh file from a parsed mesh and its source.
     ///
     /// # Errors
-    /// [`ReadError::Format`] if the mesh has no triangle.
+    /// [`ReadError::Format`] if the mesh has no triangle, and no quadrilaterals that the options take.
     pub(crate) fn new(
         parsed: ParsedMesh,
         reader: &'static ReaderFunctions,
         source: Source,
     ) -> Result<MeshFile, ReadError> {
-        if parsed.triangles.is_empty() {
+        let has_quadrilaterals = !parsed.quadrilaterals.is_empty();
+        let is_taken = has_quadrilaterals && source.options.allows_quadrilaterals_alone;
+        if parsed.triangles.is_empty() && !is_taken {
             if parsed.points.is_empty() {
                 let remedy = "Check that the file is a mesh in the format that its ending names";
                 return Err(source.error("neither vertices nor triangles were found", remedy));
@@ -104,6 +106,46 @@ impl MeshFile {
     /// Returns the lines, points, other elements and periodic pairs of the file.
     pub fn constraints(&self) -> &Constraints {
         &self.parsed.constraints
+    }
+
+    /// Returns the constraints of a program that moves the vertices of quadrilaterals: those of [`constraints`](Self::constraints)
+    /// without the vertices of quadrilaterals, but with the vertices of quadrilaterals that list a vertex twice, or that belong to
+    /// another piece of a partitioned mesh.
+    pub fn constraints_beside_quadrilaterals(&self) -> Constraints {
+        let ParsedMesh { quadrilaterals, constraints, beside_quadrilaterals, held, .. } =
+            &self.parsed;
+        let is_repeated = |corners: &&[u32; 4]| (1..4).any(|k| corners[..k].contains(&corners[k]));
+        let repeated = quadrilaterals.iter().filter(is_repeated).flatten();
+        let more: Vec<u32> = repeated.chain(held).copied().collect();
+        let without = |list: &[u32], before: usize| {
+            let after = &list[before + 4 * quadrilaterals.len()..];
+            [&list[..before], after, &more].concat()
+        };
+        Constraints {
+            vertices: without(&constraints.vertices, beside_quadrilaterals[0]),
+            anchored: without(&constraints.anchored, beside_quadrilaterals[1]),
+            ..constraints.clone()
+        }
+    }
+
+    /// Returns the region of each [quadrilateral](Self::quadrilaterals), by the numbers of [`regions`](Self::regions). Triangles
+    /// have region 0 if `regions` is `None`.
+    pub fn quadrilateral_regions(&self) -> &[u32] {
+        &self.parsed.quadrilateral_regions
+    }
+
+    /// Returns the vertices inside the mesh at which elements of different [regions](Self#regions) meet, and the edges between
+    /// such elements, both ascending. Triangles and quadrilaterals are elements; [`interface_vertices`](Self::interface_vertices)
+    /// and [`interface_edges`](Self::interface_edges) know triangles alone.
+    pub fn interfaces_of_elements(&self) -> (Vec<u32>, Vec<[u32; 2]>) {
+        let ParsedMesh { triangles, quadrilaterals, regions, quadrilateral_regions, .. } =
+            &self.parsed;
+        let region = |t: usize| regions.as_ref().map_or(0, |regions| regions[t]);
+        let of_triangles =
+            triangles.iter().enumerate().map(|(t, corners)| (&corners[..], region(t)));
+        let others = quadrilaterals.iter().zip(quadrilateral_regions);
+        let all = of_triangles.chain(others.map(|(corners, &region)| (&corners[..], region)));
+        interfaces(all, self.parsed.points.len())
     }
 
     /// Lists the corners of each quadrilateral and of each polygon of five or more corners, as vertex indices in the order

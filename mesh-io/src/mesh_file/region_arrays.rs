@@ -3,9 +3,10 @@
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
+use crate::visit::cell_values::cell_values;
+use crate::visit::items::CellKind;
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
-use crate::visit::triangle_values::triangle_values;
 use std::collections::HashMap;
 
 /// Largest number of regions that an array without a usual name may have.
@@ -26,18 +27,17 @@ pub(super) fn find(
     source: &Source,
 ) -> Result<(), ReadError> {
     if let Some(name) = &source.options.regions {
-        let wanted = [name.clone()];
-        let values = triangle_values(reader, source, &wanted)?.pop().unwrap_or_default();
-        if values.is_empty() {
+        let (values, of_quadrilaterals) = both(parsed, reader, source, name)?;
+        if values.is_empty() && of_quadrilaterals.is_empty() {
             return Err(source.error(format!("it has no cell data `{name}`"), known(parsed)));
         }
-        let Some(regions) = numbered(&values) else {
-            let problem =
-                format!("the cell data `{name}` are not a whole number for each triangle");
+        let Some((regions, others)) = numbered_both(&values, &of_quadrilaterals) else {
+            let problem = format!("the cell data `{name}` are not a whole number for each element");
             return Err(source.error(problem, known(parsed)));
         };
         parsed.regions = regions.iter().any(|&region| region != 0).then_some(regions);
         parsed.region_array = Some(name.clone());
+        parsed.quadrilateral_regions = others;
         return Ok(());
     }
     let is_whole = |name: &&String| !parsed.fractional.contains(*name);
@@ -45,7 +45,10 @@ pub(super) fn find(
     if names.is_empty() {
         return Ok(());
     }
-    let all = triangle_values(reader, source, &names)?;
+    if parsed.triangles.is_empty() {
+        return find_alone(parsed, reader, source, names);
+    }
+    let all = cell_values(reader, source, &names, CellKind::Triangle)?;
     let mut found = names.into_iter().zip(all).filter_map(|(name, values)| {
         let regions = numbered(&values)?;
         looks_like_regions(&regions, &parsed.triangles).then_some((name, regions))
@@ -58,11 +61,65 @@ pub(super) fn find(
         }
     } else if let Some((array, regions)) = found.next() {
         let others = found.map(|(name, _)| name).collect();
+        let (values, of_quadrilaterals) = both(parsed, reader, source, &array)?;
+        if let Some((_, numbers)) = numbered_both(&values, &of_quadrilaterals) {
+            parsed.quadrilateral_regions = numbers;
+        }
         parsed.regions = Some(regions);
         parsed.region_array = Some(array.clone());
         parsed.remarks.push(Remark::RegionArray { array, others });
     }
     Ok(())
+}
+
+/// Sets the regions of a mesh of quadrilaterals alone by the first of the named arrays that looks like regions, unless elements
+/// have regions under a usual name.
+fn find_alone(
+    parsed: &mut ParsedMesh,
+    reader: &ReaderFunctions,
+    source: &Source,
+    names: Vec<String>,
+) -> Result<(), ReadError> {
+    let own = &parsed.quadrilateral_regions;
+    if own.iter().any(|region| *region != own[0]) {
+        return Ok(());
+    }
+    let all = cell_values(reader, source, &names, CellKind::Quadrilateral)?;
+    let mut found = names.into_iter().zip(all).filter_map(|(name, values)| {
+        let regions = numbered(&values)?;
+        looks_like_regions(&regions, &parsed.quadrilaterals).then_some((name, regions))
+    });
+    if let Some((array, regions)) = found.next() {
+        let others = found.map(|(name, _)| name).collect();
+        parsed.quadrilateral_regions = regions;
+        parsed.region_array = Some(array.clone());
+        parsed.remarks.push(Remark::RegionArray { array, others });
+    }
+    Ok(())
+}
+
+/// Returns the values of an array at the triangles and at the quadrilaterals.
+fn both(
+    parsed: &ParsedMesh,
+    reader: &ReaderFunctions,
+    source: &Source,
+    name: &str,
+) -> Result<(Vec<f64>, Vec<f64>), ReadError> {
+    let wanted = [name.to_owned()];
+    let of = |kind| cell_values(reader, source, &wanted, kind).map(|all| all.concat());
+    let of_quadrilaterals = match parsed.quadrilaterals.is_empty() {
+        true => Vec::new(),
+        false => of(CellKind::Quadrilateral)?,
+    };
+    Ok((of(CellKind::Triangle)?, of_quadrilaterals))
+}
+
+/// Numbers the values of triangles and then of quadrilaterals by first occurrence, from 0. `None` if a value is not a whole
+/// number.
+fn numbered_both(triangles: &[f64], quadrilaterals: &[f64]) -> Option<(Vec<u32>, Vec<u32>)> {
+    let mut numbers = numbered(&[triangles, quadrilaterals].concat())?;
+    let of_quadrilaterals = numbers.split_off(triangles.len());
+    Some((numbers, of_quadrilaterals))
 }
 
 /// Returns whether two triangles with a common edge have one region of `regions`, but two different numbers.
@@ -96,20 +153,20 @@ fn numbered(values: &[f64]) -> Option<Vec<u32>> {
     (!values.is_empty()).then(|| values.iter().map(number).collect())?
 }
 
-/// Returns whether numbers of triangles look like regions: several numbers, but few, whose triangles are connected in
-/// large parts.
-fn looks_like_regions(regions: &[u32], triangles: &[[u32; 3]]) -> bool {
+/// Returns whether numbers of elements look like regions: several numbers, but few, whose elements are connected in large
+/// parts.
+fn looks_like_regions<const N: usize>(regions: &[u32], elements: &[[u32; N]]) -> bool {
     let count = regions.iter().max().map_or(0, |&most| most as usize + 1);
     let is_few = (2..=MAX_REGIONS).contains(&count) && count * 2 <= regions.len();
     is_few && {
-        let parts = connected_parts(regions, triangles);
+        let parts = connected_parts(regions, elements);
         parts == count || parts * MIN_PART <= regions.len()
     }
 }
 
-/// Returns the number of parts of triangles that are connected across edges and have equal regions.
-fn connected_parts(regions: &[u32], triangles: &[[u32; 3]]) -> usize {
-    let mut parent: Vec<u32> = (0..triangles.len() as u32).collect();
+/// Returns the number of parts of elements that are connected across edges and have equal regions.
+fn connected_parts<const N: usize>(regions: &[u32], elements: &[[u32; N]]) -> usize {
+    let mut parent: Vec<u32> = (0..elements.len() as u32).collect();
     fn root(parent: &mut [u32], mut t: u32) -> u32 {
         while parent[t as usize] != t {
             parent[t as usize] = parent[parent[t as usize] as usize];
@@ -117,10 +174,11 @@ fn connected_parts(regions: &[u32], triangles: &[[u32; 3]]) -> usize {
         }
         t
     }
-    let mut parts = triangles.len();
-    let mut edges: HashMap<[u32; 2], u32> = HashMap::with_capacity(triangles.len() * 3 / 2);
-    for (t, &[a, b, c]) in (0..).zip(triangles) {
-        for [p, q] in [[a, b], [b, c], [c, a]] {
+    let mut parts = elements.len();
+    let mut edges: HashMap<[u32; 2], u32> = HashMap::with_capacity(elements.len() * N / 2);
+    for (t, element) in (0..).zip(elements) {
+        for k in 0..N {
+            let (p, q) = (element[k], element[(k + 1) % N]);
             let other = *edges.entry([p.min(q), p.max(q)]).or_insert(t);
             if regions[other as usize] == regions[t as usize] {
                 let (one, two) = (root(&mut parent, other), root(&mut parent, t));

@@ -3,7 +3,7 @@
 use crate::content::constraints::{Constraints, PeriodicPairs};
 use crate::content::faces::Faces;
 use crate::content::id_index::IdIndexBuilder;
-use crate::content::numbering::{further_name, joined_regions};
+use crate::content::numbering::{earlier, further_name, joined_regions};
 use crate::content::regions::{Interner, TriangleRegions};
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
@@ -52,6 +52,10 @@ pub(crate) fn parse_by(
     let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, region_names, .. } = assembler;
     let MeshBuilder { cell_arrays, fractional, other_faces, .. } = assembler;
     let ghost_array = assembler.ghost_array.filter(|_| !assembler.has_ghosts);
+    let mut constraints = constraints;
+    let beside_quadrilaterals = [constraints.vertices.len(), constraints.anchored.len()];
+    constraints.vertices.extend_from_slice(quadrilaterals.as_flattened());
+    constraints.anchored.extend_from_slice(quadrilaterals.as_flattened());
     if !quadrilaterals.is_empty() {
         let count = quadrilaterals.len() as u64;
         remarks.insert(0, Remark::elements(count, "quadrilateral", ""));
@@ -72,9 +76,17 @@ pub(crate) fn parse_by(
         }
     }
     let mut regions = regions.finish();
+    let region_names = region_names.into_names();
+    let mut quadrilateral_regions = in_names(
+        &region_names,
+        &assembler.quadrilateral_names.into_names(),
+        assembler.quadrilateral_regions.into_numbers(),
+    );
     if let Some(own) = &regions
-        && let Some(joined) = joined_regions(own, &region_names.into_names())
+        && let Some(joined) = joined_regions(own, &region_names)
     {
+        // Numbers that count elements are no regions of quadrilaterals either.
+        quadrilateral_regions.fill(0);
         remarks.push(Remark::CountedTriangles);
         regions = Some(joined).filter(|joined| joined.iter().any(|region| *region != joined[0]));
     }
@@ -94,6 +106,9 @@ pub(crate) fn parse_by(
         regions,
         constraints,
         quadrilaterals,
+        quadrilateral_regions,
+        beside_quadrilaterals,
+        held: Vec::new(),
         other_faces,
         remarks,
         data,
@@ -106,6 +121,24 @@ pub(crate) fn parse_by(
         has_z,
         says_degrees,
     })
+}
+
+/// Numbers the regions of quadrilaterals as those of triangles are numbered. `names` are the names of the regions of triangles,
+/// `own` those of quadrilaterals, and `numbers` has the index in `own` for each quadrilateral. Further names have further
+/// numbers.
+fn in_names(names: &[[i64; 2]], own: &[[i64; 2]], mut numbers: Vec<u32>) -> Vec<u32> {
+    let mut all: HashMap<[i64; 2], u32> = names.iter().copied().zip(0..).collect();
+    let mut in_all: Vec<u32> = Vec::with_capacity(own.len());
+    for &name in own {
+        let name = match earlier(name) {
+            Some(before) => further_name(in_all[before as usize], name[1]),
+            None => name,
+        };
+        let next = all.len() as u32;
+        in_all.push(*all.entry(name).or_insert(next));
+    }
+    numbers.iter_mut().for_each(|number| *number = in_all[*number as usize]);
+    numbers
 }
 
 /// Visitor that builds a [`ParsedMesh`].
@@ -122,6 +155,8 @@ struct MeshBuilder {
     constraints: Constraints,
     other_faces: Faces,
     quadrilaterals: Vec<[u32; 4]>,
+    quadrilateral_names: Interner<[i64; 2]>,
+    quadrilateral_regions: TriangleRegions,
     remarks: Vec<Remark>,
     /// Names of the arrays of real numbers on vertices besides x and y, each once.
     data: Vec<String>,
@@ -391,10 +426,14 @@ impl MeshVisitor for MeshBuilder {
     }
 
     fn further_region(&mut self, kind: CellKind, region: [i64; 2]) {
-        let Self { regions, region_names, .. } = self;
-        if kind == CellKind::Triangle {
-            regions.replace_last(|before| region_names.intern(further_name(before, region[0])));
-        }
+        let (regions, names) = match kind {
+            CellKind::Triangle => (&mut self.regions, &mut self.region_names),
+            CellKind::Quadrilateral => {
+                (&mut self.quadrilateral_regions, &mut self.quadrilateral_names)
+            }
+            _ => return,
+        };
+        regions.replace_last(|before| names.intern(further_name(before, region[0])));
     }
 
     #[inline]
@@ -417,17 +456,20 @@ impl MeshVisitor for MeshBuilder {
                 self.regions.push(self.region_names.intern(region));
                 Ok(())
             }
-            CellKind::Point | CellKind::Polygon | CellKind::Line | CellKind::Quadrilateral => {
+            CellKind::Point | CellKind::Polygon | CellKind::Line => {
                 let fixed = &vertices[..nodes.len()];
                 self.constraints.vertices.extend_from_slice(fixed);
                 match kind {
                     CellKind::Line => self.constraints.lines.push([a, b]),
                     _ => self.constraints.anchored.extend_from_slice(fixed),
                 }
-                if kind == CellKind::Quadrilateral {
-                    self.quadrilaterals.push(vertices);
-                    self.other_faces.push(fixed);
-                }
+                Ok(())
+            }
+            CellKind::Quadrilateral => {
+                self.quadrilaterals.push(vertices);
+                let number = self.quadrilateral_names.intern(region);
+                self.quadrilateral_regions.push(number);
+                self.other_faces.push(&vertices);
                 Ok(())
             }
         }

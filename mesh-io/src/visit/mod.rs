@@ -1,6 +1,7 @@
 //! Protocol between readers and visitors: the items of a file, and visitors that build a mesh, groups or data from the
 //! items.
 
+pub(crate) mod cell_values;
 pub(crate) mod field;
 pub(crate) mod ghosts;
 pub(crate) mod group_table;
@@ -15,7 +16,6 @@ pub(crate) mod records;
 pub(crate) mod rows;
 pub(crate) mod send;
 pub(crate) mod storage;
-pub(crate) mod triangle_values;
 pub(crate) mod visitor;
 pub(crate) mod weld;
 pub(crate) mod z_values;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::load::streams;
-use crate::report::SmoothJob;
+use crate::report::{SmoothJob, elements};
 use crate::run::rehearsal::Rehearsal;
 
 /// Prints the facts of a run before its first sweep.
@@ -13,9 +13,10 @@ pub(super) fn print(task: &SmoothJob<'_>, rehearsal: &Rehearsal) {
 
 fn text(task: &SmoothJob<'_>, rehearsal: &Rehearsal) -> String {
     let request = task.request;
-    let Rehearsal { format, vertices, triangles, free, sliding, fixed, bad, .. } = rehearsal;
+    let Rehearsal { format, vertices, free, sliding, fixed, bad, .. } = rehearsal;
+    let elements = elements(rehearsal.triangles, rehearsal.quadrilaterals);
     let input = task.input.display();
-    let mut lines = vec![format!("{input}: {format}, {vertices} vertices, {triangles} triangles")];
+    let mut lines = vec![format!("{input}: {format}, {vertices} vertices, {elements}")];
     let slide = match sliding {
         Some(count) => format!(", and up to {count} would slide along lines"),
         None => String::new(),

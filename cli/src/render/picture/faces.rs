@@ -1,8 +1,8 @@
-//! Quadrilaterals and polygons beside the triangles of a mesh, whose vertices stay fixed.
+//! Quadrilaterals and polygons beside the triangles of a mesh, which pictures draw without the color of a measure.
 
 use std::collections::{HashMap, HashSet};
 
-use gpu_smooth::Topology;
+use gpu_smooth::{Mesh, Topology};
 
 use crate::load::LoadedMesh;
 
@@ -20,6 +20,8 @@ pub(crate) struct FixedFaces {
     /// Number of faces.
     pub(crate) count: usize,
     has_polygons: bool,
+    /// Whether vertices of quadrilaterals move.
+    moves: bool,
 }
 
 /// An edge of a face.
@@ -43,7 +45,16 @@ impl FixedFaces {
             file.chart().is_none() || longitudes.fold(west, f64::max) - west <= MAX_LONGITUDES
         };
         let faces = file.source.other_faces().filter(|corners| is_whole(corners));
-        Self::new(faces, points, topology.boundary_edges())
+        let moves = file.domain.moves_quadrilaterals();
+        let of_triangles = match file.mesh() {
+            mesh if moves => {
+                let alone = Mesh { quadrilaterals: Vec::new(), ..mesh.clone() };
+                Topology::new(&alone).map(|topology| topology.boundary_edges())
+            }
+            _ => Ok(topology.boundary_edges()),
+        };
+        // Without a triangle, there is no topology of triangles.
+        Self { moves, ..Self::new(faces, points, of_triangles.unwrap_or_default()) }
     }
 
     /// `of_triangles` is the boundary of the triangles.
@@ -85,7 +96,7 @@ impl FixedFaces {
         let boundary = boundary(&edges, &of_triangles);
         let drawn: HashSet<[u32; 2]> = of_triangles.into_iter().collect();
         edges.retain(|edge| !drawn.contains(&edge.ends));
-        Self { pieces, edges, boundary, count, has_polygons }
+        Self { pieces, edges, boundary, count, has_polygons, moves: false }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -94,7 +105,11 @@ impl FixedFaces {
 
     /// Returns the name of the faces for a legend; `None` without faces.
     pub(crate) fn name(&self) -> Option<&'static str> {
-        let name = if self.has_polygons { "fixed polygon" } else { "fixed quadrilateral" };
+        let name = match self.has_polygons {
+            true => "fixed polygon",
+            false if self.moves => "quadrilateral",
+            false => "fixed quadrilateral",
+        };
         (!self.is_empty()).then_some(name)
     }
 }

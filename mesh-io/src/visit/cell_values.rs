@@ -1,4 +1,4 @@
-//! Reads arrays of cell data, one value for each triangle.
+//! Reads arrays of cell data, one value for each element of a kind.
 
 use crate::content::regions::Interner;
 use crate::disk::source::Source;
@@ -9,20 +9,22 @@ use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
-/// Reads the cell data of these names. Returns for each name the value of each triangle, NaN for a triangle without a
-/// value. The list is empty for a name that the file lacks. Region arrays of usual names, which readers pass as regions of
+/// Reads the cell data of these names. Returns for each name the value of each element of a kind, NaN for an element without
+/// a value. The list is empty for a name that the file lacks. Region arrays of usual names, which readers pass as regions of
 /// elements, yield numbers by first occurrence, from 0.
 ///
 /// # Errors
 /// If the file cannot be read.
-pub(crate) fn triangle_values(
+pub(crate) fn cell_values(
     reader: &ReaderFunctions,
     source: &Source,
     names: &[String],
+    kind: CellKind,
 ) -> Result<Vec<Vec<f64>>, ReadError> {
     let parts = names.iter().map(|_| Vec::new()).collect();
     let columns = Default::default();
-    let mut visitor = ValueVisitor { names, parts, columns, announced: None, ids: Vec::new() };
+    let mut visitor =
+        ValueVisitor { names, kind, parts, columns, announced: None, ids: Vec::new() };
     (reader.visit)(source, &mut visitor)?;
     let ValueVisitor { parts, columns, ids, .. } = visitor;
     let mut of_columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::new()).collect();
@@ -31,7 +33,7 @@ pub(crate) fn triangle_values(
             of_columns[array] = numbers;
         }
     }
-    let of_triangles = |(parts, of_column): (Vec<Part>, Vec<f64>)| {
+    let of_elements = |(parts, of_column): (Vec<Part>, Vec<f64>)| {
         if parts.is_empty() {
             return of_column;
         }
@@ -44,7 +46,7 @@ pub(crate) fn triangle_values(
         }
         ids.iter().map(|id| values.get(id).copied().unwrap_or(f64::NAN)).collect()
     };
-    Ok(parts.into_iter().zip(of_columns).map(of_triangles).collect())
+    Ok(parts.into_iter().zip(of_columns).map(of_elements).collect())
 }
 
 /// Values of an array that one call of the reader passes, with the ids of their elements; `None` if the value at index
@@ -60,13 +62,14 @@ struct Column {
     /// Index of the wanted array whose numbers the integers are; `None` for an array that is not wanted.
     array: Option<usize>,
     met: Interner<i64>,
-    /// Number of the integer of each triangle.
+    /// Number of the integer of each element.
     numbers: Vec<f64>,
 }
 
-/// Visitor that collects cell data and the ids of all triangles.
+/// Visitor that collects cell data and the ids of all elements of a kind.
 struct ValueVisitor<'n> {
     names: &'n [String],
+    kind: CellKind,
     /// Parts of each wanted array, in file order.
     parts: Vec<Vec<Part>>,
     columns: [Column; 2],
@@ -83,7 +86,7 @@ impl MeshVisitor for ValueVisitor<'_> {
     fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
 
     fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        if element.kind == CellKind::Triangle {
+        if element.kind == self.kind {
             self.ids.push(element.id);
             for (column, region) in self.columns.iter_mut().zip(element.region) {
                 if column.array.is_some() {

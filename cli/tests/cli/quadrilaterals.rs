@@ -1,0 +1,131 @@
+//! Meshes with quadrilaterals, whose vertices stay by default, and move by `--quadrilaterals move`.
+
+use super::{Folder, assert_holds};
+use std::fmt::Write;
+
+/// Returns a square of `n` times `n` cells as a legacy VTK file, with vertices inside displaced. `is_cut` tells which cells are
+/// two triangles, and `region` numbers the material of a cell.
+fn vtk(n: usize, is_cut: impl Fn(usize) -> bool, region: impl Fn(usize) -> usize) -> String {
+    let mut text =
+        String::from("# vtk DataFile Version 3.0\ncells\nASCII\nDATASET UNSTRUCTURED_GRID\n");
+    writeln!(text, "POINTS {} double", (n + 1) * (n + 1)).unwrap();
+    for v in 0..(n + 1) * (n + 1) {
+        let (i, j) = (v % (n + 1), v / (n + 1));
+        let is_inside = (1..n).contains(&i) && (1..n).contains(&j);
+        let off = |k: f64| if is_inside { 0.3 * (k * v as f64).sin() } else { 0.0 };
+        writeln!(text, "{} {} 0", i as f64 + off(1.7), j as f64 + off(2.9)).unwrap();
+    }
+    let (mut cells, mut types, mut materials) = (Vec::new(), String::new(), String::new());
+    for k in 0..n * n {
+        let a = k / n * (n + 1) + k % n;
+        let [b, c, d] = [a + 1, a + n + 2, a + n + 1];
+        match is_cut(k) {
+            true => cells.extend([format!("3 {a} {b} {c}"), format!("3 {a} {c} {d}")]),
+            false => cells.push(format!("4 {a} {b} {c} {d}")),
+        }
+        for _ in 0..if is_cut(k) { 2 } else { 1 } {
+            types += if is_cut(k) { "5\n" } else { "9\n" };
+            writeln!(materials, "{}", region(k)).unwrap();
+        }
+    }
+    let numbers: usize = cells.iter().map(|cell| cell.split(' ').count()).sum();
+    writeln!(text, "CELLS {} {numbers}\n{}", cells.len(), cells.join("\n")).unwrap();
+    write!(text, "CELL_TYPES {}\n{types}CELL_DATA {}\n", cells.len(), cells.len()).unwrap();
+    write!(text, "SCALARS MaterialIDs int 1\nLOOKUP_TABLE default\n{materials}").unwrap();
+    text
+}
+
+#[test]
+fn quadrilaterals_alone_move_on_request_and_are_refused_otherwise() {
+    let folder = Folder::new(&[("in.vtk", &vtk(10, |_| false, |_| 1))]);
+    let refused = folder.line("in.vtk out.vtk --engine cpu");
+    refused.refused(&["100 quadrilaterals, but no triangle", "--quadrilaterals move"]);
+    let run = folder.line("in.vtk out.vtk --engine cpu --quadrilaterals move --report r.json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.err, &["100 quadrilaterals, whose vertices may move"]);
+    assert_holds(&run.out, &["121 vertices (81 free, 4 colors), 100 quadrilaterals", "1.00000"]);
+    let report = folder.json("r.json");
+    assert_eq!(report["mesh"]["quadrilaterals"], 100);
+    let compared = folder.line("compare in.vtk out.vtk --quadrilaterals move");
+    assert_eq!(compared.code, Some(0), "{}", compared.err);
+    assert_holds(
+        &compared.out,
+        &["81 of 121 vertices have moved", "each of 100 quadrilaterals is convex"],
+    );
+}
+
+#[test]
+fn vertices_of_mixed_meshes_move_on_request_and_compare_knows() {
+    let cut = |k: usize| k % 10 < 5;
+    let folder = Folder::new(&[("in.vtk", &vtk(10, cut, |_| 1))]);
+    folder.line("in.vtk kept.vtk --engine cpu --quiet").clean();
+    folder.line("in.vtk moved.vtk --engine cpu --quiet --quadrilaterals move");
+    let kept = folder.line("compare in.vtk kept.vtk");
+    assert_holds(&kept.out, &["36 of 121 vertices have moved", "none of 100 triangles"]);
+    let moved = folder.line("compare in.vtk moved.vtk --quadrilaterals move");
+    assert_holds(
+        &moved.out,
+        &["81 of 121", "none of 100 triangles is inverted or flat, and each of 50"],
+    );
+    let unlike = folder.line("compare in.vtk moved.vtk");
+    unlike
+        .refused(&["45 vertices have moved that must not", "give --quadrilaterals move here too"]);
+}
+
+#[test]
+fn vertices_between_regions_of_quadrilaterals_stay() {
+    let halves = |k: usize| usize::from(k % 10 < 5);
+    for cut in [(|_| false) as fn(usize) -> bool, |k| k % 10 < 5, |k| k % 3 == 0] {
+        let folder = Folder::new(&[("in.vtk", &vtk(10, cut, halves))]);
+        let run = folder.line("in.vtk out.vtk --engine cpu --quadrilaterals move");
+        assert_holds(&run.err, &["9 vertices between regions stay fixed"]);
+        let compared = folder.line("compare in.vtk out.vtk --quadrilaterals move");
+        assert_holds(&compared.out, &["72 of 121 vertices have moved"]);
+        let freed =
+            folder.line("in.vtk free.vtk --engine cpu --quadrilaterals move --free-interfaces");
+        assert_eq!(freed.code, Some(0), "{}", freed.err);
+        let compared =
+            folder.line("compare in.vtk free.vtk --quadrilaterals move --free-interfaces");
+        assert_holds(&compared.out, &["81 of 121 vertices have moved"]);
+    }
+}
+
+#[test]
+fn a_concave_quadrilateral_is_refused_with_its_place() {
+    let text = vtk(4, |_| false, |_| 1);
+    let line = text.lines().nth(5 + 6).unwrap();
+    let folder = Folder::new(&[("in.vtk", &text.replacen(line, "1.9 1.9 0", 1))]);
+    let run = folder.line("in.vtk out.vtk --engine cpu --quiet --quadrilaterals move");
+    run.refused(&["in.vtk:", "quadrilateral ", "is concave at vertex", "--quadrilaterals keep"]);
+    let untangled =
+        folder.line("in.vtk out.vtk --engine cpu --quiet --quadrilaterals move --untangle");
+    untangled.refused(&["untangling takes meshes of triangles alone"]);
+}
+
+#[test]
+fn stages_for_quadrilaterals_work_from_the_command_line() {
+    let folder = Folder::new(&[("in.vtk", &vtk(12, |k| k % 4 == 0, |_| 1))]);
+    for options in [
+        "--slide",
+        "--only-bad 1.2 --rings 1",
+        "--improve-worst",
+        "--max-move 0.1",
+        "--keep-altitude",
+        "--target keep-size",
+        "--target keep-shape",
+        "--scheme acute",
+        "--scheme edge+imr",
+        "--fix-box 0,0,3,3",
+        "--picture p.png",
+        "--html p.html",
+    ] {
+        let run = folder.line(&format!(
+            "in.vtk out.vtk --force --engine cpu --quiet --quadrilaterals move {options}"
+        ));
+        assert_eq!(run.code, Some(0), "{options}: {}", run.err);
+        let slide = if options == "--slide" { options } else { "" };
+        let compared =
+            folder.line(&format!("compare in.vtk out.vtk --quiet --quadrilaterals move {slide}"));
+        assert_eq!(compared.code, Some(0), "{options}: {}", compared.err);
+    }
+}
