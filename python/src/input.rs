@@ -80,7 +80,7 @@ impl Input {
         let settings = options.settings();
         if let Some(limit) = settings.only_bad {
             let near = domain.fix_far_from_bad(limit, settings.rings_of_bad())?;
-            remarks.only_bad(limit, near.triangles, near.free);
+            remarks.only_bad(limit, near.elements, near.free);
         }
         let layers = movement::keep_layers(&mut domain, options, remarks)?;
         if !options.settings().slides {

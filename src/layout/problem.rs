@@ -13,7 +13,7 @@ use crate::layout::curve::along_curve;
 use crate::layout::mercator::Mercator;
 use crate::layout::numbering::{OPPOSITE, elements, order, rings};
 use crate::layout::placement::{Placement, mean_area};
-use crate::mesh::{Element, Mesh};
+use crate::mesh::Mesh;
 use crate::metric::{Corner, Ideal, TargetMap};
 use crate::parallel::counting_sort::{atomics, plain};
 use crate::parallel::{collect, for_each_part, paced};
@@ -557,9 +557,9 @@ impl Problem {
         found.await.concat()
     }
 
-    /// Returns the elements of the mesh, in ascending order, that have the listed corners of the problem. `given` is the topology
-    /// of the mesh.
-    pub(crate) fn in_mesh(&self, corners: &[u32], given: &Topology<'_>) -> Vec<Element> {
+    /// Returns the corners of the mesh, in ascending order, that are the listed corners of the problem. `given` is the topology of
+    /// the mesh.
+    pub(crate) fn in_mesh(&self, corners: &[u32], given: &Topology<'_>) -> Vec<u32> {
         if corners.is_empty() {
             return Vec::new();
         }
@@ -570,10 +570,8 @@ impl Problem {
         let all = self.layout.corners.all();
         let of = |&c: &u32| sorted(all[c as usize].map(|v| self.layout.vertices[v as usize]));
         let sought: HashSet<[u32; 3]> = corners.iter().map(of).collect();
-        let found = (0..).zip(given.corners()).filter(|&(_, &c)| sought.contains(&sorted(c)));
-        let mut elements: Vec<Element> = found.map(|(corner, _)| given.element(corner)).collect();
-        elements.dedup();
-        elements
+        let all = (0..).zip(given.corners());
+        all.filter(|&(_, &c)| sought.contains(&sorted(c))).map(|(corner, _)| corner).collect()
     }
 }
 

@@ -7,6 +7,7 @@
 use glam::DVec2;
 
 use crate::layout::Problem;
+use crate::metric::of_right_angle;
 
 /// Inverse mean ratio below which a triangle is sound. Only sound triangles determine sizes.
 const SOUND: f64 = 10.0;
@@ -17,23 +18,30 @@ const ROUNDS: usize = 20;
 /// Returns the target area at each vertex, in normalized units. The target area of a triangle is the mean over its
 /// vertices. Target areas of all triangles add up to the area that the boundary encloses.
 pub(crate) fn target_areas(problem: &Problem, positions: &[DVec2]) -> Vec<f64> {
-    let triangles = problem.triangles();
+    let corners = problem.corners();
     let mut size = known(problem, positions);
     let free = problem.free_count();
-    let mut interpolated = spread(triangles, &mut size);
+    let mut interpolated = spread(corners.all(), &mut size);
     interpolated.retain(|&v| (v as usize) < free);
     let mut size: Vec<f64> = size.into_iter().map(|size| size.unwrap_or(0.0)).collect();
     for _ in 0..ROUNDS {
         for &v in &interpolated {
-            let ring = problem.ring_of(v);
-            let sum: f64 = ring.iter().map(|&k| size[k as usize]).sum();
-            size[v as usize] = sum / ring.len() as f64;
+            let (mut sum, mut count) = (0.0, 0);
+            for k in problem.companions(v) {
+                (sum, count) = (sum + size[k as usize], count + 1);
+            }
+            size[v as usize] = sum / f64::from(count);
         }
     }
     let mut areas: Vec<f64> = size.into_iter().map(f64::exp).collect();
     let target = |t: &[u32; 3]| t.map(|v| areas[v as usize]).iter().sum::<f64>() / 3.0;
-    let wanted: f64 = triangles.iter().map(target).sum();
-    let factor = problem.mean_area() * triangles.len() as f64 / wanted;
+    let mut wanted: f64 = corners.triangles().iter().map(target).sum();
+    if problem.has_quadrilaterals() {
+        // A square has 4/√3 times the area of the equilateral triangle of its side, and four corners.
+        let of_quadrilaterals = corners.of_quadrilaterals().iter().map(target);
+        wanted += of_quadrilaterals.sum::<f64>() / 3f64.sqrt();
+    }
+    let factor = problem.mean_area() * corners.equivalent_triangles() / wanted;
     areas.iter_mut().for_each(|area| *area *= factor);
     areas
 }
@@ -50,8 +58,13 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
     }
     let free = problem.free_count();
     let mut all = vec![Vertex::default(); positions.len()];
-    for t in problem.triangles() {
-        let [p, q, r] = t.map(|v| positions[v as usize]);
+    for (index, t) in (0..).zip(problem.corners().all()) {
+        let is_triangle = problem.corners().is_triangle(index);
+        let [p, q, mut r] = t.map(|v| positions[v as usize]);
+        if !is_triangle {
+            let [_, b] = of_right_angle([(q - p).to_array(), (r - p).to_array()]);
+            r = p + DVec2::from(b);
+        }
         let area = 0.5 * (q - p).perp_dot(r - p);
         let squares = p.distance_squared(q) + q.distance_squared(r) + r.distance_squared(p);
         let is_sound = squares < SOUND * 4.0 * 3f64.sqrt() * area;
@@ -63,9 +76,9 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
             }
         }
         // An edge between two fixed vertices estimates the area of an equilateral triangle with this edge.
-        for [k, l] in
-            [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|edge| edge.map(|v| v as usize))
-        {
+        let sides = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+        let count = if is_triangle { 3 } else { 1 };
+        for [k, l] in sides[..count].iter().map(|edge| edge.map(|v| v as usize)) {
             let square = positions[k].distance_squared(positions[l]);
             if k >= free && l >= free && square > 0.0 {
                 let area = (3f64.sqrt() / 4.0 * square).ln();
@@ -79,7 +92,7 @@ fn known(problem: &Problem, positions: &[DVec2]) -> Vec<Option<f64>> {
     // neighbors of such a vertex have unsound triangles. So a size counts only if most neighbors have sound triangles
     // alone.
     let mut company = vec![0i32; all.len()];
-    for t in problem.triangles() {
+    for t in problem.corners().all() {
         let of = |v: u32| if all[v as usize].is_unsound { -1 } else { 1 };
         let [a, b, c] = t.map(of);
         for (&v, others) in t.iter().zip([b + c, c + a, a + b]) {

@@ -353,7 +353,7 @@ impl<'a> Smoother<'a> {
     /// ([`MeshError::BeyondPrecision`]); [`Untangle`](crate::Untangle) opens those that have a free vertex.
     pub fn beyond_precision(&self) -> Vec<Element> {
         let beyond = now(self.problem.beyond_precision(self.problem.positions()));
-        self.problem.in_mesh(&beyond, &self.topology)
+        self.topology.elements(&self.problem.in_mesh(&beyond, &self.topology))
     }
 
     /// Returns the number of colors of the free vertices.

@@ -18,7 +18,7 @@ pub(super) fn opened(mesh: &Mesh, topology: &Topology<'_>) -> Option<Mesh> {
     let (_, projected) = Mercator::with_slivers(mesh, topology);
     let near_slivers = || {
         let untangled = Untangle::new(&projected).observe(most_sweeps).run().ok()?;
-        let is_feasible = untangled.left.is_empty() && untangled.overlapping.is_none();
+        let is_feasible = untangled.is_feasible();
         is_feasible.then_some(untangled.points)
     };
     let near_means = || {

@@ -97,6 +97,41 @@ impl<T: Real> Corner<T> {
 }
 
 impl Corner<f64> {
+    /// Returns the blocks of the convex part of the Hessian by the edges: first and first, first and second, second and second.
+    /// [`Self::blocks`] has the same part by the positions of the vertices of a triangle.
+    fn edge_blocks(&self, epsilon: f64) -> [DMat2; 3] {
+        let [a, b] = self.edges.map(DVec2::from);
+        let (chi, root) = regularized(epsilon, self.area());
+        let unit = self.inverse_target * (2.0 / IDEAL);
+        let of_squares = [2.0 * a - b, 2.0 * b - a].map(|slope| slope * unit);
+        let of_area = [-b.perp(), a.perp()].map(|slope| slope * 0.5 * self.inverse_target);
+        let (cross, square) = (-1.0 / (chi * root), 2.0 * self.squares() / (chi * root * root));
+        let outer = |a: DVec2, b: DVec2| DMat2::from_cols(a * b.x, a * b.y);
+        [(0, 0, 2.0), (0, 1, -1.0), (1, 1, 2.0)].map(|(i, k, weight)| {
+            DMat2::from_diagonal(DVec2::splat(weight * unit / chi))
+                + (outer(of_squares[i], of_area[k]) + outer(of_area[i], of_squares[k])) * cross
+                + outer(of_area[i], of_area[k]) * square
+        })
+    }
+
+    /// Returns blocks of the convex part of the Hessian. The rows belong to a vertex that changes the edges by the slopes `row`,
+    /// and the columns of each block to a vertex with the slopes in `columns`.
+    pub(crate) fn blocks_by<const N: usize>(
+        &self,
+        row: impl EdgeSlopes,
+        columns: [impl EdgeSlopes; N],
+        epsilon: f64,
+    ) -> [DMat2; N] {
+        let [first, mixed, second] = self.edge_blocks(epsilon);
+        let back = mixed.transpose();
+        columns.map(|column| {
+            first * (row.alpha() * column.alpha())
+                + mixed * (row.alpha() * column.beta())
+                + back * (row.beta() * column.alpha())
+                + second * (row.beta() * column.beta())
+        })
+    }
+
     /// Returns three blocks of the convex part of the Hessian. The rows of each block belong to the position of the
     /// corner. The columns belong to the corner, to the first other vertex and to the second other vertex, in this order.
     /// χ counts as linear in the area, and the area as linear in the positions. The energy is then a squared length over

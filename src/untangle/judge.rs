@@ -11,7 +11,7 @@ use crate::parallel::pace::now;
 use crate::precision::Precision;
 use crate::topology::Topology;
 use crate::topology::overlapping_star;
-use crate::topology::predicates::not_positive;
+use crate::topology::predicates::{not_positive, orientation};
 
 /// A mesh with the precision in which exact predicates judge its triangles.
 pub(super) struct Judge<'m> {
@@ -23,20 +23,26 @@ pub(super) struct Judge<'m> {
 }
 
 impl Judge<'_> {
-    /// Returns the triangles of the mesh that are inverted or flat with the vertices at `points`, in ascending order, and
-    /// the number of triangles that exact predicates find inverted or flat. Triangles with a free vertex that are too
-    /// flat for double precision are in the list too.
-    pub(super) fn bad_triangles(&self, points: &[[f64; 2]]) -> (Vec<BadTriangle>, usize) {
-        let triangles = self.topology.triangles();
-        let exact = now(not_positive(points, triangles));
-        let (mut bad, _) = self.topology.described(points, &exact);
+    /// Returns the corners of the mesh that are inverted or flat with the vertices at `points`, in ascending order, and
+    /// the number of corners that exact predicates find inverted or flat. Elements with a free vertex that are too
+    /// flat for double precision are in the list too. Indices are those of [`Topology::corners`].
+    pub(super) fn bad_corners(&self, points: &[[f64; 2]]) -> (Vec<BadTriangle>, usize) {
+        let corners = self.topology.corners();
+        let exact = now(not_positive(points, corners)).into_iter();
+        let flat = |vertices: &[u32; 3]| orientation(points, vertices) == 0.0;
+        let described = exact.map(|corner| {
+            let vertices = corners[corner as usize];
+            BadTriangle { triangle: corner as usize, vertices, flat: flat(&vertices) }
+        });
+        let mut bad: Vec<BadTriangle> = described.collect();
         let exact: HashSet<usize> = bad.iter().map(|bad| bad.triangle).collect();
         let beyond =
             now(self.problem.beyond_precision(&now(self.problem.normalized(points, Vec::new()))));
-        for element in self.problem.in_mesh(&beyond, self.topology) {
-            let triangle = element.index();
-            if !exact.contains(&triangle) && self.topology.can_move(element) {
-                bad.push(BadTriangle { triangle, vertices: triangles[triangle], flat: true });
+        for corner in self.problem.in_mesh(&beyond, self.topology) {
+            let (index, vertices) = (corner as usize, corners[corner as usize]);
+            let can_move = vertices.iter().any(|&v| self.topology.free()[v as usize]);
+            if !exact.contains(&index) && can_move {
+                bad.push(BadTriangle { triangle: index, vertices, flat: true });
             }
         }
         bad.sort_unstable_by_key(|bad| bad.triangle);
@@ -49,7 +55,7 @@ impl Judge<'_> {
         for x in points.as_flattened_mut() {
             *x = self.stored.rounded(*x);
         }
-        let (left, exactly_bad) = self.bad_triangles(&points);
+        let (left, exactly_bad) = self.bad_corners(&points);
         let overlapping = match left.is_empty() {
             true => {
                 let (corners, free) = (self.topology.corner_list(), self.topology.free());
@@ -65,9 +71,9 @@ impl Judge<'_> {
 pub(super) struct Judgment {
     /// Position of every vertex, in the order and units of the mesh, rounded to the stored precision.
     pub(super) points: Vec<[f64; 2]>,
-    /// Inverted and flat triangles, see [`Judge::bad_triangles`].
+    /// Inverted and flat corners, see [`Judge::bad_corners`].
     pub(super) left: Vec<BadTriangle>,
-    /// Number of triangles that exact predicates find inverted or flat.
+    /// Number of corners that exact predicates find inverted or flat.
     pub(super) exactly_bad: usize,
     /// If `left` is empty: the first free vertex around which triangles wind more than once. `None` if there is no such
     /// vertex.

@@ -37,7 +37,7 @@ pub(crate) fn feasible_means(problem: &Problem, from: &[DVec2]) -> Option<Vec<DV
     }
     let points: Vec<[f64; 2]> = state.positions.iter().map(|p| p.to_array()).collect();
     let free: Vec<bool> = (0..points.len()).map(|v| v < problem.free_count()).collect();
-    let is_feasible = now(not_positive(&points, problem.triangles())).is_empty()
+    let is_feasible = now(not_positive(&points, problem.corners().all())).is_empty()
         && overlapping_star(&points, problem.corners(), &free).is_none();
     is_feasible.then_some(state.positions)
 }

@@ -10,8 +10,10 @@
 
 use glam::{DMat2, DVec2};
 
-use crate::layout::Problem;
+use crate::layout::{OPPOSITE, Problem};
+use crate::metric::Given;
 use crate::parallel::{collect, map_ranges};
+use crate::patch::Role;
 use crate::untangle::state::{CHUNK, Region, State, update};
 
 /// Share of the predicted decrease that a step must reach (Armijo).
@@ -106,10 +108,14 @@ impl<'p> Hessian<'p> {
                 let ring = problem.ring_of(v as u32);
                 let (first, mut sum) = (mixed.len(), DMat2::ZERO);
                 mixed.resize(first + ring.len(), DMat2::ZERO);
+                if problem.has_quadrilaterals() {
+                    own.push(of_mixed_ring(state, v as u32, epsilon, &mut mixed[first..]));
+                    continue;
+                }
                 for i in 0..ring.len() {
                     let next = (i + 1) % ring.len();
                     let [block, one, other] =
-                        state.triangle(&[v as u32, ring[i], ring[next]]).blocks(epsilon);
+                        state.corner(false, &[v as u32, ring[i], ring[next]]).blocks(epsilon);
                     sum += block;
                     mixed[first + i] += one;
                     mixed[first + next] += other;
@@ -127,7 +133,8 @@ impl<'p> Hessian<'p> {
         collect(moves.len(), |v| {
             let ring = self.problem.ring_range(v as u32);
             let neighbors = self.problem.ring()[ring.clone()].iter().zip(&self.mixed[ring]);
-            let mixed = neighbors.filter_map(|(&k, block)| Some(*block * *moves.get(k as usize)?));
+            let of = |k: u32| moves.get((k & !OPPOSITE) as usize);
+            let mixed = neighbors.filter_map(|(&k, block)| Some(*block * *of(k)?));
             self.own[v] * moves[v] + mixed.sum::<DVec2>()
         })
     }
@@ -159,6 +166,36 @@ impl<'p> Hessian<'p> {
         }
         found
     }
+}
+
+/// Adds the blocks of a free vertex with the other vertices of its elements to `mixed`, in the order of its one-ring, in a mesh
+/// with quadrilaterals. Returns its own block.
+fn of_mixed_ring(state: &State<'_>, vertex: u32, epsilon: f64, mixed: &mut [DMat2]) -> DMat2 {
+    let ring = state.problem.ring_of(vertex);
+    let place = |k: u32| ring.iter().position(|&other| other & !OPPOSITE == k);
+    let mut sum = DMat2::ZERO;
+    for (corner, is_right) in state.problem.corners_around(vertex) {
+        let (role, others) = Role::of(corner, is_right, vertex);
+        let weight = role.weighted(1.0);
+        // The slopes of all three vertices, counter-clockwise.
+        let slopes = match is_right {
+            true => [Role::Own, Role::Last, Role::Next].map(Role::slopes),
+            false => [Given(-1.0, -1.0), Given(1.0, 0.0), Given(0.0, 1.0)],
+        };
+        let by = |k: u32| corner.iter().position(|&v| v == k).map_or(slopes[0], |at| slopes[at]);
+        let [own, one, two] = state.corner(is_right, &corner).blocks_by(
+            by(vertex),
+            [by(vertex), by(others[0]), by(others[1])],
+            epsilon,
+        );
+        sum += own * weight;
+        for (k, block) in others.into_iter().zip([one, two]) {
+            if let Some(at) = place(k) {
+                mixed[at] += block * weight;
+            }
+        }
+    }
+    sum
 }
 
 fn dot(a: &[DVec2], b: &[DVec2]) -> f64 {

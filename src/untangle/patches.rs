@@ -1,14 +1,14 @@
-//! Loops of untangling over vertices and triangles, in groups of four (one in each lane).
+//! Loops of untangling over vertices and corners, in groups of four (one in each lane).
 
 use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::metric::{Dual, Own, Real};
+use crate::metric::{Dual, Own, Real, of_right_angle};
 use crate::parallel::{for_each_chunk, map_parts};
 use crate::patch::lanes::{LANES, Lanes, Mask, Points, numbers, points, with_instructions};
-use crate::patch::{Objective, SearchRule, VertexBatch, newton_step};
+use crate::patch::{Objective, Role, SearchRule, VertexBatch, newton_step};
 use crate::untangle::energy::Corner;
 
 /// Number of batches of vertices in one parallel task.
@@ -46,16 +46,15 @@ impl Tangle<'_> {
         let mut found = vec![[DVec2::ZERO; LANES]; batches.len()];
         for_each_chunk(&mut found, BATCHES, |first, found| {
             with_instructions!(Level::new(), simd => {
-                let mut scratch = Vec::new();
+                let (mut scratch, mut corners) = (Vec::new(), Vec::new());
                 for (found, &batch) in found.iter_mut().zip(&batches[first..]) {
                     let at = points(simd, self.positions, batch);
-                    let patches = EnergyRings::gather(simd, self, batch, epsilon, &mut scratch);
-                    let [x, y] = match STEPS {
-                        true => {
-                            let going = Mask::splat(simd, true);
-                            newton_step(&patches, at, going, &SearchRule::UNTANGLE).0
-                        }
-                        false => patches.expansion(at).gradient,
+                    let [x, y] = if self.problem.has_quadrilaterals() {
+                        let patches = MixedEnergy::gather(simd, self, batch, epsilon, &mut corners);
+                        visit::<_, STEPS>(&patches, at)
+                    } else {
+                        let patches = EnergyRings::gather(simd, self, batch, epsilon, &mut scratch);
+                        visit::<_, STEPS>(&patches, at)
                     };
                     for lane in 0..LANES {
                         found[lane] = DVec2::new(x[lane], y[lane]);
@@ -66,13 +65,21 @@ impl Tangle<'_> {
         found
     }
 
-    /// Returns the energy of all triangles. Threads do not change the order of the sum.
+    /// Returns the energy of all elements. Threads do not change the order of the sum.
     pub(super) fn energy(&self, epsilon: f64) -> f64 {
         let sums = map_parts(
             self.problem.triangles().chunks(TRIANGLES),
             |_, triangles| with_instructions!(Level::new(), simd => self.energy_of(simd, triangles, epsilon)),
         );
-        sums.into_iter().sum()
+        let sum: f64 = sums.into_iter().sum();
+        if !self.problem.has_quadrilaterals() {
+            return sum;
+        }
+        let [_, right] = self.problem.corner_parts();
+        let of = |t: &[u32; 3]| self.corner(true, t).energy(epsilon);
+        let sums =
+            map_parts(right.corners.chunks(TRIANGLES), |_, part| part.iter().map(of).sum::<f64>());
+        sum + right.weight() * sums.into_iter().sum::<f64>()
     }
 
     #[inline(always)]
@@ -91,16 +98,35 @@ impl Tangle<'_> {
                 + numbers(simd, self.targets, third);
             sum += corner(p, [q, r], targets).energy(epsilon);
         }
-        let last: f64 = rest.iter().map(|t| self.triangle(t).energy(epsilon)).sum();
+        let last: f64 = rest.iter().map(|t| self.corner(false, t).energy(epsilon)).sum();
         (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
     }
 
-    /// Returns a triangle, seen from its first vertex.
+    /// Returns a corner, seen from its first vertex: a triangle, or the sheared corner of a quadrilateral if it `is_right`.
     #[inline]
-    pub(super) fn triangle(&self, vertices: &[u32; 3]) -> Corner<f64> {
+    pub(super) fn corner(&self, is_right: bool, vertices: &[u32; 3]) -> Corner<f64> {
         let [p, q, r] = vertices.map(|v| self.positions[v as usize].to_array());
         let [a, b, c] = vertices.map(|v| self.targets[v as usize]);
-        corner(p, [q, r], a + b + c)
+        let triangle = corner(p, [q, r], a + b + c);
+        match is_right {
+            true => Corner { edges: of_right_angle(triangle.edges), ..triangle },
+            false => triangle,
+        }
+    }
+}
+
+/// Returns the positions after a step of the visited vertices if `STEPS`, and gradients otherwise.
+#[inline(always)]
+fn visit<S: Simd, const STEPS: bool>(
+    patches: &impl Objective<Lanes<S>>,
+    at: Points<S>,
+) -> Points<S> {
+    match STEPS {
+        true => {
+            let going = Mask::splat(at[0].simd, true);
+            newton_step(patches, at, going, &SearchRule::UNTANGLE).0
+        }
+        false => patches.expansion(at).gradient,
     }
 }
 
@@ -179,6 +205,86 @@ impl<S: Simd> Objective<Lanes<S>> for EnergyRings<'_, S> {
         let mut sum = to[0].constant(0.0);
         for i in 0..self.ring.len() - 1 {
             sum += self.corner(i, to).energy(self.epsilon);
+        }
+        (sum, Mask::splat(sum.simd, true))
+    }
+}
+
+/// A corner of each of four vertices, in equal roles.
+#[derive(Clone, Copy)]
+struct LaneCorner<S: Simd> {
+    role: Role,
+    /// Positions of the other two vertices, counter-clockwise.
+    others: [Points<S>; 2],
+    inverse_target: Lanes<S>,
+}
+
+/// The corners of four vertices in a mesh with quadrilaterals, with their energy as an objective.
+struct MixedEnergy<'r, S: Simd> {
+    epsilon: f64,
+    corners: &'r [LaneCorner<S>],
+}
+
+impl<'r, S: Simd> MixedEnergy<'r, S> {
+    /// Reads the corners of four vertices, whose elements are of equal kinds in equal order, into `scratch`.
+    #[inline(always)]
+    fn gather(
+        simd: S,
+        tangle: &Tangle<'_>,
+        batch: VertexBatch,
+        epsilon: f64,
+        scratch: &'r mut Vec<LaneCorner<S>>,
+    ) -> Self {
+        scratch.clear();
+        let [mut a, mut b, mut c, mut d] = batch.map(|v| tangle.problem.corners_around(v));
+        while let (Some(one), Some(two), Some(three), Some(four)) =
+            (a.next(), b.next(), c.next(), d.next())
+        {
+            let corners = [one.0, two.0, three.0, four.0];
+            let of = |lane: usize| Role::of(corners[lane], one.1, batch[lane]);
+            let (role, lanes) = (of(0).0, [of(0).1, of(1).1, of(2).1, of(3).1]);
+            let first = [lanes[0][0], lanes[1][0], lanes[2][0], lanes[3][0]];
+            let second = [lanes[0][1], lanes[1][1], lanes[2][1], lanes[3][1]];
+            let targets = numbers(simd, tangle.targets, batch)
+                + numbers(simd, tangle.targets, first)
+                + numbers(simd, tangle.targets, second);
+            let others = [first, second].map(|vertices| points(simd, tangle.positions, vertices));
+            let inverse_target = targets.constant(3.0) / targets;
+            scratch.push(LaneCorner { role, others, inverse_target });
+        }
+        Self { epsilon, corners: scratch }
+    }
+
+    /// Returns corner `i` with the visited vertices at `at`.
+    #[inline(always)]
+    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+        let LaneCorner { role, others, inverse_target } = self.corners[i];
+        let [p, q, r] = role.vertices(at, others);
+        let edges = edges(p, [q, r]);
+        let edges = if role.is_right() { of_right_angle(edges) } else { edges };
+        Corner { edges, inverse_target }
+    }
+}
+
+impl<S: Simd> Objective<Lanes<S>> for MixedEnergy<'_, S> {
+    #[inline(always)]
+    fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
+        let zero = at[0].constant(0.0);
+        let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
+        for i in 0..self.corners.len() {
+            let role = self.corners[i].role;
+            let term = self.corner(i, at).expansion(role.slopes(), self.epsilon);
+            sum = sum + role.weighted(term);
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn trial(&self, to: Points<S>, _: Lanes<S>) -> (Lanes<S>, Mask<S>) {
+        let mut sum = to[0].constant(0.0);
+        for i in 0..self.corners.len() {
+            let role = self.corners[i].role;
+            sum += role.weighted(self.corner(i, to).energy(self.epsilon));
         }
         (sum, Mask::splat(sum.simd, true))
     }

@@ -48,12 +48,12 @@ impl Assessment {
     }
 }
 
-/// The vertices of a sweep, and all triangles whose shape the sweep changes.
+/// The vertices of a sweep, and all corners whose shape the sweep changes.
 pub(crate) struct Region {
     /// Batches of vertices, by color.
     vertices: Vec<Vec<VertexBatch>>,
-    /// Indices of the triangles in the problem.
-    triangles: Vec<u32>,
+    /// Indices of the corners in the problem.
+    corners: Vec<u32>,
 }
 
 impl Region {
@@ -63,7 +63,7 @@ impl Region {
         let free = problem.free_count();
         let mut inside = vec![false; problem.positions().len()];
         let mut front = Vec::new();
-        let triangles = problem.triangles();
+        let triangles = problem.corners().all();
         for v in bad.iter().flat_map(|&t| triangles[t as usize]) {
             if !std::mem::replace(&mut inside[v as usize], true) {
                 front.push(v);
@@ -72,7 +72,7 @@ impl Region {
         for _ in 0..rings {
             let mut next = Vec::new();
             for &v in front.iter().filter(|&&v| (v as usize) < free) {
-                for &k in problem.ring_of(v) {
+                for k in problem.companions(v) {
                     if !std::mem::replace(&mut inside[k as usize], true) {
                         next.push(k);
                     }
@@ -87,7 +87,7 @@ impl Region {
                 .iter()
                 .map(|color| batches(problem, color.clone().filter(|&v| moves(v))))
                 .collect(),
-            triangles: (0..triangles.len() as u32)
+            corners: (0..triangles.len() as u32)
                 .filter(|&t| triangles[t as usize].iter().any(|&v| moves(v)))
                 .collect(),
         }
@@ -97,7 +97,7 @@ impl Region {
     pub(crate) fn whole(problem: &Problem) -> Region {
         Region {
             vertices: problem.colors().iter().map(|c| batches(problem, c.clone())).collect(),
-            triangles: (0..problem.triangles().len() as u32).collect(),
+            corners: (0..problem.corners().all().len() as u32).collect(),
         }
     }
 }
@@ -114,8 +114,10 @@ impl<'p> State<'p> {
     /// Returns the smallest area and the number of bad triangles of a region at the present positions.
     pub(crate) fn assess(&self, region: &Region) -> Assessment {
         let tangle = self.tangle(&self.positions);
-        let area = |&t: &u32| tangle.triangle(&self.problem.triangles()[t as usize]).area();
-        let parts = map_parts(region.triangles.chunks(CHUNK), |_, part| {
+        let corners = self.problem.corners();
+        let area =
+            |&c: &u32| tangle.corner(!corners.is_triangle(c), &corners.all()[c as usize]).area();
+        let parts = map_parts(region.corners.chunks(CHUNK), |_, part| {
             part.iter().map(area).fold(Assessment::EMPTY, |all, area| {
                 all.and(Assessment { least: area, bad: usize::from(area.is_nan() || area <= 0.0) })
             })
@@ -194,9 +196,9 @@ impl<'p> State<'p> {
         self.targets = targets;
     }
 
-    /// Returns a triangle, seen from its first vertex.
-    pub(super) fn triangle(&self, vertices: &[u32; 3]) -> Corner<f64> {
-        self.tangle(&self.positions).triangle(vertices)
+    /// Returns a corner, seen from its first vertex: a triangle, or the sheared corner of a quadrilateral if it `is_right`.
+    pub(super) fn corner(&self, is_right: bool, vertices: &[u32; 3]) -> Corner<f64> {
+        self.tangle(&self.positions).corner(is_right, vertices)
     }
 
     /// Returns the energy of all triangles.
@@ -231,7 +233,7 @@ impl<'p> State<'p> {
                 return DVec2::ZERO;
             }
             let here = at(v);
-            let ring = problem.ring_of(v as u32).iter().map(|&k| k as usize);
+            let ring = problem.neighbors(v as u32).map(|k| k as usize);
             ring.map(|k| (here - at(k)) * f64::from(hierarchy.weight(v, k))).sum()
         };
         let of_free = |residual: &[DVec2]| -> Vec<DVec2> {

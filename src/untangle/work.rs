@@ -13,7 +13,6 @@ use super::stages::{DESCENTS, Descent, NEWTON, STAGES, Stage, Start};
 use super::state::{Region, State};
 use crate::error::{BadTriangle, MeshError};
 use crate::layout::{Coloring, Problem, target_areas};
-use crate::mesh::Element;
 use crate::mesh::Mesh;
 use crate::parallel::pace::now;
 use crate::precision::Precision;
@@ -43,7 +42,6 @@ pub(super) fn untangled(
     stored: Precision,
     observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
 ) -> Result<Untangled, MeshError> {
-    MeshError::check_triangles_alone(mesh, "untangling")?;
     let topology = Topology::by_area(mesh)?;
     let distant = distant_vertices(mesh, &topology);
     let start = match distant.is_empty() {
@@ -52,7 +50,7 @@ pub(super) fn untangled(
     };
     let problem = Problem::new(&start, &topology, &Coloring::new(&topology));
     let judge = Judge { mesh: &start, topology: &topology, problem: &problem, stored };
-    let (mut before, exactly_bad) = judge.bad_triangles(&mesh.points);
+    let (mut before, exactly_bad) = judge.bad_corners(&mesh.points);
     // Double precision cannot judge triangles of distant vertices. Exact predicates suffice, as the vertices move anyway.
     before.retain(|bad| {
         let is_distant = |v: &u32| distant.binary_search(v).is_ok();
@@ -67,7 +65,7 @@ pub(super) fn untangled(
         let [p, q, r] =
             bad.vertices.map(|v| (!topology.free()[v as usize], mesh.points[v as usize]));
         let coincide = |(a, b): ((bool, [f64; 2]), (bool, [f64; 2]))| a.0 && a == b;
-        !topology.can_move(Element::Triangle(bad.triangle))
+        !bad.vertices.iter().any(|&v| topology.free()[v as usize])
             || [(p, q), (q, r), (r, p)].into_iter().any(coincide)
     };
     let hopeless: Vec<BadTriangle> = before.iter().copied().filter(is_hopeless).collect();
@@ -76,12 +74,14 @@ pub(super) fn untangled(
         bad_before: before.len(),
         left: before.clone(),
         hopeless,
+        left_quadrilaterals: Vec::new(),
+        hopeless_quadrilaterals: Vec::new(),
         overlapping: None,
         sweeps: 0,
         moved: 0,
     };
     if result.left.len() == result.hopeless.len() {
-        return Ok(result);
+        return Ok(result.separated(&topology, &mesh.points));
     }
     let mut work = Work::new(judge, &distant, exactly_bad == 0);
     if distant.is_empty() || !work.is_done(&mut result) {
@@ -89,7 +89,7 @@ pub(super) fn untangled(
     }
     let differs = |(now, was): &(&[f64; 2], &[f64; 2])| now != was;
     result.moved = result.points.iter().zip(&mesh.points).filter(differs).count();
-    Ok(result)
+    Ok(result.separated(&topology, &mesh.points))
 }
 
 struct Work<'m> {
@@ -176,7 +176,7 @@ impl<'m> Work<'m> {
     fn begin(&mut self, start: &Start, result: &Untangled) -> Option<Region> {
         match *start {
             Start::Near(rings) => {
-                let share = result.left.len() as f64 / self.problem.triangles().len() as f64;
+                let share = result.left.len() as f64 / self.problem.corners().all().len() as f64;
                 // If sweeps have not lowered the number of bad triangles, sweeps over more rings are not tried.
                 let in_vain = result.sweeps > 0 && result.left.len() == result.bad_before;
                 let is_useful = share <= MANY && !in_vain;
@@ -188,6 +188,8 @@ impl<'m> Work<'m> {
                 self.state.make_harmonic(&levels, &nobody);
                 self.levels = Some(levels);
             }
+            // Cuts go along edges of triangles.
+            Start::Cut(_) if self.problem.has_quadrilaterals() => return None,
             Start::Cut(short) => {
                 let held = self.state.cut(short);
                 // Without holes, all rules find equal cuts, or none.
@@ -306,7 +308,7 @@ impl<'m> Work<'m> {
     fn bad(&self) -> Vec<u32> {
         let positions = &self.state.positions;
         let points: Vec<[f64; 2]> = positions.iter().map(|p| p.to_array()).collect();
-        let mut bad = now(not_positive(&points, self.problem.triangles()));
+        let mut bad = now(not_positive(&points, self.problem.corners().all()));
         bad.extend(now(self.problem.beyond_precision(positions)));
         bad
     }

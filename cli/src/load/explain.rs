@@ -156,7 +156,7 @@ fn has_twins(file: &LoadedMesh, elements: &[Element]) -> bool {
 }
 
 /// Returns the name of an element in the terms of the file, such as "triangle 7", and its place.
-fn named(file: &LoadedMesh, element: Element) -> (String, String) {
+pub(crate) fn named(file: &LoadedMesh, element: Element) -> (String, String) {
     let index = element.index();
     let (kind, found) = match element {
         Element::Triangle(_) => ("triangle", file.source.triangle_locations([index])),
@@ -197,7 +197,7 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                     bad.problem(),
                     quadrilaterals.len()
                 ))
-                .with_remedy("Correct the quadrilaterals, or keep all of them fixed: --quadrilaterals keep");
+                .with_remedy("Untangle the mesh first: --untangle, or keep all quadrilaterals fixed: --quadrilaterals keep");
             }
             let remedy = if is_across {
                 "The triangles reach from the smallest longitude to the largest: --surface sphere continues longitudes across the meridian at which longitudes wrap, such as 180 degrees"

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use gpu_smooth::{
-    Mesh, MeshError, Smoother, Topology,
+    Element, Mesh, MeshError, Smoother, Topology,
     topology::BadTriangle,
     untangle::{Untangle, Untangled, Untangling},
 };
@@ -74,14 +74,17 @@ pub(crate) fn untangle_input(
         .observe(&mut observe)
         .run()
         .map_err(explained)?;
-    let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved } = untangled;
-    let mut error = match overlapping {
-        None if left.is_empty() => {
+    let concave = concave(file, &untangled);
+    let Untangled { points, bad_before, left, hopeless, overlapping, sweeps, moved, .. } =
+        untangled;
+    let mut error = match (concave, overlapping) {
+        (Some(error), _) => error,
+        (None, None) if left.is_empty() => {
             let mesh = Mesh { points, ..mesh.clone() };
             let remark = crossings.map(|crossings| crossings.to_string());
             return Ok(UntangledInput { mesh, bad_before, sweeps, moved, remark });
         }
-        Some(vertex) if left.is_empty() => overlaps(file, vertex, sweeps),
+        (None, Some(vertex)) if left.is_empty() => overlaps(file, vertex, sweeps),
         _ => {
             let was_ended = ended.is_some();
             let left = TangledRest { triangles: &left, hopeless: &hopeless, sweeps, was_ended };
@@ -126,6 +129,27 @@ fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
          it{PERHAPS}{KEPT}",
         counted(sweeps)
     ))
+}
+
+/// Returns the error for a mesh whose quadrilaterals could not be made convex; `None` if all are convex.
+fn concave(file: &LoadedMesh, untangled: &Untangled) -> Option<CliError> {
+    let Untangled { left_quadrilaterals: left, hopeless_quadrilaterals: hopeless, .. } = untangled;
+    let (bad, why) = match hopeless.first() {
+        Some(bad) => {
+            (bad, "cannot become convex, as none of their three vertices is free".to_owned())
+        }
+        None => {
+            let sweeps = counted(untangled.sweeps);
+            (left.first()?, format!("are not convex after {sweeps} of untangling"))
+        }
+    };
+    let count = if hopeless.is_empty() { left.len() } else { hopeless.len() };
+    let (name, place) = explain::named(file, Element::Quadrilateral(bad.quadrilateral));
+    let vertex = file.vertex_place(bad.vertices[bad.corner]).id;
+    Some(CliError::run(format!(
+        "{place}: {name} is {} at vertex {vertex}: {count} corners of quadrilaterals {why}{KEPT}",
+        bad.problem()
+    )))
 }
 
 /// The remaining problems of a tangled mesh.
