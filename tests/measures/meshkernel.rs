@@ -31,7 +31,7 @@ fn edges_of_shipped_meshes_have_the_measures_of_meshkernel() {
         let mesh = Mesh {
             points: numbers[..6].iter().map(place).collect(),
             triangles: corners.chunks(3).map(|t| [t[0], t[1], t[2]]).collect(),
-            fixed: vec![],
+            ..Mesh::default()
         };
         let topology = Topology::new(&mesh).unwrap();
         let edges = Measured::on(surface, &mesh.points, &topology).unwrap().edges();
