@@ -11,10 +11,10 @@ pub struct Change {
     /// Displacement of vertices, divided by the mean length of their edges before.
     pub moved: Distribution,
     /// Factor by which the element size at a vertex grew or shrank, always 1 or more. The element size is the square
-    /// root of the geometric mean of the areas of the triangles at the vertex.
+    /// root of the geometric mean of the areas of the elements at the vertex.
     pub size: Distribution,
-    /// Least triangle altitude before and after, in the unit of the points. The altitude bounds the time step of
-    /// explicit solvers.
+    /// Least altitude of a triangle, or of a corner triangle of a quadrilateral, before and after, in the unit of the points. The
+    /// altitude bounds the time step of explicit solvers.
     pub least_altitude: [f64; 2],
 }
 
@@ -29,14 +29,14 @@ pub struct Distribution {
     pub most: f64,
 }
 
-/// Sums over the triangles around a vertex.
+/// Sums over the elements around a vertex.
 #[derive(Clone, Copy, Default)]
 struct Around {
     /// Sum of the natural logarithms of the areas. `lengths` sums the lengths of the edges at the vertex, once per
-    /// triangle.
+    /// element.
     logarithms: f64,
     lengths: f64,
-    triangles: u32,
+    elements: u32,
 }
 
 impl Change {
@@ -56,7 +56,7 @@ impl Change {
         let is_free = |v: usize| topology.free()[v];
         // If a result is stored in single precision, even vertices that must stay get rounded coordinates.
         let is_rounded = |v: usize| before[v].map(|x| Precision::Single.rounded(x)) == after[v];
-        let has_slid = |v: usize| before[v] != after[v] && !is_rounded(v) && was[v].triangles > 0;
+        let has_slid = |v: usize| before[v] != after[v] && !is_rounded(v) && was[v].elements > 0;
         let seen: Vec<usize> = (0..before.len()).filter(|&v| is_free(v) || has_slid(v)).collect();
         // If stars have been dropped, this line computes them again before several threads need them.
         if !seen.iter().all(|&v| is_free(v)) {
@@ -70,7 +70,7 @@ impl Change {
         let size = |i: usize| {
             let v = seen[i];
             let change = is[v].logarithms - was[v].logarithms;
-            (0.5 * change / f64::from(was[v].triangles)).abs().exp()
+            (0.5 * change / f64::from(was[v].elements)).abs().exp()
         };
         Ok(Self {
             moved: spread(collect(seen.len(), moved)),
@@ -88,9 +88,9 @@ pub(crate) fn mean_edges(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<f6
 
 /// Returns the mean length of the edges at a vertex, each edge counted once.
 fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Around) -> f64 {
-    // At a free vertex, every edge belongs to two triangles. At a boundary vertex, two edges belong to one triangle.
+    // At a free vertex, every edge belongs to two elements. At a boundary vertex, two edges belong to one element.
     if topology.free()[v] {
-        return around.lengths / f64::from(2 * around.triangles);
+        return around.lengths / f64::from(2 * around.elements);
     }
     let corners = |&t: &u32| topology.corners()[t as usize];
     let mut ends: Vec<u32> = topology.star(v as u32).iter().flat_map(corners).collect();
@@ -108,25 +108,42 @@ fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Ar
 fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
     let mut around = vec![Around::default(); points.len()];
     let mut least = f64::INFINITY;
-    let triangles = topology.triangles().len();
-    for (index, t) in topology.corners().iter().enumerate() {
-        let [p, q, r] = t.map(|v| points[v as usize]);
-        let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
-        let (a, b, c) = (edge(p, q), edge(p, r), edge(q, r));
-        let lengths = [a, b, c].map(|[x, y]| (x * x + y * y).sqrt());
-        let doubled = (a[0] * b[1] - a[1] * b[0]).abs();
-        least = least.min(doubled / lengths.into_iter().fold(0.0, f64::max));
-        let logarithm = (0.5 * doubled).max(f64::MIN_POSITIVE).ln();
-        // A quadrilateral counts at each vertex once, by the corner of the vertex.
-        let vertices = if index < triangles { 3 } else { 1 };
-        for (v, [one, other]) in t.iter().zip([[0, 1], [0, 2], [1, 2]]).take(vertices) {
+    let logarithm = |doubled: f64| (0.5 * doubled).max(f64::MIN_POSITIVE).ln();
+    for t in topology.triangles() {
+        let (lengths, doubled) = lengths_and_area(points, t);
+        least = least.min(doubled.abs() / lengths.into_iter().fold(0.0, f64::max));
+        let logarithm = logarithm(doubled.abs());
+        for (v, [one, other]) in t.iter().zip([[0, 1], [0, 2], [1, 2]]) {
             let at = &mut around[*v as usize];
             at.logarithms += logarithm;
             at.lengths += lengths[one] + lengths[other];
-            at.triangles += 1;
+            at.elements += 1;
+        }
+    }
+    for corners in topology.corner_list().of_quadrilaterals().as_chunks::<4>().0 {
+        let corners = corners.each_ref().map(|corner| (corner, lengths_and_area(points, corner)));
+        // Each point of a convex quadrilateral is in two of its corner triangles.
+        let doubled = 0.5 * corners.iter().map(|(_, (_, doubled))| doubled).sum::<f64>();
+        for ([v, ..], (lengths, own)) in corners {
+            least = least.min(own.abs() / lengths.into_iter().fold(0.0, f64::max));
+            let at = &mut around[*v as usize];
+            at.logarithms += logarithm(doubled.abs());
+            at.lengths += lengths[0] + lengths[1];
+            at.elements += 1;
         }
     }
     (around, least)
+}
+
+/// Returns the lengths of the edges of a corner triangle from its first vertex to the second, from the first to the third, and
+/// from the second to the third, and twice its signed area.
+#[inline]
+fn lengths_and_area(points: &[[f64; 2]], corner: &[u32; 3]) -> ([f64; 3], f64) {
+    let [p, q, r] = corner.map(|v| points[v as usize]);
+    let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+    let (a, b, c) = (edge(p, q), edge(p, r), edge(q, r));
+    let lengths = [a, b, c].map(|[x, y]| (x * x + y * y).sqrt());
+    (lengths, a[0] * b[1] - a[1] * b[0])
 }
 
 fn spread(mut numbers: Vec<f64>) -> Distribution {
@@ -182,5 +199,33 @@ mod tests {
         );
         let edges = mean_edges(&topology, &mesh.points);
         assert!((edges[1] - 4.0 / 3.0).abs() < 1e-15, "{edges:?}");
+    }
+
+    #[test]
+    fn quadrilaterals_at_a_vertex_count_with_their_areas() {
+        // A square with side 2 in four squares, one of which is two triangles. The vertex at the center moves by 0.5.
+        let points = (0..9).map(|v| [f64::from(v % 3), f64::from(v / 3)]).collect();
+        let mesh = Mesh {
+            points,
+            triangles: vec![[4, 5, 8], [4, 8, 7]],
+            quadrilaterals: vec![[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6]],
+            ..Mesh::default()
+        };
+        let topology = Topology::new(&mesh).unwrap();
+        let mut after = mesh.points.clone();
+        after[4] = [1.5, 1.0];
+        let change = Change::between(&topology, &mesh.points, &after).unwrap();
+        // The center has four edges of length 1 and the diagonal.
+        let mean = (4.0 + 2f64.sqrt()) / 5.0;
+        assert!((change.moved.most - 0.5 / mean).abs() < 1e-15, "{change:?}");
+        // The areas of the quadrilaterals, 1, become 1.25, 0.75 and 1.25. Those of the triangles, 0.5, become 0.25 and 0.5.
+        let factor = (1.25f64 * 0.75 * 1.25 * 0.5).powf(0.1);
+        assert!((change.size.most - factor.max(1.0 / factor)).abs() < 1e-15, "{change:?}");
+        // Before, all corner triangles are halves of a square. After, the least altitude is that of the corner triangle of the
+        // second quadrilateral at the center, with an area of 0.25 and a longest edge from (1, 0) to (2, 1).
+        let least = [0.5f64.sqrt(), 0.5f64.sqrt() / 2.0];
+        for (found, expected) in change.least_altitude.iter().zip(least) {
+            assert!((found - expected).abs() < 1e-15, "{change:?}");
+        }
     }
 }
