@@ -31,7 +31,7 @@
 //! while the triangles stay the same. A run is one call of [`Smoother::run`] with [`Options`], and returns an
 //! [`Outcome`]. An [`Interpolation`](interpolate::Interpolation) evaluates vertex data at the new positions. Vertices
 //! listed in [`Mesh::fixed`] do not move; [`select`](front_ends::select) helps to list them.
-//! [`Measured`](measure::Measured) evaluates triangles by each [`Measure`](measure::Measure) of the field, and
+//! [`Measured`](measure::Measured) evaluates elements by each [`Measure`](measure::Measure) of the field, and
 //! [`Quality`] compares a mesh before and after smoothing. The crate `mesh-io` reads and writes mesh files, and the crate `gpu-smooth-job` sets runs of such files up as the
 //! command line does.
 //!

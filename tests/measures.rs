@@ -5,6 +5,8 @@ mod meshkernel;
 #[allow(dead_code)]
 #[path = "metrics/oracles.rs"]
 mod oracles;
+#[path = "measures/quadrilaterals.rs"]
+mod quadrilaterals;
 #[allow(dead_code)]
 #[path = "metrics/triangles.rs"]
 mod triangles;
@@ -71,7 +73,7 @@ fn oracle(measure: Measure, [p, q, r]: [[f64; 2]; 3]) -> f64 {
         Measure::RadiusRatio => circumradius / (2.0 * inradius),
         // The two longest edges enclose the smallest angle, whose sine is the smallest.
         Measure::ScaledJacobian => least.sin() / third.sin(),
-        Measure::Condition => condition,
+        Measure::Condition | Measure::MedAspectFrobenius => condition,
         Measure::Shape => 1.0 / condition,
         Measure::Skewness => ((most - third) / (2.0 * third)).max((third - least) / third),
         Measure::SchismSkewness => longest / (area / std::f64::consts::PI).sqrt(),
@@ -435,6 +437,27 @@ fn the_document_has_the_definitions() {
         );
     }
     assert_eq!(found[expected.len()..], [""; 0], "docs/quality.md has rows that no measure has");
+}
+
+/// The table of quadrilaterals in docs/quality.md has exactly one row for each measure that quadrilaterals have, except for metrics.
+#[test]
+fn the_document_has_the_definitions_for_quadrilaterals() {
+    let document = document("docs/quality.md");
+    let (_, section) = document.split_once("\n### Quadrilaterals\n").unwrap();
+    let is_metric = |measure: &Measure| matches!(measure, Measure::Metric(_));
+    let row = |measure: &Measure| {
+        let own = measure.definition().quadrilateral?;
+        let [least, most] = own.range.map(shown);
+        let ideal = shown(own.ideal);
+        Some(format!("| `{measure}` | {} | {least} to {most} | {ideal} |", own.formula))
+    };
+    let own = Measure::ALL.iter().filter(|measure| !is_metric(measure));
+    let expected: Vec<String> = own.filter_map(row).collect();
+    assert_eq!(
+        table(section, "| measure | "),
+        expected,
+        "the table of quadrilaterals in docs/quality.md"
+    );
 }
 
 /// Returns the code-quoted names in a text, in order.

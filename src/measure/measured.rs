@@ -1,9 +1,11 @@
-//! A mesh with vertices at given positions, for the measurement of its triangles.
+//! A mesh with vertices at given positions, for the measurement of its elements.
 
+use std::iter;
 use std::sync::OnceLock;
 
 use crate::error::MeshError;
 use crate::measure::edges::{InnerEdge, WorstEdges, inner_edges, worst_edges};
+use crate::measure::quadrilateral::Quadrilateral;
 use crate::measure::sizes::{doubled_areas, size_ratios};
 use crate::measure::table::Measure;
 use crate::measure::triangle::Triangle;
@@ -13,8 +15,9 @@ use crate::topology::Topology;
 
 const CHUNK: usize = 1 << 12;
 
-/// A mesh with vertices at given positions, whose triangles can be measured by each [`Measure`]. All threads share the
-/// work.
+/// A mesh with vertices at given positions, whose elements can be measured by each [`Measure`]. All threads share the work.
+///
+/// The index of an element is that of a triangle, or the number of triangles plus the index of a quadrilateral.
 ///
 /// ```
 /// use gpu_smooth::{measure::{Measure, Measured}, Mesh, Topology};
@@ -41,7 +44,7 @@ pub struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    /// Borrows the triangles of `topology`, with vertices at `points`: one plane point per vertex of the mesh, in any
+    /// Borrows the elements of `topology`, with vertices at `points`: one plane point per vertex of the mesh, in any
     /// unit.
     ///
     /// # Errors
@@ -50,8 +53,9 @@ impl<'a> Measured<'a> {
         Self::on(Surface::Plane, points, topology)
     }
 
-    /// Borrows the triangles of `topology`, with vertices at `points`: one pair of coordinates on `surface` per vertex
-    /// of the mesh. Lengths and angles are measured on the surface, by its metric at the center of each triangle.
+    /// Borrows the elements of `topology`, with vertices at `points`: one pair of coordinates on `surface` per vertex
+    /// of the mesh. Lengths and angles are measured on the surface, by its metric at the center of each element.
+    /// Metrics of a quadrilateral are measured at the center of each corner triangle.
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
@@ -61,9 +65,15 @@ impl<'a> Measured<'a> {
         topology: &'a Topology<'a>,
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
-        let areas = doubled_areas(surface, points, topology);
-        let sums = map_ranges(areas.len(), CHUNK, |range| areas[range].iter().sum::<f64>());
-        let mean_area = sums.iter().sum::<f64>() / 2.0 / areas.len() as f64;
+        let corners = topology.corner_list();
+        let sum = |corners| {
+            let areas = doubled_areas(surface, points, corners);
+            let sums = map_ranges(areas.len(), CHUNK, |range| areas[range].iter().sum::<f64>());
+            sums.iter().sum::<f64>()
+        };
+        // Each point of a quadrilateral is in two of its corner triangles.
+        let doubled = sum(corners.triangles()) + sum(corners.of_quadrilaterals()) / 2.0;
+        let mean_area = doubled / 2.0 / corners.equivalent_triangles();
         let (size_ratios, worst_edges) = (OnceLock::new(), OnceLock::new());
         Ok(Self { points, topology, surface, mean_area, size_ratios, worst_edges })
     }
@@ -73,14 +83,19 @@ impl<'a> Measured<'a> {
         self.points
     }
 
-    /// Returns the topology with the measured triangles.
+    /// Returns the topology with the measured elements.
     pub fn topology(&self) -> &Topology<'a> {
         self.topology
     }
 
-    /// Returns the number of triangles.
+    /// Returns the number of elements: triangles and quadrilaterals.
     pub fn count(&self) -> usize {
-        self.topology.triangles().len()
+        self.topology.element_count()
+    }
+
+    /// Returns the number of elements with the measure. The indices of these elements are smaller than the number.
+    pub(crate) fn count_with(&self, measure: Measure) -> usize {
+        if measure.of_quadrilateral() { self.count() } else { self.topology.triangles().len() }
     }
 
     /// Returns the surface on which the vertices have their coordinates.
@@ -104,7 +119,7 @@ impl<'a> Measured<'a> {
 
     /// Returns a triangle with all data that the measures given to [`Self::prepare`] need.
     #[inline]
-    pub(crate) fn triangle(&self, index: usize) -> Triangle {
+    fn triangle(&self, index: usize) -> Triangle {
         let corners = &self.topology.triangles()[index];
         let size_ratio = self.size_ratios.get().map_or(f64::NAN, |ratios| ratios[index]);
         let worst_edges = self.worst_edges.get().map(|edges| edges[index]);
@@ -115,16 +130,63 @@ impl<'a> Measured<'a> {
         triangle
     }
 
-    /// Returns the value of a measure for the triangle `index`, NaN if the mesh has no triangle of this index.
-    pub fn value(&self, measure: Measure, index: usize) -> f64 {
-        self.prepare(&[measure]);
-        if index < self.count() { measure.value(&self.triangle(index)) } else { f64::NAN }
+    /// Returns a quadrilateral, given its index among the quadrilaterals.
+    fn quadrilateral(&self, index: usize) -> Quadrilateral {
+        let corners = self.topology.corner_list();
+        let of_corner = |corner: &[u32; 3]| {
+            let lengths = self.surface.lengths_in(self.points, corner);
+            let points = corner.map(|v| self.points[v as usize]);
+            Triangle::new(points, lengths, self.mean_area, f64::NAN)
+        };
+        let four = &corners.of_quadrilaterals().as_chunks::<4>().0[index];
+        let points = four.map(|[own, ..]| self.points[own as usize]);
+        let lengths = self.surface.lengths(points.iter().map(|[_, y]| y / 4.0).sum());
+        Quadrilateral::new(points, lengths, four.each_ref().map(of_corner))
     }
 
-    /// Returns the value of a measure for each triangle, in the order of the mesh.
+    /// Calls `visit` with the companion and the value of each of `measures` that the element `index` has. The companion of a
+    /// measure is any item, such as the list that collects its values.
+    #[inline]
+    pub(crate) fn visit_values<'m, T>(
+        &self,
+        measures: impl Iterator<Item = (&'m Measure, T)>,
+        index: usize,
+        mut visit: impl FnMut(T, f64),
+    ) {
+        match index.checked_sub(self.topology.triangles().len()) {
+            None => {
+                let triangle = self.triangle(index);
+                measures.for_each(|(measure, own)| visit(own, measure.value(&triangle)));
+            }
+            Some(index) => {
+                let quadrilateral = self.quadrilateral(index);
+                for (measure, own) in measures.filter(|(measure, _)| measure.of_quadrilateral()) {
+                    visit(own, measure.value_of_quadrilateral(&quadrilateral));
+                }
+            }
+        }
+    }
+
+    /// Returns the value of a measure, given to [`Self::prepare`], for the element `index`; NaN if the element lacks the measure.
+    #[inline]
+    pub(crate) fn prepared_value(&self, measure: Measure, index: usize) -> f64 {
+        let mut found = f64::NAN;
+        self.visit_values(iter::once((&measure, ())), index, |(), value| found = value);
+        found
+    }
+
+    /// Returns the value of a measure for the element `index`; NaN if the element lacks the measure, or the mesh has no element
+    /// of this index.
+    pub fn value(&self, measure: Measure, index: usize) -> f64 {
+        self.prepare(&[measure]);
+        if index < self.count() { self.prepared_value(measure, index) } else { f64::NAN }
+    }
+
+    /// Returns the value of a measure for each element: the triangles in the order of the mesh, then the quadrilaterals. NaN for
+    /// elements without the measure.
     pub fn values(&self, measure: Measure) -> Vec<f64> {
         self.prepare(&[measure]);
-        collect(self.count(), |t| measure.value(&self.triangle(t)))
+        collect(self.count(), |index| self.prepared_value(measure, index))
     }
 
     /// Returns the edges between two triangles with their measures, in the order of the triangle with the smaller index.

@@ -10,9 +10,8 @@ use crate::topology::predicates::orientation;
 pub(crate) fn doubled_areas(
     surface: Surface,
     points: &[[f64; 2]],
-    topology: &Topology<'_>,
+    triangles: &[[u32; 3]],
 ) -> Vec<f64> {
-    let triangles = topology.triangles();
     collect(triangles.len(), |t| {
         let [x, y] = surface.lengths_in(points, &triangles[t]);
         orientation(points, &triangles[t]).abs() * x * y
@@ -26,8 +25,8 @@ pub(crate) fn size_ratios(
     points: &[[f64; 2]],
     topology: &Topology<'_>,
 ) -> Vec<f64> {
-    let areas = doubled_areas(surface, points, topology);
     let triangles = topology.triangles();
+    let areas = doubled_areas(surface, points, triangles);
     // If stars have been dropped, this line computes them again before several threads need them.
     topology.star(0);
     collect(triangles.len(), |t| {

@@ -1,29 +1,31 @@
-//! Statistics of measures over the triangles of a mesh.
+//! Statistics of measures over the elements of a mesh.
 
+use std::iter;
 use std::ops::Range;
 
+use crate::measure::definition::Better;
 use crate::measure::measured::Measured;
 use crate::measure::moments::Moments;
 use crate::measure::ranks::{self, Bracket, SAMPLE, key, rank};
-use crate::measure::table::{Better, Measure};
+use crate::measure::table::Measure;
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_parts;
 
-/// Shares of the triangles, from 0 to 1, for which [`Statistics::quantiles`] are given.
+/// Shares of the elements, from 0 to 1, for which [`Statistics::quantiles`] are given.
 pub const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// Number of triangles that are measured at once. Their values fit a processor's cache.
+/// Number of elements that are measured at once. Their values fit a processor's cache.
 const CHUNK: usize = 1024;
 
 /// Chunks per part; a thread measures one part at a time.
 const PART: usize = 64;
 
-/// Statistics of a measure over the triangles of a mesh or of a region.
+/// Statistics of a measure over the elements of a mesh or of a region. Elements without the measure are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
     /// The measure.
     pub measure: Measure,
-    /// Number of triangles. Without triangles (0), all other fields are meaningless.
+    /// Number of elements with the measure. If there are none (0), all other fields are meaningless.
     pub count: usize,
     /// Least value.
     pub min: f64,
@@ -33,19 +35,19 @@ pub struct Statistics {
     pub max: f64,
     /// Standard deviation of the values themselves (divisor n); infinite if any value is infinite.
     pub deviation: f64,
-    /// For each share of [`QUANTILES`], the least value that this share of the triangles does not exceed. The quantile
-    /// is the value of a triangle, not interpolated, rounded to single precision.
+    /// For each share of [`QUANTILES`], the least value that this share of the elements does not exceed. The quantile
+    /// is the value of an element, not interpolated, rounded to single precision.
     pub quantiles: [f64; 3],
-    /// Index of the worst triangle, the first if several are equally bad.
+    /// Index of the worst element, the first if several are equally bad.
     pub worst: usize,
 }
 
-/// The triangles over which statistics are taken.
+/// The elements over which statistics are taken.
 #[derive(Clone, Copy)]
 enum Selection<'s> {
-    /// All triangles of the mesh; the field is their number.
+    /// All elements of the mesh; the field is their number.
     All(usize),
-    /// Triangles with the listed indices.
+    /// Elements with the listed indices.
     Of(&'s [u32]),
 }
 
@@ -74,7 +76,7 @@ struct Tally {
 }
 
 impl Measured<'_> {
-    /// Computes statistics of several measures over all triangles, in the order of `measures`.
+    /// Computes statistics of several measures over all elements, in the order of `measures`.
     ///
     /// Values are not stored: beside the mesh, the computation needs 8 bytes per triangle for `size-ratio`, and some
     /// megabytes.
@@ -83,9 +85,9 @@ impl Measured<'_> {
         self.statistics_of(measures, Selection::All(self.count()))
     }
 
-    /// Computes statistics of several measures over the triangles of each region. `regions` has the region of each
-    /// triangle, 0-based. Returns a list for each region below `count`, each in the order of `measures`. Triangles of
-    /// other regions, and triangles beyond the end of `regions`, are left out.
+    /// Computes statistics of several measures over the elements of each region. `regions` has the region of each
+    /// element, 0-based. Returns a list for each region below `count`, each in the order of `measures`. Elements of other
+    /// regions, and elements beyond the end of `regions`, are left out.
     pub fn statistics_by_region(
         &self,
         measures: &[Measure],
@@ -93,7 +95,7 @@ impl Measured<'_> {
         count: usize,
     ) -> Vec<Vec<Statistics>> {
         self.prepare(measures);
-        // The last group collects the triangles that are left out.
+        // The last group collects the elements that are left out.
         let region =
             |t: usize| regions.get(t).map_or(count, |&region| (region as usize).min(count));
         let groups = Groups::new(self.count(), count + 1, |t| [region(t) as u32]);
@@ -101,7 +103,7 @@ impl Measured<'_> {
         (0..count).map(of_one).collect()
     }
 
-    /// Computes statistics of several measures over the selected triangles, in the order of `measures`.
+    /// Computes statistics of several measures over the selected elements, in the order of `measures`.
     fn statistics_of(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Statistics> {
         let new = self.sampled(measures, selection);
         let tallies = self.tallies(measures, selection, &new);
@@ -109,10 +111,10 @@ impl Measured<'_> {
         measures.iter().zip(tallies).map(one).collect()
     }
 
-    /// Returns an empty tally per measure, with brackets determined from a sample of the triangles.
+    /// Returns an empty tally per measure, with brackets determined from a sample of the elements.
     fn sampled(&self, measures: &[Measure], selection: Selection<'_>) -> Vec<Tally> {
         let count = selection.len();
-        // The sample has one random triangle from each of many equal ranges. Equidistant samples might coincide with
+        // The sample has one random element from each of many equal ranges. Equidistant samples might coincide with
         // the order of a regular mesh.
         let taken = count.min(SAMPLE);
         let place = |i: usize| {
@@ -121,10 +123,9 @@ impl Measured<'_> {
         };
         let mut samples = vec![Vec::with_capacity(taken); measures.len()];
         for i in 0..taken {
-            let triangle = self.triangle(selection.at(place(i)));
-            for (sample, measure) in samples.iter_mut().zip(measures) {
-                sample.push(key(measure.value(&triangle)));
-            }
+            let index = selection.at(place(i));
+            let samples = measures.iter().zip(&mut samples);
+            self.visit_values(samples, index, |sample, value| sample.push(key(value)));
         }
         let tally = |mut sample: Vec<u32>| {
             sample.sort_unstable();
@@ -134,7 +135,7 @@ impl Measured<'_> {
         samples.into_iter().map(tally).collect()
     }
 
-    /// Measures all selected triangles in one pass. Parts have a fixed size and are joined in order, so results are
+    /// Measures all selected elements in one pass. Parts have a fixed size and are joined in order, so results are
     /// independent of the thread count.
     fn tallies(&self, measures: &[Measure], selection: Selection<'_>, new: &[Tally]) -> Vec<Tally> {
         let size = PART * CHUNK;
@@ -164,7 +165,7 @@ impl Measured<'_> {
         sums
     }
 
-    /// Replaces the values of each measure by those of a chunk of the selected triangles.
+    /// Replaces the values of each measure by those of a chunk of the selected elements.
     fn measure(
         &self,
         measures: &[Measure],
@@ -174,10 +175,9 @@ impl Measured<'_> {
     ) {
         values.iter_mut().for_each(Vec::clear);
         for i in range(chunk, selection) {
-            let triangle = self.triangle(selection.at(i));
-            for (values, measure) in values.iter_mut().zip(measures) {
-                values.push(measure.value(&triangle));
-            }
+            let index = selection.at(i);
+            let values = measures.iter().zip(&mut *values);
+            self.visit_values(values, index, |values, value| values.push(value));
         }
     }
 
@@ -196,7 +196,7 @@ impl Measured<'_> {
             Better::Higher => moments.least,
             Better::Lower => moments.most,
         };
-        let value = |i: &usize| measure.value(&self.triangle(selection.at(*i)));
+        let value = |i: &usize| self.prepared_value(measure, selection.at(*i));
         let worst = range(chunk, selection).find(|i| value(i) == extreme);
         Statistics {
             measure,
@@ -214,8 +214,11 @@ impl Measured<'_> {
     /// wrong bracket.
     #[cold]
     fn ranked(&self, measure: Measure, selection: Selection<'_>, ranks: [usize; 3]) -> [f64; 3] {
-        let value = |i| measure.value(&self.triangle(selection.at(i)));
-        let mut keys: Vec<u32> = (0..selection.len()).map(|i| key(value(i))).collect();
+        let mut keys = Vec::with_capacity(selection.len());
+        for i in 0..selection.len() {
+            let all = iter::once((&measure, ()));
+            self.visit_values(all, selection.at(i), |(), value| keys.push(key(value)));
+        }
         ranks.map(|rank| match rank < keys.len() {
             true => ranks::value(*keys.select_nth_unstable(rank).1),
             false => f64::NAN,
@@ -223,7 +226,7 @@ impl Measured<'_> {
     }
 }
 
-/// Returns the triangles of a chunk, as indices in the selection.
+/// Returns the elements of a chunk, as indices in the selection.
 fn range(chunk: usize, selection: Selection<'_>) -> Range<usize> {
     let end = selection.len();
     (chunk * CHUNK).min(end)..((chunk + 1) * CHUNK).min(end)

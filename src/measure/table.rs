@@ -1,37 +1,28 @@
 //! The table of quality measures, one row per measure. The command line, the documentation and the tests loop over
 //! [`Measure::ALL`].
 
+use crate::measure::definition::{Better, Definition, QuadrilateralDefinition};
 use crate::measure::edges::EQUILATERAL;
+use crate::measure::quadrilateral::Quadrilateral;
 use crate::measure::triangle::{LEAST_SKEWNESS, Triangle};
 use crate::metric::Metric;
 
-/// Direction of a measure: whether large or small values are better.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Better {
-    /// Large values are better: the worst triangle has the least value.
-    Higher,
-    /// Small values are better: the worst triangle has the largest value.
-    Lower,
+/// Returns the description of a measure that quadrilaterals have.
+const fn of_quadrilateral(
+    formula: &'static str,
+    range: [f64; 2],
+    ideal: f64,
+) -> Option<QuadrilateralDefinition> {
+    Some(QuadrilateralDefinition { formula, range, ideal })
 }
 
-/// Description of a measure.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Definition {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// Formula as text. L are edge lengths, S is the area, r the inradius and R the circumradius.
-    pub formula: &'static str,
-    /// Unit written after a value: ° for angles, empty for ratios.
-    pub unit: &'static str,
-    /// Least and largest value of a triangle, inverted triangles included.
-    pub range: [f64; 2],
-    /// Value of the best triangle.
-    pub ideal: f64,
-    /// Whether large or small values are better.
-    pub better: Better,
-    /// Publication that defines the measure.
-    pub source: &'static str,
+/// Returns the value of a measure that quadrilaterals lack.
+fn no_value(_: &Quadrilateral) -> f64 {
+    f64::NAN
 }
+
+/// The range of a ratio whose ideal is 1.
+const FROM_ONE: [f64; 2] = [1.0, f64::INFINITY];
 
 const MESHKERNEL: &str =
     "MeshKernel 8, Deltares; a circumcenter outside of its triangle moves to the edge toward it";
@@ -40,8 +31,13 @@ const VERDICT: &str = "Stimpson, Ernst, Knupp, Pébay & Thompson, The Verdict Ge
 
 /// Generates the enum, its definitions and the dispatch to the formulas from one row per measure.
 macro_rules! measures {
-    ($($(#[$doc:meta])* $variant:ident = $value:expr, $definition:expr;)*) => {
-        /// A quality measure of a triangle. The ideal triangle is equilateral.
+    ($($(#[$doc:meta])* $variant:ident = $value:expr, $of_quadrilateral:expr, $definition:expr;)*) => {
+        /// A quality measure of an element. The ideal triangle is equilateral, and the ideal quadrilateral a square.
+        ///
+        /// Some measures are of triangles alone; see [`of_quadrilateral`](Self::of_quadrilateral). The other measures have a
+        /// formula for quadrilaterals in [`Definition::quadrilateral`], by Verdict except for metrics. A quadrilateral that is not
+        /// convex has a `scaled-jacobian` of 0 or less, a `shape` of 0, an infinite `condition` and `med-aspect-frobenius`, and a
+        /// `max-angle` from 180° to 360°.
         ///
         /// Inverted and flat triangles have the values that the Verdict library gives them. Ratios and angles know no
         /// orientation, so an inverted triangle counts as its mirror image; `scaled-jacobian` becomes negative,
@@ -49,8 +45,9 @@ macro_rules! measures {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Measure {
             $($(#[$doc])* $variant,)*
-            /// A metric that smoothing minimizes; the measure is its value q. Infinite for an inverted or flat triangle
-            /// if the metric has a barrier.
+            /// A metric that smoothing minimizes; the measure is its value q, and for a quadrilateral the root of the mean of q²
+            /// over its four corner triangles. Infinite for an inverted or flat triangle, or such a corner triangle, if the
+            /// metric has a barrier.
             Metric(Metric),
         }
 
@@ -74,13 +71,24 @@ macro_rules! measures {
                     Measure::Metric(metric) => triangle.metric(metric),
                 }
             }
+
+            /// Returns the value of the measure for a quadrilateral, NaN if quadrilaterals lack the measure.
+            pub(crate) fn value_of_quadrilateral(self, quadrilateral: &Quadrilateral) -> f64 {
+                match self {
+                    $(Measure::$variant => {
+                        let value: fn(&Quadrilateral) -> f64 = $of_quadrilateral;
+                        value(quadrilateral)
+                    })*
+                    Measure::Metric(metric) => quadrilateral.metric(metric),
+                }
+            }
         }
     };
 }
 
 measures! {
     /// The smallest angle, in degrees.
-    MinAngle = Triangle::min_angle, Definition {
+    MinAngle = Triangle::min_angle, Quadrilateral::min_angle, Definition {
         name: "min-angle",
         formula: "the smallest angle, in degrees",
         unit: "°",
@@ -88,9 +96,10 @@ measures! {
         ideal: 60.0,
         better: Better::Higher,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("the smallest inner angle, in degrees", [0.0, 90.0], 90.0),
     };
     /// The largest angle, in degrees.
-    MaxAngle = Triangle::max_angle, Definition {
+    MaxAngle = Triangle::max_angle, Quadrilateral::max_angle, Definition {
         name: "max-angle",
         formula: "the largest angle, in degrees",
         unit: "°",
@@ -98,9 +107,10 @@ measures! {
         ideal: 60.0,
         better: Better::Lower,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("the largest inner angle, in degrees", [90.0, 360.0], 90.0),
     };
     /// The longest edge divided by the shortest.
-    EdgeRatio = Triangle::edge_ratio, Definition {
+    EdgeRatio = Triangle::edge_ratio, Quadrilateral::edge_ratio, Definition {
         name: "edge-ratio",
         formula: "Lmax / Lmin",
         unit: "",
@@ -108,9 +118,10 @@ measures! {
         ideal: 1.0,
         better: Better::Lower,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("Lmax / Lmin", FROM_ONE, 1.0),
     };
     /// The longest edge divided by the inradius, scaled to 1 for the equilateral triangle. Not the metric `ar`.
-    AspectRatio = Triangle::aspect_ratio, Definition {
+    AspectRatio = Triangle::aspect_ratio, Quadrilateral::aspect_ratio, Definition {
         name: "aspect-ratio",
         formula: "Lmax / (2√3 r) = Lmax (L1 + L2 + L3) / (4√3 S)",
         unit: "",
@@ -118,9 +129,10 @@ measures! {
         ideal: 1.0,
         better: Better::Lower,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("Lmax (L1 + L2 + L3 + L4) / (4 S)", FROM_ONE, 1.0),
     };
     /// The circumradius divided by twice the inradius.
-    RadiusRatio = Triangle::radius_ratio, Definition {
+    RadiusRatio = Triangle::radius_ratio, Quadrilateral::radius_ratio, Definition {
         name: "radius-ratio",
         formula: "R / (2 r) = L1 L2 L3 (L1 + L2 + L3) / (16 S²)",
         unit: "",
@@ -128,10 +140,11 @@ measures! {
         ideal: 1.0,
         better: Better::Lower,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("sqrt((L1² + L2² + L3² + L4²) max(L², D²)) / (2√2 min α)", FROM_ONE, 1.0),
     };
     /// Twice the signed area divided by the largest product of two edges, scaled to 1 for the equilateral triangle.
     /// Equal to the least sine of an angle divided by sin 60°.
-    ScaledJacobian = Triangle::scaled_jacobian, Definition {
+    ScaledJacobian = Triangle::scaled_jacobian, Quadrilateral::scaled_jacobian, Definition {
         name: "scaled-jacobian",
         formula: "(2/√3) 2 S / max(L1 L2, L2 L3, L3 L1)",
         unit: "",
@@ -139,9 +152,10 @@ measures! {
         ideal: 1.0,
         better: Better::Higher,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("min over the corners of α / (L L')", [-1.0, 1.0], 1.0),
     };
     /// Half the condition number of the map from the equilateral triangle. Equal to the metric `imr`.
-    Condition = Triangle::condition, Definition {
+    Condition = Triangle::condition, Quadrilateral::condition, Definition {
         name: "condition",
         formula: "(L1² + L2² + L3²) / (4√3 S)",
         unit: "",
@@ -149,9 +163,10 @@ measures! {
         ideal: 1.0,
         better: Better::Lower,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("max over the corners of (L² + L'²) / (2 α)", FROM_ONE, 1.0),
     };
     /// The inverse of `condition`, also called the mean ratio.
-    Shape = Triangle::shape, Definition {
+    Shape = Triangle::shape, Quadrilateral::shape, Definition {
         name: "shape",
         formula: "4√3 S / (L1² + L2² + L3²)",
         unit: "",
@@ -159,9 +174,22 @@ measures! {
         ideal: 1.0,
         better: Better::Higher,
         source: VERDICT,
+        quadrilateral: of_quadrilateral("min over the corners of 2 α / (L² + L'²)", [0.0, 1.0], 1.0),
     };
-    /// Largest deviation of an angle from 60°, scaled to [0, 1]: the equiangle skewness of CFD.
-    Skewness = Triangle::skewness, Definition {
+    /// The mean of `condition` over the corners of a quadrilateral. All corners of a triangle have the `condition` of the triangle,
+    /// which Verdict calls its aspect Frobenius.
+    MedAspectFrobenius = Triangle::condition, Quadrilateral::med_aspect_frobenius, Definition {
+        name: "med-aspect-frobenius",
+        formula: "(L1² + L2² + L3²) / (4√3 S)",
+        unit: "",
+        range: FROM_ONE,
+        ideal: 1.0,
+        better: Better::Lower,
+        source: VERDICT,
+        quadrilateral: of_quadrilateral("mean over the corners of (L² + L'²) / (2 α)", FROM_ONE, 1.0),
+    };
+    /// Largest deviation of an angle from 60°, or from 90° in a quadrilateral, scaled to [0, 1]: the equiangle skewness of CFD.
+    Skewness = Triangle::skewness, Quadrilateral::skewness, Definition {
         name: "skewness",
         formula: "max((θmax - 60°) / 120°, (60° - θmin) / 60°)",
         unit: "",
@@ -169,10 +197,11 @@ measures! {
         ideal: 0.0,
         better: Better::Lower,
         source: "ANSYS Fluent User's Guide, Mesh Quality: equiangle skewness; Verdict as of 2019, equiangle_skew",
+        quadrilateral: of_quadrilateral("max((θmax - 90°) / 90°, (90° - θmin) / 90°)", [0.0, 1.0], 0.0),
     };
     /// The longest edge divided by the radius of the circle of equal area, 2.69 for the equilateral triangle: the skewness
     /// of SCHISM's documentation.
-    SchismSkewness = Triangle::schism_skewness, Definition {
+    SchismSkewness = Triangle::schism_skewness, no_value, Definition {
         name: "schism-skewness",
         formula: "Lmax / sqrt(S / π)",
         unit: "",
@@ -180,10 +209,11 @@ measures! {
         ideal: LEAST_SKEWNESS,
         better: Better::Lower,
         source: "SCHISM, grid-generation.md, Mesh quality",
+        quadrilateral: None,
     };
     /// Jump of the area to a neighbor: the largest ratio of larger to smaller area among the triangles across the three
-    /// edges. 1 for a triangle without neighbors.
-    SizeRatio = |t| t.size_ratio, Definition {
+    /// edges. 1 for a triangle without neighbors. Quadrilaterals lack the measure and do not count as neighbors.
+    SizeRatio = |t| t.size_ratio, no_value, Definition {
         name: "size-ratio",
         formula: "max over the neighbors N across an edge of max(S / S_N, S_N / S)",
         unit: "",
@@ -191,10 +221,11 @@ measures! {
         ideal: 1.0,
         better: Better::Lower,
         source: "ANSYS Fluent User's Guide, Mesh Quality: cell size change, as the larger over the smaller area",
+        quadrilateral: None,
     };
     /// The worst orthogonality of an edge of the triangle; see [`InnerEdge`](crate::measure::InnerEdge). 0 for a triangle
-    /// without neighbors.
-    Orthogonality = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.orthogonality), Definition {
+    /// without neighbors. Quadrilaterals lack the measure and do not count as neighbors.
+    Orthogonality = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.orthogonality), no_value, Definition {
         name: "orthogonality",
         formula: "max over the neighbors of |cos| between the shared edge and the segment between both circumcenters",
         unit: "",
@@ -202,10 +233,11 @@ measures! {
         ideal: 0.0,
         better: Better::Lower,
         source: MESHKERNEL,
+        quadrilateral: None,
     };
     /// The shortest flow link of the triangle; see [`InnerEdge`](crate::measure::InnerEdge). 0.877 for a triangle without
-    /// neighbors.
-    FlowLink = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.flow_link), Definition {
+    /// neighbors. Quadrilaterals lack the measure and do not count as neighbors.
+    FlowLink = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.flow_link), no_value, Definition {
         name: "flow-link",
         formula: "min over the neighbors N of the distance of both circumcenters / ((√S + √S_N) / 2)",
         unit: "",
@@ -213,20 +245,27 @@ measures! {
         ideal: EQUILATERAL,
         better: Better::Higher,
         source: MESHKERNEL,
+        quadrilateral: None,
     };
 }
 
 const fn of_metric(metric: Metric) -> Definition {
     let row = metric.properties();
+    // Metrics that depend on size are ideal at the mean size, and may be below the ideal for smaller elements.
+    let range = [if row.scale_invariant { row.ideal } else { 0.0 }, f64::INFINITY];
     Definition {
         name: row.name,
         formula: row.formula,
         unit: "",
-        // Metrics that depend on size are ideal at the mean size, and may be below the ideal for smaller triangles.
-        range: [if row.scale_invariant { row.ideal } else { 0.0 }, f64::INFINITY],
+        range,
         ideal: row.ideal,
         better: Better::Lower,
         source: row.citation,
+        quadrilateral: of_quadrilateral(
+            "root of the mean of q² over the corners",
+            range,
+            row.ideal,
+        ),
     }
 }
 
@@ -245,13 +284,22 @@ impl Measure {
         all
     };
 
-    /// Returns the measure of an earlier row with equal values, up to rounding; `None` if no earlier row has equal values.
+    /// Returns the measure of an earlier row with equal values of all triangles, up to rounding; `None` if no earlier row has
+    /// equal values. The values of quadrilaterals may differ.
     pub const fn equal_to(self) -> Option<Measure> {
         match self {
             Measure::Metric(Metric::Edge) => Some(Measure::EdgeRatio),
-            Measure::Metric(Metric::Imr | Metric::Ar) => Some(Measure::Condition),
+            Measure::MedAspectFrobenius | Measure::Metric(Metric::Imr | Metric::Ar) => {
+                Some(Measure::Condition)
+            }
             _ => None,
         }
+    }
+
+    /// Returns whether quadrilaterals have the measure. If not, their value is NaN, and statistics and lists of the worst
+    /// elements leave them out.
+    pub const fn of_quadrilateral(self) -> bool {
+        self.definition().quadrilateral.is_some()
     }
 
     /// Returns whether the measure of a triangle is the worst value of its edges, which [`Measured::edges`] has.

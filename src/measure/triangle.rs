@@ -35,33 +35,49 @@ pub(crate) struct Triangle {
 /// Returns the largest power of two that is at most `x`, but no less than the smallest normal number, whose inverse is
 /// finite.
 #[inline]
-fn power_of_two(x: f64) -> f64 {
+pub(crate) fn power_of_two(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     f64::from_bits(x.to_bits() & EXPONENT).max(f64::MIN_POSITIVE)
 }
 
 #[inline]
-fn largest(numbers: &[f64]) -> f64 {
+pub(crate) fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 #[inline]
-fn difference(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
+pub(crate) fn difference(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [q[0] - p[0], q[1] - p[1]]
 }
 
 #[inline]
-fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
+pub(crate) fn dot(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[0] + u[1] * v[1]
 }
 
 /// Returns the length of an edge, also where squares of its components vanish.
 #[inline]
-fn length(edge: [f64; 2]) -> f64 {
+pub(crate) fn length(edge: [f64; 2]) -> f64 {
     match dot(edge, edge).sqrt() {
         length if length > 1e-140 => length,
         _ => edge[0].hypot(edge[1]),
     }
+}
+
+/// Returns the vertices of an element, scaled by a power of two if differences or products of coordinates could overflow or
+/// vanish, and the factor of the scaling. `None` if a coordinate is infinite or NaN.
+#[inline]
+pub(crate) fn scaled<const N: usize>(mut points: [[f64; 2]; N]) -> Option<([[f64; 2]; N], f64)> {
+    if !points.as_flattened().iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let far = largest(points.as_flattened());
+    let mut per_unit = 1.0;
+    if !(1e-100..1e100).contains(&far) {
+        per_unit = 1.0 / power_of_two(far);
+        points = points.map(|point| point.map(|x| x * per_unit));
+    }
+    Some((points, per_unit))
 }
 
 impl Triangle {
@@ -85,21 +101,12 @@ impl Triangle {
     /// the measure.
     #[inline]
     pub(crate) fn new(
-        mut points: [[f64; 2]; 3],
+        points: [[f64; 2]; 3],
         lengths: [f64; 2],
         mean_area: f64,
         size_ratio: f64,
     ) -> Self {
-        if !points.as_flattened().iter().all(|x| x.is_finite()) {
-            return Self::point(size_ratio);
-        }
-        // Coordinates are scaled before their differences or products can overflow or vanish.
-        let far = largest(points.as_flattened());
-        let mut per_unit = 1.0;
-        if !(1e-100..1e100).contains(&far) {
-            per_unit = 1.0 / power_of_two(far);
-            points = points.map(|point| point.map(|x| x * per_unit));
-        }
+        let Some((points, per_unit)) = scaled(points) else { return Self::point(size_ratio) };
         let [p, q, r] = points;
         let edges = [difference(p, q), difference(p, r), difference(q, r)];
         let edges = edges.map(|[x, y]| [x * lengths[0], y * lengths[1]]);
@@ -211,6 +218,13 @@ impl Triangle {
 
     /// Returns the value q of a metric, infinite if the metric has a barrier and the triangle is inverted or flat.
     pub(crate) fn metric(&self, metric: Metric) -> f64 {
+        self.squared_metric(metric, false).sqrt()
+    }
+
+    /// Returns q² of a metric, infinite if the metric has a barrier and the triangle is inverted or flat. If the triangle
+    /// `is_right`, it is the corner triangle of the first vertex in a quadrilateral, whose ideal is a square.
+    #[inline]
+    pub(crate) fn squared_metric(&self, metric: Metric, is_right: bool) -> f64 {
         let is_positive = self.doubled_area > 0.0;
         if metric.properties().barrier && !is_positive {
             return f64::INFINITY;
@@ -225,15 +239,18 @@ impl Triangle {
             corner.a = [length, 0.0];
             corner.b = [dot(a, b) / length, self.doubled_area / length];
         }
+        if is_right {
+            corner = corner.of_right_angle();
+        }
         let squared = metric.excess(&corner) + metric.ideal_squared();
         match squared.is_nan() {
             true => f64::INFINITY,
-            false => squared.max(0.0).sqrt(),
+            false => squared.max(0.0),
         }
     }
 }
 
 /// Returns `ratio`, or infinity where the ratio is NaN because numerator and denominator are both zero.
-fn unbounded(ratio: f64) -> f64 {
+pub(crate) fn unbounded(ratio: f64) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }

@@ -35,7 +35,7 @@ impl Measured<'_> {
         found
     }
 
-    /// Returns the vertices that no triangle uses, ascending.
+    /// Returns the vertices that no element uses, ascending.
     pub fn unused_vertices(&self) -> Vec<u32> {
         let topology = self.topology();
         // If stars have been dropped, this line computes them again before several threads need them.
