@@ -435,3 +435,33 @@ fn default_runs_keep_small_angles_and_the_worst_corner() {
         }
     }
 }
+
+/// The penalties on large angles, which rounds after a run by ACUTE lower, see the right angles of quadrilaterals as good.
+#[test]
+fn acute_lowers_f_and_leaves_right_angles() {
+    for lattice in [squares(12), mixed(12)] {
+        let mesh = perturbed(&lattice, 0.25);
+        let smoother = prepared(&mesh);
+        let outcome =
+            smoother.run(&Options::default().scheme(Metric::Acute.into())).block().unwrap();
+        let f = |points: &[[f64; 2]]| smoother.f(Metric::Acute, points).unwrap();
+        assert!(
+            f(&outcome.points) < 0.7 * f(&mesh.points),
+            "{} {}",
+            f(&outcome.points),
+            f(&mesh.points)
+        );
+        let imr = run(&mesh, &Options::default());
+        let topology = smoother.topology();
+        let off = |points: &[[f64; 2]]| {
+            let cosine = |&[p, q, r]: &[u32; 3]| {
+                let [p, q, r] = [p, q, r].map(|v| points[v as usize]);
+                let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+                (a[0] * b[0] + a[1] * b[1]).abs() / (a[0].hypot(a[1]) * b[0].hypot(b[1]))
+            };
+            let right = &topology.corners()[topology.triangles().len()..];
+            right.iter().map(cosine).sum::<f64>() / right.len() as f64
+        };
+        assert!(off(&outcome.points) < off(&imr.points) + 1e-3);
+    }
+}

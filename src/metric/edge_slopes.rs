@@ -171,11 +171,12 @@ mod tests {
                     (up - 2.0 * mid + down) * per,
                 ];
                 let gradient = [(right - left) / (2.0 * h), (up - down) / (2.0 * h)];
+                let size = found.hessian.iter().fold(1.0f64, |size, x| size.max(x.abs()));
                 for (found, expected) in found.gradient.iter().zip(gradient) {
-                    assert!((found - expected).abs() < 1e-7, "{metric}: {found} {expected}");
+                    assert!((found - expected).abs() < 1e-7 * size, "{metric}: {found} {expected}");
                 }
                 for (found, expected) in found.hessian.iter().zip(hessian) {
-                    assert!((found - expected).abs() < 1e-4, "{metric}: {found} {expected}");
+                    assert!((found - expected).abs() < 1e-4 * size, "{metric}: {found} {expected}");
                 }
             }
         }

@@ -88,12 +88,17 @@ impl Penalties {
         list.into_iter().take(count)
     }
 
+    /// Returns the penalty on large angles of a corner. The right angles of quadrilaterals are not large.
+    fn large_of<T>(&self, corner: &Corner<T>) -> Hinge {
+        if corner.ideal.is_right { Hinge::NONE } else { self.large }
+    }
+
     fn of(&self, corner: &Corner<f64>) -> f64 {
         let cotangents = corner.cotangents();
         let square = Self::square(cotangents);
         let angles = || Self::angles(corner, cotangents);
         let small: f64 = angles().map(|x| self.small.of(x)).sum();
-        let large: f64 = angles().map(|x| self.large.of(-x)).sum();
+        let large: f64 = angles().map(|x| self.large_of(corner).of(-x)).sum();
         square + self.weight * (small * self.small_share + large + self.square.of(square))
     }
 
@@ -106,10 +111,10 @@ impl Penalties {
         let corner = Corner { a, b, ideal: corner.ideal };
         let cotangents = corner.cotangents();
         let square = Self::square(cotangents);
-        let angles = Self::angles(&corner, cotangents);
+        let (angles, large) = (Self::angles(&corner, cotangents), self.large_of(&corner));
         let penalties = angles.fold(self.square.expansion(square), |sum, x| {
             let small = self.small.expansion(x) * self.small_share;
-            sum + small + self.large.expansion(x * -1.0)
+            sum + small + large.expansion(x * -1.0)
         });
         square + penalties * self.weight
     }

@@ -96,7 +96,11 @@ impl Report {
             let _ = writeln!(
                 text,
                 "untangled {} in {}, which moved {}",
-                count(bad_before, "inverted or flat triangle", "inverted or flat triangles"),
+                match quadrilaterals {
+                    0 =>
+                        count(bad_before, "inverted or flat triangle", "inverted or flat triangles"),
+                    _ => count(bad_before, "inverted or flat corner", "inverted or flat corners"),
+                },
                 count(sweeps as usize, "sweep", "sweeps"),
                 count(moved, "vertex", "vertices"),
             );
