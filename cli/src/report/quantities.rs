@@ -93,7 +93,7 @@ impl<'m> Quantities<'m> {
         let (count, total, worst);
         match threshold.quantity {
             // Measures of triangles need no list of all values.
-            Quantity::Measure(measure) if !measure.is_of_edges() => {
+            Quantity::Measure(measure) if !measure.is_of_edges() && self.is_of_triangles() => {
                 count = self.measured.count_where(measure, |value| threshold.is_met(value)).0;
                 total = self.measured.count();
                 let found = self.measured.worst(measure, 1);
@@ -117,6 +117,11 @@ impl<'m> Quantities<'m> {
         Finding { threshold: threshold.clone(), count, total, worst }
     }
 
+    /// Returns whether all elements are triangles. Limits of solvers are of triangles.
+    fn is_of_triangles(&self) -> bool {
+        self.measured.count() == self.measured.topology().triangles().len()
+    }
+
     /// Returns the values of all parts that have a quantity. Vertices on the boundary have few triangles in every mesh, so
     /// a threshold of small numbers is for vertices inside alone.
     fn values(&self, threshold: &Threshold) -> Vec<Valued> {
@@ -128,7 +133,8 @@ impl<'m> Quantities<'m> {
                 values.enumerate().map(valued).collect()
             }
             Quantity::Measure(measure) => {
-                self.measured.values(measure).into_iter().enumerate().map(valued).collect()
+                let values = self.measured.values(measure).into_iter().enumerate();
+                values.take(topology.triangles().len()).map(valued).collect()
             }
             Quantity::BoundaryCorners => {
                 let is_on_boundary = self.is_on_boundary();

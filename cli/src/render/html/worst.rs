@@ -52,6 +52,7 @@ pub(crate) fn spots(file: &LoadedMesh, states: [&Measured<'_>; 2]) -> Vec<WorstT
     for (list, &(_, state, only_movable)) in LISTS.iter().enumerate() {
         let most = if only_movable { CANDIDATES } else { LISTED };
         let found = states[state].worst(Measure::Shape, most).into_iter().map(|found| found.0);
+        let found = found.filter(|&index| index < topology.triangles().len());
         let found: Vec<usize> = found
             .filter(|&t| !only_movable || topology.can_move(Element::Triangle(t)))
             .take(LISTED)
@@ -73,7 +74,8 @@ pub(crate) fn spots_of_mesh(
     measure: Measure,
     count: usize,
 ) -> Vec<WorstTriangle> {
-    let found = measured.worst(measure, count);
+    let mut found = measured.worst(measure, count);
+    found.retain(|&(index, _)| index < measured.topology().triangles().len());
     let listed: Vec<(usize, usize)> = found.into_iter().map(|(t, _)| (0, t)).collect();
     located(file, [measured; 2], measure, &listed)
 }

@@ -140,16 +140,25 @@ fn panel<'a>(
         true => edges.iter().map(|edge| of_edge(measure, edge)).collect(),
         false => measured.values(measure),
     };
-    let corners = |i: usize| match edges.get(i) {
-        Some(edge) => &edge.vertices[..],
-        None => &mesh.topology.triangles()[i],
+    let triangles = mesh.topology.triangles();
+    let quadrilaterals: Vec<[u32; 4]> = mesh.topology.quadrilaterals().collect();
+    let corners = |i: usize| match (edges.get(i), triangles.get(i)) {
+        (Some(edge), _) => &edge.vertices[..],
+        (None, Some(triangle)) => triangle,
+        (None, None) => &quadrilaterals[i - triangles.len()],
     };
     let spot = |i: usize| Spot { corners: corners(i).to_vec(), value: values[i] };
     // The drawn part has the triangles or edges with their middle in the part, as rings are at the middle.
     let is_drawn = |&i: &usize| part.is_none_or(|part| part.has(middle(corners(i), state.points)));
-    let mut drawn: Vec<usize> = (0..values.len()).filter(is_drawn).collect();
+    let is_measured = |&i: &usize| !values[i].is_nan();
+    let mut drawn: Vec<usize> =
+        (0..values.len()).filter(is_measured).filter(is_drawn).collect();
     let is_worse = |&a: &usize, &b: &usize| measure.is_worse(values[a], values[b]);
-    let noun = if measure.is_of_edges() { "edge" } else { "triangle" };
+    let noun = match (measure.is_of_edges(), quadrilaterals.is_empty()) {
+        (true, _) => "edge",
+        (false, true) => "triangle",
+        (false, false) => "element",
+    };
     let numbers = numbers(measure, noun, drawn.iter().map(|&i| values[i]), values.len());
     let order = |a: &usize, b: &usize| match (is_worse(a, b), is_worse(b, a)) {
         (true, _) => Ordering::Less,
