@@ -151,8 +151,7 @@ fn panel<'a>(
     // The drawn part has the triangles or edges with their middle in the part, as rings are at the middle.
     let is_drawn = |&i: &usize| part.is_none_or(|part| part.has(middle(corners(i), state.points)));
     let is_measured = |&i: &usize| !values[i].is_nan();
-    let mut drawn: Vec<usize> =
-        (0..values.len()).filter(is_measured).filter(is_drawn).collect();
+    let mut drawn: Vec<usize> = (0..values.len()).filter(is_measured).filter(is_drawn).collect();
     let is_worse = |&a: &usize, &b: &usize| measure.is_worse(values[a], values[b]);
     let noun = match (measure.is_of_edges(), quadrilaterals.is_empty()) {
         (true, _) => "edge",
