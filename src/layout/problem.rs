@@ -268,7 +268,7 @@ impl Problem {
 
     /// Returns the vertices of the elements around all free vertices, vertex by vertex, counter-clockwise around each vertex.
     /// The list of a vertex starts with a neighbor along an edge. The vertex opposite to it in a quadrilateral stands between
-    /// the neighbors of that quadrilateral, with [`OPPOSITE`] added to its number.
+    /// the neighbors of that quadrilateral, with `OPPOSITE` added to its number.
     pub fn ring(&self) -> &[u32] {
         &self.layout.ring
     }
@@ -340,7 +340,7 @@ impl Problem {
     }
 
     /// Returns all corners, counter-clockwise: the triangles, then four for each quadrilateral; see
-    /// [`Topology`](crate::Topology).
+    /// [`Topology`].
     pub(crate) fn corners(&self) -> &Corners<'static> {
         &self.layout.corners
     }

@@ -24,7 +24,7 @@ pub struct Ideal {
     /// [`Metric::has_size_weight`](crate::Metric::has_size_weight) and
     /// [`Targets::size_weight`](crate::Targets::size_weight).
     pub size_weight: f64,
-    /// Whether the corner is of a quadrilateral, whose ideal is a square; see [`Corner::of_right_angle`].
+    /// Whether the corner is of a quadrilateral, whose ideal is a square; see `Corner::of_right_angle`.
     pub is_right: bool,
 }
 

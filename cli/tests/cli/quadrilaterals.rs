@@ -136,3 +136,17 @@ fn stages_for_quadrilaterals_work_from_the_command_line() {
         assert_eq!(compared.code, Some(0), "{options}: {}", compared.err);
     }
 }
+
+#[test]
+fn pictures_color_quadrilaterals_that_move() {
+    let folder = Folder::new(&[("in.vtk", &vtk(8, |k| k % 8 < 4, |_| 1))]);
+    let line = "in.vtk out.vtk --force --engine cpu --quiet --picture p.svg";
+    assert_eq!(folder.line(line).code, Some(0));
+    assert!(folder.text("p.svg").contains("fixed quadrilateral"));
+    assert_eq!(folder.line(&format!("{line} --quadrilaterals move")).code, Some(0));
+    let text = folder.text("p.svg");
+    assert!(!text.contains("quadrilateral") && text.contains("96 elements"), "{}", &text[..2000]);
+    let line = format!("{line} --quadrilaterals move --picture-measure size-ratio");
+    assert_eq!(folder.line(&line).code, Some(0));
+    assert_holds(&folder.text("p.svg"), &["quadrilateral", "worst elements"]);
+}

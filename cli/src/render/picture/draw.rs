@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::{LoadedMesh, axes_legend};
-use crate::render::picture::{color, png, svg};
+use crate::render::picture::{png, svg};
 use crate::report::of_edge;
 use crate::request::{PictureFormat, PictureRequest};
 
@@ -105,8 +105,11 @@ pub(crate) fn picture_of(
     let corner = [width, height].map(|size| (size * scale).ceil());
     let frame = Frame::new(extent, [[0.0; 2], corner]);
     let mut raster = Raster::new([[0.0; 2], corner.map(|x| x as f32)]);
-    let pieces = faces.pieces.iter().map(|piece| (piece, color::UNJUDGED));
-    for (triangle, goodness) in topology.triangles().iter().zip(goodness).chain(pieces) {
+    let triangles = topology.triangles();
+    let of_piece = |piece: usize| faces.goodness(piece, triangles.len(), &goodness);
+    let pieces = faces.pieces.iter().enumerate().map(|(k, piece)| (piece, of_piece(k)));
+    let of_triangles = triangles.iter().zip(goodness.iter().copied());
+    for (triangle, goodness) in of_triangles.chain(pieces) {
         raster.fill(triangle.map(|v| frame.place(state.points()[v as usize])), goodness);
     }
     png::encode(&raster)
@@ -122,6 +125,9 @@ fn goodness_of(
     let mut goodness: Vec<f32> = values.map(|value| colors.goodness(value)).collect();
     for bad in topology.bad_triangles(state.points())? {
         goodness[bad.triangle] = -1.0;
+    }
+    for bad in topology.bad_quadrilaterals(state.points())? {
+        goodness[topology.triangles().len() + bad.quadrilateral] = -1.0;
     }
     Ok(goodness)
 }

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use gpu_smooth::{Mesh, Topology};
 
 use crate::load::LoadedMesh;
+use crate::render::picture::color::UNJUDGED;
 
 /// Longitudes of a face that differ by more than this number of degrees belong to both sides of the cut of a map.
 const MAX_LONGITUDES: f64 = 180.0;
@@ -13,6 +14,8 @@ const MAX_LONGITUDES: f64 = 180.0;
 pub(crate) struct FixedFaces {
     /// Triangles that cover the faces. Their vertices are corners of the faces.
     pub(crate) pieces: Vec<[u32; 3]>,
+    /// For each piece, the index of its quadrilateral among those of the topology; `None` for faces that are no elements.
+    quadrilateral_of: Vec<Option<usize>>,
     /// Each edge once, without the edges that [`inner_edges`](super::outlines::inner_edges) of the triangles has.
     pub(crate) edges: Vec<FaceEdge>,
     /// Boundary of triangles and faces together: edges of one triangle or one face each.
@@ -54,16 +57,35 @@ impl FixedFaces {
             _ => Ok(topology.boundary_edges()),
         };
         // Without a triangle, there is no topology of triangles.
-        Self { moves, ..Self::new(faces, points, of_triangles.unwrap_or_default()) }
+        let sorted = |vertices: &[u32]| {
+            let mut vertices = vertices.to_vec();
+            vertices.sort_unstable();
+            vertices
+        };
+        let elements = topology.quadrilaterals().map(|vertices| sorted(&vertices)).zip(0..);
+        let number: HashMap<Vec<u32>, usize> = elements.collect();
+        let of = |corners: &[u32]| number.get(&sorted(corners)).copied();
+        Self { moves, ..Self::new(faces, points, of_triangles.unwrap_or_default(), of) }
     }
 
-    /// `of_triangles` is the boundary of the triangles.
+    /// Returns the rating of a piece, given those of all elements, triangles first: that of its quadrilateral, or that of faces
+    /// which no measure judges.
+    pub(crate) fn goodness(&self, piece: usize, triangles: usize, goodness: &[f32]) -> f32 {
+        let of_element = self.quadrilateral_of[piece].and_then(|k| goodness.get(triangles + k));
+        // A measure of triangles alone has no value.
+        of_element.copied().filter(|goodness| !goodness.is_nan()).unwrap_or(UNJUDGED)
+    }
+
+    /// `of_triangles` is the boundary of the triangles. `number` returns the index of a quadrilateral of the topology, given its
+    /// vertices.
     fn new<'a>(
         faces: impl Iterator<Item = &'a [u32]>,
         points: &[[f64; 2]],
         of_triangles: Vec<[u32; 2]>,
+        number: impl Fn(&[u32]) -> Option<usize>,
     ) -> Self {
         let (mut pieces, mut edges) = (Vec::new(), Vec::new());
+        let mut quadrilateral_of = Vec::new();
         let (mut count, mut has_polygons) = (0, false);
         let mut known: HashMap<[u32; 2], usize> = HashMap::new();
         for corners in faces {
@@ -78,9 +100,11 @@ impl FixedFaces {
             count += 1;
             has_polygons |= corners.len() > 4;
             let first = pieces.len();
+            let quadrilateral = number(&corners);
             rotate_to_fan(&mut corners, points);
             let [tip, rest @ ..] = &corners[..] else { continue };
             pieces.extend(rest.windows(2).map(|pair| [*tip, pair[0], pair[1]]));
+            quadrilateral_of.resize(pieces.len(), quadrilateral);
             for (i, &a) in corners.iter().enumerate() {
                 let b = corners[(i + 1) % corners.len()];
                 let ends = [a.min(b), a.max(b)];
@@ -96,14 +120,21 @@ impl FixedFaces {
         let boundary = boundary(&edges, &of_triangles);
         let drawn: HashSet<[u32; 2]> = of_triangles.into_iter().collect();
         edges.retain(|edge| !drawn.contains(&edge.ends));
-        Self { pieces, edges, boundary, count, has_polygons, moves: false }
+        let moves = false;
+        Self { pieces, quadrilateral_of, edges, boundary, count, has_polygons, moves }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.pieces.is_empty()
     }
 
-    /// Returns the name of the faces for a legend; `None` without faces.
+    /// Returns the name of the faces that no measure judges, for a legend; `None` without such faces.
+    pub(crate) fn unjudged(&self) -> Option<&'static str> {
+        let is_judged = self.quadrilateral_of.iter().all(Option::is_some);
+        self.name().filter(|_| !is_judged)
+    }
+
+    /// Returns the name of the faces; `None` without faces.
     pub(crate) fn name(&self) -> Option<&'static str> {
         let name = match self.has_polygons {
             true => "fixed polygon",
@@ -159,7 +190,7 @@ mod tests {
     fn pieces_cover_faces_and_each_edge_is_listed_once() {
         // A square, a quadrilateral with a reflex corner at vertex 6, and a face with a repeated corner.
         let faces: [&[u32]; 3] = [&[1, 4, 5, 2], &[1, 2, 3, 6], &[0, 1, 1, 6]];
-        let faces = FixedFaces::new(faces.into_iter(), &POINTS, vec![]);
+        let faces = FixedFaces::new(faces.into_iter(), &POINTS, vec![], |_| None);
         assert_eq!(
             (faces.count, faces.pieces.len(), faces.name()),
             (3, 5, Some("fixed quadrilateral"))
@@ -181,7 +212,7 @@ mod tests {
     fn edges_between_triangles_and_faces_are_no_boundary() {
         let faces: [&[u32]; 1] = [&[1, 4, 5, 2]];
         let of_triangles = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
-        let faces = FixedFaces::new(faces.into_iter(), &POINTS, of_triangles);
+        let faces = FixedFaces::new(faces.into_iter(), &POINTS, of_triangles, |_| None);
         let mut boundary = faces.boundary.clone();
         boundary.sort_unstable();
         assert_eq!(boundary, [[0, 1], [1, 4], [2, 3], [2, 5], [3, 0], [4, 5]]);

@@ -178,6 +178,13 @@ impl Scene<'_> {
         draw_heading(&panel.title, place, text, canvas);
     }
 
+    /// Returns the name of the faces without a color of the measure; `None` if there are none.
+    fn unjudged_faces(&self) -> Option<&'static str> {
+        let measure = self.colors.measure();
+        let judges_all = !measure.is_of_edges() && measure.of_quadrilateral();
+        if judges_all { self.faces.unjudged() } else { self.faces.name() }
+    }
+
     /// Returns the lines and marks that occur, for the legend.
     fn symbols(&self) -> Vec<Symbol> {
         let Outlines { between_regions, held, slid, .. } = &self.outlines;
@@ -185,13 +192,17 @@ impl Scene<'_> {
         let has_worst = self.panels.iter().any(|panel| !panel.worst.is_empty());
         let occurs = |occurs: bool, symbol: Symbol| occurs.then_some(symbol);
         let is_of_edges = self.colors.measure().is_of_edges();
-        let name = if is_of_edges { "worst edges" } else { "worst triangles" };
+        let name = match (is_of_edges, self.faces.unjudged() == self.faces.name()) {
+            (true, _) => "worst edges",
+            (false, true) => "worst triangles",
+            (false, false) => "worst elements",
+        };
         let symbols = [
             Some(Symbol::Boundary),
             occurs(!between_regions.is_empty(), Symbol::BetweenRegions),
             occurs(!held.is_empty(), Symbol::Held),
             occurs(!slid.is_empty(), Symbol::Slid),
-            self.faces.name().map(Symbol::Face),
+            self.unjudged_faces().map(Symbol::Face),
             occurs(self.panels.iter().any(is_bad), Symbol::Bad),
             occurs(has_worst, Symbol::Worst(name)),
             occurs(self.with_arrows, Symbol::Displacement),
@@ -217,7 +228,13 @@ impl Scene<'_> {
         };
         let placed = self.triangles.iter().map(|t| t.map(place));
         let placed = placed.zip(panel.goodness.iter().copied()).map(color);
-        let pieces = self.faces.pieces.iter().map(|piece| (piece.map(place), UNJUDGED));
+        let triangles = self.triangles.len();
+        let goodness = |piece: usize| match panel.edges.is_empty() {
+            true => self.faces.goodness(piece, triangles, &panel.goodness),
+            false => UNJUDGED,
+        };
+        let pieces = self.faces.pieces.iter().enumerate();
+        let pieces = pieces.map(|(k, piece)| (piece.map(place), goodness(k)));
         let mut faces = placed.chain(pieces).filter(|face| shown(&face.0));
         canvas.faces(frame.corners, &mut faces, self.triangles.len() + self.faces.pieces.len());
 
