@@ -114,22 +114,27 @@ impl Quality {
         }
         let mean_area = total_area / corners.equivalent_triangles();
 
-        let one = |corner: &[u32; 3], index: usize, is_right: bool| {
-            let movable = topology.can_move(corners.element(index as u32));
+        let triangle = |corner: &[u32; 3], index: usize| {
+            let movable = corner.iter().any(|&v| topology.free()[v as usize]);
             let lengths = surface.lengths_in(points, corner);
-            one(points, corner, lengths, mean_area, index, movable, is_right)
+            one::<false>(points, corner, lengths, mean_area, index, movable)
         };
         let tallies = paced::map_parts(triangles.chunks(1024), |chunk, part| {
             let add = |tally: Tally, (t, corner): (usize, &[u32; 3])| {
-                tally.and(&one(corner, chunk * 1024 + t, false))
+                tally.and(&triangle(corner, chunk * 1024 + t))
             };
             part.iter().enumerate().fold(Tally::EMPTY, add)
         });
         let mut total = tallies.await.iter().fold(Tally::EMPTY, Tally::and);
+        let right_corner = |corner: &[u32; 3], index: usize| {
+            let movable = topology.can_move(corners.element(index as u32));
+            let lengths = surface.lengths_in(points, corner);
+            one::<true>(points, corner, lengths, mean_area, index, movable)
+        };
         let tallies = paced::map_parts(right.chunks(1024), |chunk, part| {
             let first = triangles.len() + chunk * 1024;
             let element = |(k, four): (usize, &[[u32; 3]])| {
-                let at = |(c, corner)| one(corner, first + 4 * k + c, true);
+                let at = |(c, corner)| right_corner(corner, first + 4 * k + c);
                 let mut tally =
                     four.iter().enumerate().map(at).fold(Tally::EMPTY, |a, b| a.and(&b));
                 tally.sums.iter_mut().for_each(|sum| *sum *= 0.25);
@@ -162,15 +167,14 @@ impl Quality {
     }
 }
 
-/// Returns the tally of a triangle, or of a corner of a quadrilateral if it `is_right`.
-fn one(
+/// Returns the tally of a triangle, or of a corner of a quadrilateral if `RIGHT`.
+fn one<const RIGHT: bool>(
     points: &[[f64; 2]],
     corners: &[u32; 3],
     lengths: [f64; 2],
     mean_area: f64,
     index: usize,
     movable: bool,
-    is_right: bool,
 ) -> Tally {
     let orientation = predicates::orientation(points, corners);
     let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
@@ -179,7 +183,7 @@ fn one(
     let doubled = corner.doubled_area().abs();
     let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
     let mut cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
-    if is_right {
+    if RIGHT {
         // The other two angles are between a side and a diagonal.
         cotangents = [cotangents[0]; 3];
         corner = corner.of_right_angle();

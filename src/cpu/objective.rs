@@ -1,13 +1,15 @@
 //! The objective over all elements, on the CPU.
 
-use fearless_simd::prelude::*;
+use fearless_simd::{Level, prelude::*};
 use glam::DVec2;
 
 use crate::cpu::along::Along;
 use crate::layout::{CornerPart, Problem};
 use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Lanes, Mask, Points, points, vertex_maps, with_lanes};
+use crate::patch::lanes::{
+    LANES, Lanes, Mask, Points, points, vertex_maps, with_instructions, with_lanes,
+};
 use crate::patch::{is_no_worse, is_positive, is_within};
 use crate::run::{Objectives, SweepParams};
 
@@ -70,7 +72,7 @@ async fn mean(
     let [CornerPart { corners: triangles, .. }, right] = parts;
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem.targets(), false, metric, simd, formulas, MAPPED => {
-            excess::<_, MAPPED>(simd, formulas, smoothing, problem, positions, chunk)
+            excess::<_, MAPPED, false>(simd, formulas, smoothing, problem, positions, chunk)
         })
     };
     let sums = paced::map_parts(triangles.chunks(CHUNK), sum).await;
@@ -78,14 +80,12 @@ async fn mean(
     if right.corners.is_empty() {
         return sum / triangles.len() as f64;
     }
-    let of_corner = |corner: &[u32; 3]| {
-        let corner = problem.corner_of(true, corner, |v| positions[v as usize]);
-        match smoothing {
-            Some(smoothing) => metric.formulas().model(&corner, smoothing),
-            None => metric.formulas().excess(&corner),
-        }
+    let formulas = metric.formulas();
+    let of_part = |_, part: CornerPart<'_>| {
+        with_instructions!(Level::new(), simd => {
+            excess::<_, true, true>(simd, formulas, smoothing, problem, positions, part.corners)
+        })
     };
-    let of_part = |_, part: CornerPart<'_>| part.corners.iter().map(of_corner).sum::<f64>();
     let sums = paced::map_parts(right.chunks(CHUNK), of_part).await;
     let elements = triangles.len() + right.corners.len() / 4;
     (sum + right.weight() * sums.iter().sum::<f64>()) / elements as f64
@@ -104,20 +104,19 @@ pub(crate) async fn mean_excess_along(
     }
     let sum = |_, chunk: &[[u32; 3]]| {
         with_lanes!(problem.targets(), false, step.metric, simd, formulas, MAPPED => {
-            excess_along::<_, MAPPED>(simd, formulas, problem, along, step, chunk)
+            excess_along::<_, MAPPED, false>(simd, formulas, problem, along, step, chunk)
         })
     };
     let [CornerPart { corners: triangles, .. }, right] = problem.judged_parts();
     let sums = paced::map_parts(triangles.chunks(CHUNK), sum).await;
     let mut sum: Option<f64> = sums.into_iter().sum();
     if !right.corners.is_empty() {
-        let of_corner = |corner: &[u32; 3]| {
-            let now = problem.corner_of(true, corner, |v| along.to(v));
-            let is_kept = along.keeps(problem, true, corner, step.shape_guard);
-            is_kept.then(|| step.metric.formulas().model(&now, step.smoothing()))
+        let formulas = step.metric.formulas();
+        let of_part = |_, part: CornerPart<'_>| {
+            with_instructions!(Level::new(), simd => {
+                excess_along::<_, true, true>(simd, formulas, problem, along, step, part.corners)
+            })
         };
-        let of_part =
-            |_, part: CornerPart<'_>| part.corners.iter().map(of_corner).sum::<Option<f64>>();
         let sums = paced::map_parts(right.chunks(CHUNK), of_part).await;
         let others: Option<f64> = sums.into_iter().sum();
         sum = sum.zip(others).map(|(sum, others)| sum + right.weight() * others);
@@ -144,34 +143,34 @@ async fn mean_excess_within(
     Some(mean_model(step.metric, step.smoothing(), problem, &there).await)
 }
 
-/// Returns the sum of q² - ideal², or of its smooth model, over `triangles` at moved positions. `None` if the move
-/// breaks a triangle, as defined at [`mean_excess_along`].
+/// Returns the sum of q² - ideal², or of its smooth model, over corners at moved positions. `None` if the move
+/// breaks a corner, as defined at [`mean_excess_along`]. `RIGHT` tells whether the corners are of quadrilaterals.
 #[inline(always)]
-fn excess_along<S: Simd, const MAPPED: bool>(
+fn excess_along<S: Simd, const MAPPED: bool, const RIGHT: bool>(
     simd: S,
     formulas: impl Formulas,
     problem: &Problem,
     along: &Along<'_>,
     step: &SweepParams,
-    triangles: &[[u32; 3]],
+    corners: &[[u32; 3]],
 ) -> Option<f64> {
     let guard = step.shape_guard;
-    let (fours, rest) = triangles.as_chunks::<LANES>();
+    let (fours, rest) = corners.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
     let mut borne = Mask::splat(simd, true);
     for four in fours {
         let [t, u, v, w] = four;
-        let map = if MAPPED { Some(map_of(simd, problem, four)) } else { None };
+        let map = if MAPPED { map_of::<_, RIGHT>(simd, problem, four) } else { None };
         let (p, moved_p) = along.points(simd, [t[0], u[0], v[0], w[0]]);
         let (q, moved_q) = along.points(simd, [t[1], u[1], v[1], w[1]]);
         let (r, moved_r) = along.points(simd, [t[2], u[2], v[2], w[2]]);
-        let now = corner([moved_p, moved_q, moved_r], problem, &map);
+        let now = corner::<_, RIGHT>([moved_p, moved_q, moved_r], problem, &map);
         borne &= is_positive(&now);
         if guard.is_finite() {
             let mut kept = is_within(formulas, &now, sum.constant(guard));
             // Few moves exceed the guard, so triangles before the move are evaluated only after an excess.
             if !kept.all_true() {
-                kept |= is_no_worse(formulas, &corner([p, q, r], problem, &map), &now);
+                kept |= is_no_worse(formulas, &corner::<_, RIGHT>([p, q, r], problem, &map), &now);
             }
             borne &= kept;
         }
@@ -179,64 +178,72 @@ fn excess_along<S: Simd, const MAPPED: bool>(
     }
     let mut last = 0.0;
     for t in rest {
-        let now = problem.corner(t, |v| along.to(v));
-        borne &= Mask::splat(simd, along.keeps(problem, false, t, guard));
+        let now = problem.corner_of(RIGHT, t, |v| along.to(v));
+        borne &= Mask::splat(simd, along.keeps(problem, RIGHT, t, guard));
         last += formulas.model(&now, step.smoothing());
     }
     borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
 }
 
-/// Returns the target maps of four triangles, one in each lane.
+/// Returns the target maps of four corners, one in each lane. Triangles have identity maps without targets, and corners of
+/// quadrilaterals have none.
 #[inline(always)]
-fn map_of<S: Simd>(
+fn map_of<S: Simd, const RIGHT: bool>(
     simd: S,
     problem: &Problem,
     [t, u, v, w]: &[[u32; 3]; LANES],
-) -> TargetMap<Lanes<S>> {
-    TargetMap::mean([
+) -> Option<TargetMap<Lanes<S>>> {
+    if RIGHT && problem.targets().is_none() {
+        return None;
+    }
+    Some(TargetMap::mean([
         vertex_maps(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
         vertex_maps(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
         vertex_maps(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
-    ])
+    ]))
 }
 
-/// Returns four triangles, one in each lane, transformed by their target maps.
+/// Returns four corners, one in each lane, transformed by their target maps.
 #[inline(always)]
-fn corner<S: Simd>(
+fn corner<S: Simd, const RIGHT: bool>(
     [p, q, r]: [Points<S>; 3],
     problem: &Problem,
     map: &Option<TargetMap<Lanes<S>>>,
 ) -> Corner<Lanes<S>> {
     let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-    let corner = Corner { a, b, ideal: problem.ideal() };
+    let mut corner = Corner { a, b, ideal: problem.ideal() };
+    if RIGHT {
+        corner = corner.of_right_angle();
+    }
     match map {
         None => corner,
         Some(map) => map.transform(&corner),
     }
 }
 
-/// Returns the sum of q² - ideal² over `triangles`, or of its smooth model if `smoothing` is given.
+/// Returns the sum of q² - ideal² over corners, or of its smooth model if `smoothing` is given. `RIGHT` tells whether the
+/// corners are of quadrilaterals.
 #[inline(always)]
-fn excess<S: Simd, const MAPPED: bool>(
+fn excess<S: Simd, const MAPPED: bool, const RIGHT: bool>(
     simd: S,
     formulas: impl Formulas,
     smoothing: Option<Smoothing>,
     problem: &Problem,
     positions: &[DVec2],
-    triangles: &[[u32; 3]],
+    corners: &[[u32; 3]],
 ) -> f64 {
     // A smooth metric is its own model. The test is decided at compile time, as this function is compiled for each
     // metric.
     let smoothing = smoothing.filter(|_| !formulas.metric().is_smooth());
-    let (fours, rest) = triangles.as_chunks::<LANES>();
+    let (fours, rest) = corners.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
     for four in fours {
         let [t, u, v, w] = four;
-        let map = if MAPPED { Some(map_of(simd, problem, four)) } else { None };
+        let map = if MAPPED { map_of::<_, RIGHT>(simd, problem, four) } else { None };
         let p = points(simd, positions, [t[0], u[0], v[0], w[0]]);
         let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
         let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
-        let corner = corner([p, q, r], problem, &map);
+        let corner = corner::<_, RIGHT>([p, q, r], problem, &map);
         sum += match smoothing {
             Some(smoothing) => formulas.model(&corner, smoothing),
             None => formulas.excess(&corner),
@@ -244,7 +251,7 @@ fn excess<S: Simd, const MAPPED: bool>(
     }
     let mut last = 0.0;
     for t in rest {
-        let corner = problem.corner(t, |v| positions[v as usize]);
+        let corner = problem.corner_of(RIGHT, t, |v| positions[v as usize]);
         last += match smoothing {
             Some(smoothing) => formulas.model(&corner, smoothing),
             None => formulas.excess(&corner),

@@ -6,7 +6,7 @@ use glam::{DVec2, Vec2};
 use crate::cpu::newton;
 use crate::cpu::within::LaneBounds;
 use crate::layout::{DEGREE_BLOCK, Problem};
-use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
+use crate::metric::{Dual, Formulas, Metric, OfInvariants, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
@@ -163,9 +163,22 @@ async fn visit<T: VisitOutput>(
     found: &mut [T],
 ) {
     if problem.has_quadrilaterals() {
+        let bounded = T::STEPS && problem.is_bounded();
+        // The default metric has a copy of its own, as in `with_lanes`.
+        if step.metric == Metric::Imr && problem.maps().is_none() && !bounded {
+            paced::for_each_chunk(found, CHUNK, |at, found| {
+                let (imr, first) = (OfInvariants::Imr, first + at);
+                with_instructions!(Level::new(), simd => {
+                    visit_mixed::<_, _, false>(simd, imr, problem, positions, first, step, sought, found);
+                });
+            })
+            .await;
+            return;
+        }
         paced::for_each_chunk(found, CHUNK, |at, found| {
+            let (any, first) = (step.metric.formulas(), first + at);
             with_instructions!(Level::new(), simd => {
-                visit_mixed(simd, problem, positions, first + at, step, sought, found);
+                visit_mixed::<_, _, true>(simd, any, problem, positions, first, step, sought, found);
             });
         })
         .await;
@@ -197,7 +210,7 @@ fn visit_all<S: Simd, T: VisitOutput, const GENERAL: bool>(
     let mut scratch = Scratch::new();
     let mut done = 0;
     while done < found.len() {
-        let (vertices, count) = batch_at(problem, first + done, found.len() - done);
+        let (vertices, count) = batch_at::<false>(problem, first + done, found.len() - done);
         let degree = problem.ring_of(vertices[0]).len();
         let rings = Rings::<S, GENERAL>::gather(simd, problem, positions, vertices, &mut scratch);
         let at = points(simd, positions, vertices);
@@ -212,8 +225,10 @@ fn visit_all<S: Simd, T: VisitOutput, const GENERAL: bool>(
 
 /// Does the work of [`visit_all`] in a mesh with quadrilaterals.
 #[inline(always)]
-fn visit_mixed<S: Simd, T: VisitOutput>(
+#[allow(clippy::too_many_arguments)]
+fn visit_mixed<S: Simd, T: VisitOutput, const GENERAL: bool>(
     simd: S,
+    formulas: impl Formulas,
     problem: &Problem,
     positions: &[DVec2],
     first: usize,
@@ -224,12 +239,12 @@ fn visit_mixed<S: Simd, T: VisitOutput>(
     let mut scratch = MixedScratch::new();
     let mut done = 0;
     while done < found.len() {
-        let (vertices, count) = batch_at(problem, first + done, found.len() - done);
+        let (vertices, count) = batch_at::<true>(problem, first + done, found.len() - done);
         let degree = problem.neighbors(vertices[0]).count();
         let rings = &MixedRings::gather(simd, problem, positions, vertices, &mut scratch);
         let at = points(simd, positions, vertices);
         let patch = Visited { rings, vertices, degree, at };
-        let [x, y] = patch.visit::<T, true>(step.metric.formulas(), problem, step, sought);
+        let [x, y] = patch.visit::<T, GENERAL>(formulas, problem, step, sought);
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
             *found = T::new([x[lane], y[lane]]);
         }

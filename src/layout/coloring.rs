@@ -122,10 +122,18 @@ impl<'a> Places<'a> {
         self.topology.free()[self.curve[place as usize] as usize]
     }
 
-    /// Returns the places of the free vertices that share an element with the free vertex at `place`, counter-clockwise.
+    /// Returns the places of the free vertices that share an element with the free vertex at `place`: those along edges
+    /// first, counter-clockwise.
     fn neighbors(&self, place: u32) -> impl Iterator<Item = u32> + '_ {
-        let around = self.topology.around(self.curve[place as usize]);
-        around.map(|(v, _)| self.of[v as usize]).filter(|&place| place != NO_PLACE)
+        let vertex = self.curve[place as usize];
+        let corners = self.topology.corner_list();
+        let star = match corners.quadrilateral_count() {
+            0 => &[],
+            _ => self.topology.star(vertex),
+        };
+        let opposite = star.iter().filter_map(|&corner| corners.opposite(corner));
+        let all = self.topology.ring_of(vertex).chain(opposite);
+        all.map(|v| self.of[v as usize]).filter(|&place| place != NO_PLACE)
     }
 
     /// Returns the places of the free vertices that share an element with the vertex, in ascending order of the elements.

@@ -115,11 +115,13 @@ fn sorted<const N: usize>(
             to.store(corner, Relaxed);
         }
     });
-    let mut all = map_ranges(count, CHUNK, |range| {
-        let element = |t: usize| std::array::from_fn(|i| all[N * t + i].load(Relaxed));
-        range.map(element).collect::<Vec<[u32; N]>>()
-    })
-    .concat();
+    let given = all;
+    let mut all = vec![[0; N]; count];
+    for_each_chunk(&mut all, CHUNK, |first, chunk| {
+        for (element, from) in chunk.iter_mut().zip(given[N * first..].chunks_exact(N)) {
+            *element = std::array::from_fn(|i| from[i].load(Relaxed));
+        }
+    });
     // The list is cut into chunks whose elements are then sorted. No chunk ends between two elements with equal least
     // vertices.
     let mut rest = &mut all[..];

@@ -495,7 +495,7 @@ impl Problem {
         position: impl Fn(u32) -> DVec2,
     ) -> Corner<f64> {
         let [p, q, r] = t.map(position);
-        let mut corner = Corner { a: (q - p).into(), b: (r - p).into(), ideal: self.ideal };
+        let mut corner = Corner { a: (q - p).into(), b: (r - p).into(), ideal: self.ideal() };
         if is_right {
             corner = corner.of_right_angle();
         }
@@ -520,7 +520,8 @@ impl Problem {
     /// Returns the ideal triangle of the metrics in normalized units.
     #[inline(always)]
     pub(crate) fn ideal(&self) -> Ideal {
-        self.ideal
+        // The constant lets the compiler leave the code for right angles out of loops over triangles.
+        Ideal { is_right: false, ..self.ideal }
     }
 
     /// Returns the index in the mesh of each vertex of the problem.
@@ -589,10 +590,13 @@ fn judged_first(
     size: usize,
     is_judged: impl Fn(&[[u32; 3]]) -> bool,
 ) -> (Option<Arc<[[u32; 3]]>>, usize) {
+    // Free vertices have the lowest numbers, so in most lists all judged elements come first.
+    let first = corners.chunks_exact(size).take_while(|element| is_judged(element)).count();
+    let (first, rest) = corners.split_at(size * first);
     let (judged, others): (Vec<&[[u32; 3]]>, Vec<_>) =
-        corners.chunks_exact(size).partition(|element| is_judged(element));
-    let count = size * judged.len();
-    let is_in_order = corners.chunks_exact(size).zip(&judged).all(|(a, b)| std::ptr::eq(a, *b));
-    let reordered = || judged.into_iter().chain(others).flatten().copied().collect();
-    ((!is_in_order).then(reordered), count)
+        rest.chunks_exact(size).partition(|element| is_judged(element));
+    let count = first.len() + size * judged.len();
+    let is_in_order = judged.is_empty();
+    let rest = judged.into_iter().chain(others).flatten();
+    ((!is_in_order).then(|| first.iter().chain(rest).copied().collect()), count)
 }

@@ -39,13 +39,17 @@ struct RingCorner {
 /// Memory for [`MixedRings`], reused by one visit after another.
 pub(crate) struct MixedScratch<S: Simd> {
     ring: Vec<Points<S>>,
+    /// The mark of each vertex of the ring that `corners` lists the corners of. Successive visits mostly have equal marks.
+    marks: Vec<u32>,
     corners: Vec<RingCorner>,
+    total_weight: f64,
     maps: Vec<TargetMap<Lanes<S>>>,
 }
 
 impl<S: Simd> MixedScratch<S> {
     pub(crate) fn new() -> Self {
-        Self { ring: Vec::new(), corners: Vec::new(), maps: Vec::new() }
+        let (marks, corners) = (Vec::new(), Vec::new());
+        Self { ring: Vec::with_capacity(16), marks, corners, total_weight: 0.0, maps: Vec::new() }
     }
 }
 
@@ -59,15 +63,27 @@ impl<'a, S: Simd> MixedRings<'a, S> {
         vertices: [u32; LANES],
         scratch: &'a mut MixedScratch<S>,
     ) -> Self {
-        let MixedScratch { ring, corners, maps } = scratch;
-        let rings = vertices.map(|v| problem.ring_of(v));
-        let length = rings[0].len();
-        let at = |i: usize| rings.map(|ring| ring[i] & !OPPOSITE);
+        let MixedScratch { ring, marks, corners, total_weight, maps } = scratch;
+        let [a, b, c, d] = vertices;
+        let a = problem.ring_of(a);
+        let length = a.len();
+        let b = &problem.ring_of(b)[..length];
+        let c = &problem.ring_of(c)[..length];
+        let d = &problem.ring_of(d)[..length];
+        let at =
+            |i: usize| [a[i] & !OPPOSITE, b[i] & !OPPOSITE, c[i] & !OPPOSITE, d[i] & !OPPOSITE];
         ring.clear();
-        ring.extend((0..length).map(|i| points(simd, positions, at(i))));
-        corners.clear();
-        list_corners(rings[0], corners);
-        let total_weight = corners.iter().map(|corner| corner.role.weighted(1.0)).sum();
+        for i in 0..length {
+            ring.push(points(simd, positions, at(i)));
+        }
+        let is_listed = || marks.iter().zip(a).all(|(&mark, &k)| mark == k & OPPOSITE);
+        if marks.len() != length || !is_listed() {
+            marks.clear();
+            marks.extend(a.iter().map(|k| k & OPPOSITE));
+            corners.clear();
+            list_corners(a, corners);
+            *total_weight = corners.iter().map(|corner| corner.role.weighted(1.0)).sum();
+        }
         maps.clear();
         let mut inverse_map = None;
         if problem.maps().is_some() {
@@ -79,7 +95,8 @@ impl<'a, S: Simd> MixedRings<'a, S> {
             }));
             inverse_map = Some(TargetMap(vertex_maps(simd, problem.maps(), vertices)).inverse());
         }
-        Self { ring, corners, maps, inverse_map, total_weight, ideal: problem.ideal() }
+        let (total_weight, ideal) = (*total_weight, problem.ideal());
+        Self { ring, corners, maps, inverse_map, total_weight, ideal }
     }
 }
 

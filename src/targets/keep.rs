@@ -74,6 +74,7 @@ pub(super) fn shape_logarithm(
 
 /// Returns the logarithm of the map under which a triangle is equilateral with edges of length 1, given the two edges
 /// that start at its first corner.
+#[inline(always)]
 pub(crate) fn shape_logarithm_of([a, b]: [[f64; 2]; 2]) -> Tensor {
     // A W⁻¹ maps the equilateral triangle to the given triangle, so the target map is (A W⁻¹ W⁻ᵗ Aᵀ)^-½.
     let second = [(2.0 * b[0] - a[0]) * W, (2.0 * b[1] - a[1]) * W];
