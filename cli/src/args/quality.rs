@@ -6,9 +6,9 @@ use clap::{ArgGroup, Args};
 use gpu_smooth::measure::Measure;
 
 use crate::args::PictureArgs;
-use crate::args::ReadArgs;
 use crate::args::names;
 use crate::args::table::{OfCoordinates, TableArgs};
+use crate::args::{Quadrilaterals, ReadArgs};
 use crate::limits::Threshold;
 use crate::profiles::ProfileSource;
 
@@ -30,9 +30,13 @@ pub(crate) struct QualityArgs {
         help = names::measure_help()
     )]
     pub(crate) measure: Vec<Measure>,
-    /// Number of worst triangles to list; of worst edges, if the first measure is orthogonality or flow-link
+    /// Number of worst elements to list; of worst edges, if the first measure is orthogonality or flow-link
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) worst: usize,
+    /// Measure the triangles of a mesh alone (keep), or its quadrilaterals too (move), as runs with the same option do.
+    /// Quadrilaterals of a mesh without triangles are always measured
+    #[arg(long, value_name = "keep|move", default_value = "keep", hide_possible_values = true)]
+    pub(crate) quadrilaterals: Quadrilaterals,
     /// Show the statistics of each region too: physical groups, materials, references, attributes
     #[arg(long)]
     pub(crate) by_region: bool,

@@ -20,7 +20,7 @@ const LISTED: usize = 10;
 /// interpolated data.
 pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
     let settings = args.options.settings();
-    let reading = ReadRequest::from(&args.reading).moving(&args.moving);
+    let reading = ReadRequest::from(&args.reading).moving(args.moving.quadrilaterals);
     let (surface, z) = (settings.surface, ThirdCoordinate::of(settings, &args.fields.interpolate));
     let movable = MovableRequest::of(args.moving, settings);
     let holds_lines = !movable.free_lines;

@@ -3,13 +3,15 @@
 use crate::error::CliError;
 use crate::load::LoadedMesh;
 use crate::load::fixed::nothing_free;
+use crate::report::Place;
 use gpu_smooth::{
     Element, MeshError, Topology,
-    topology::{BadTriangle, Crossing, HangingNode},
+    topology::{BadQuadrilateral, BadTriangle, Crossing, HangingNode},
 };
 use mesh_io::{Location, SourceLocation};
 use serde::Serialize;
 use std::collections::HashSet;
+use std::fmt;
 
 /// Largest number of bad triangles, or pairs of crossing edges, listed on the terminal.
 pub(crate) const TOLD: usize = 10;
@@ -65,11 +67,49 @@ pub(crate) fn bad_triangles(file: &LoadedMesh, bad: &[BadTriangle]) -> Vec<BadTr
     bad.iter().zip(places.into_values()).map(one).collect()
 }
 
+/// A corner of a quadrilateral that is not convex, in the terms of its file.
+pub(crate) struct BadCorner {
+    pub(crate) place: Place,
+    /// Number or tag of the vertex in the file.
+    pub(crate) vertex: u64,
+    /// `concave` or `flat`.
+    pub(crate) problem: &'static str,
+}
+
+/// Returns the corner as a sentence, which has its place.
+impl fmt::Display for BadCorner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is {} at vertex {}", self.place, self.problem, self.vertex)
+    }
+}
+
+/// Returns bad corners in the terms of the file. One search of the file finds the places of all quadrilaterals.
+pub(crate) fn bad_corners(file: &LoadedMesh, bad: &[BadQuadrilateral]) -> Vec<BadCorner> {
+    let elements: Vec<Element> =
+        bad.iter().map(|bad| Element::Quadrilateral(bad.quadrilateral)).collect();
+    let at = |bad: &BadQuadrilateral| bad.vertices[bad.corner];
+    let names = file.vertex_places(bad.iter().map(at));
+    let one = |(bad, place): (&BadQuadrilateral, Place)| {
+        let (vertex, problem) = (names[&at(bad)].id, bad.problem());
+        BadCorner { place, vertex, problem }
+    };
+    bad.iter().zip(Place::of_elements(&file.source, &elements)).map(one).collect()
+}
+
 /// Lists the first [`TOLD`] bad triangles, one per line. If `count` is larger, a last line counts the rest and names
 /// `all`, the option that lists every triangle.
 pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> Vec<String> {
     let line = |bad: &BadTriangleReport| format!("{}: {}", bad.place, bad.statement());
-    let mut lines: Vec<String> = first.iter().take(TOLD).map(line).collect();
+    told(first.iter().map(line), count, all)
+}
+
+/// Lists bad corners as [`list`] does bad triangles.
+pub(crate) fn list_corners(first: &[BadCorner], count: usize, all: &str) -> Vec<String> {
+    told(first.iter().map(ToString::to_string), count, all)
+}
+
+fn told(lines: impl Iterator<Item = String>, count: usize, all: &str) -> Vec<String> {
+    let mut lines: Vec<String> = lines.take(TOLD).collect();
     if count > TOLD {
         lines.push(format!("and {} more; {all} lists all", count - TOLD));
     }

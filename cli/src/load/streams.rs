@@ -13,20 +13,20 @@ use crate::terminal::tell;
 /// Reads a mesh from a file, or from standard input if the path is `-`.
 pub(crate) fn read(path: &Path, request: &ReadRequest) -> Result<LoadedMesh, CliError> {
     let source = read_source(path, request)?;
-    Ok(match request.takes_quadrilaterals {
+    if source.triangles().is_empty() && !request.has_elements_of(&source) {
+        return Err(quadrilaterals_alone(&source));
+    }
+    Ok(match request.has_elements_of(&source) {
         true => LoadedMesh::of_elements(source),
         false => LoadedMesh::new(source),
     })
 }
 
 fn read_source(path: &Path, request: &ReadRequest) -> Result<MeshFile, CliError> {
-    let options = request.options();
+    // A pipe is read once, so the mesh is refused after it was read if it has quadrilaterals alone.
+    let options = request.options().allow_quadrilaterals_alone(true);
     if !is_standard(path) {
-        let taking_all = options.clone().allow_quadrilaterals_alone(true);
-        return options.read(path).map_err(|error| match taking_all.read(path) {
-            Ok(file) => quadrilaterals_alone(&file),
-            Err(_) => error.into(),
-        });
+        return Ok(options.read(path)?);
     }
     let mut bytes = Vec::new();
     std::io::stdin()
@@ -37,8 +37,12 @@ fn read_source(path: &Path, request: &ReadRequest) -> Result<MeshFile, CliError>
 
 /// Returns the error for a mesh that has quadrilaterals and no triangle, for a command that takes them on request.
 fn quadrilaterals_alone(file: &MeshFile) -> CliError {
-    let (path, count) = (file.path().display(), file.quadrilaterals().len());
-    CliError::input(format!("{path}: {count} quadrilaterals, but no triangle"))
+    let (path, vertices) = (file.path().display(), file.points().len());
+    let quadrilaterals = match file.quadrilaterals().len() {
+        1 => "1 quadrilateral".to_owned(),
+        count => format!("{count} quadrilaterals"),
+    };
+    CliError::input(format!("{path}: {vertices} vertices and {quadrilaterals}, but no triangle"))
         .with_remedy("Runs move the vertices of quadrilaterals by --quadrilaterals move, and keep them otherwise")
 }
 

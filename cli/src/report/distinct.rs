@@ -10,9 +10,10 @@ pub(crate) struct DistinctMeasures {
 }
 
 impl DistinctMeasures {
-    /// Leaves out measures with an equal one among `measures`.
-    pub(crate) fn of(measures: &[Measure]) -> Self {
-        let twin = |measure: Measure| measure.equal_to().filter(|twin| measures.contains(twin));
+    /// Leaves out measures with an equal one among `measures`. Measures are equal for triangles alone.
+    pub(crate) fn of(measures: &[Measure], has_quadrilaterals: bool) -> Self {
+        let is_shown = |twin: &Measure| !has_quadrilaterals && measures.contains(twin);
+        let twin = |measure: Measure| measure.equal_to().filter(is_shown);
         let shown = measures.iter().copied().filter(|measure| twin(*measure).is_none()).collect();
         let clause = |measure: &Measure| Some(format!("{measure} equals {}", twin(*measure)?));
         Self { shown, equal: measures.iter().filter_map(clause).collect() }

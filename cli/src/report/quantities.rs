@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
+use gpu_smooth::Element;
 use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
 use gpu_smooth::topology::signed_area;
 
@@ -13,7 +14,7 @@ use crate::load::remarks::degrees;
 use crate::report::place::Place;
 use crate::terminal::numbers::fit8;
 
-/// A mesh with the values of all quantities of its triangles, edges and vertices.
+/// A mesh with the values of all quantities of its elements, edges and vertices.
 pub(crate) struct Quantities<'m> {
     file: &'m LoadedMesh,
     measured: &'m Measured<'m>,
@@ -23,14 +24,16 @@ pub(crate) struct Quantities<'m> {
     is_on_boundary: OnceCell<Vec<bool>>,
 }
 
-/// The number of triangles, edges, holes or vertices that violate a threshold, and the worst one.
+/// The number of elements, edges, holes or vertices that violate a threshold, and the worst one.
 pub(crate) struct Finding {
     pub(crate) threshold: Threshold,
-    /// Number of triangles, edges or vertices with a value in the range.
+    /// Name of several parts, such as `triangles`.
+    pub(crate) parts: &'static str,
+    /// Number of parts with a value in the range.
     pub(crate) count: usize,
-    /// Number of triangles, edges or vertices that have the quantity.
+    /// Number of parts that have the quantity.
     pub(crate) total: usize,
-    /// The triangle, edge, hole or vertex with the worst value, even if this value satisfies the limit. `None` if the mesh
+    /// The element, edge, hole or vertex with the worst value, even if this value satisfies the limit. `None` if the mesh
     /// has none.
     pub(crate) worst: Option<Worst>,
 }
@@ -42,7 +45,7 @@ pub(crate) struct Worst {
     pub(crate) value: f64,
 }
 
-/// The value of a triangle, an edge or a vertex.
+/// The value of an element, an edge or a vertex.
 #[derive(Clone, Copy)]
 struct Valued {
     index: usize,
@@ -92,10 +95,10 @@ impl<'m> Quantities<'m> {
     pub(crate) fn finding(&self, threshold: &Threshold) -> Finding {
         let (count, total, worst);
         match threshold.quantity {
-            // Measures of triangles need no list of all values.
-            Quantity::Measure(measure) if !measure.is_of_edges() && self.is_of_triangles() => {
+            // Measures of elements need no list of all values.
+            Quantity::Measure(measure) if !measure.is_of_edges() => {
                 count = self.measured.count_where(measure, |value| threshold.is_met(value)).0;
-                total = self.measured.count();
+                total = self.count_with(measure);
                 let found = self.measured.worst(measure, 1);
                 worst = found.first().map(|&(index, value)| Valued { index, value });
             }
@@ -114,12 +117,29 @@ impl<'m> Quantities<'m> {
             let place = self.place(threshold.quantity.part(), index);
             Worst { place, value }
         });
-        Finding { threshold: threshold.clone(), count, total, worst }
+        let parts = self.parts(threshold.quantity);
+        Finding { threshold: threshold.clone(), parts, count, total, worst }
     }
 
-    /// Returns whether all elements are triangles. Limits of solvers are of triangles.
-    fn is_of_triangles(&self) -> bool {
-        self.measured.count() == self.measured.topology().triangles().len()
+    /// Returns the number of elements that have a measure: triangles, and quadrilaterals unless the measure is of triangles alone.
+    fn count_with(&self, measure: Measure) -> usize {
+        match measure.of_quadrilateral() {
+            true => self.measured.count(),
+            false => self.measured.topology().triangles().len(),
+        }
+    }
+
+    /// Returns the name of the parts with a quantity.
+    fn parts(&self, quantity: Quantity) -> &'static str {
+        let triangles = self.measured.topology().triangles().len();
+        match quantity {
+            Quantity::Measure(measure)
+                if quantity.part() == Part::Triangle && self.count_with(measure) > triangles =>
+            {
+                "elements"
+            }
+            _ => quantity.part().noun(false),
+        }
     }
 
     /// Returns the values of all parts that have a quantity. Vertices on the boundary have few triangles in every mesh, so
@@ -134,7 +154,7 @@ impl<'m> Quantities<'m> {
             }
             Quantity::Measure(measure) => {
                 let values = self.measured.values(measure).into_iter().enumerate();
-                values.take(topology.triangles().len()).map(valued).collect()
+                values.take(self.count_with(measure)).map(valued).collect()
             }
             Quantity::BoundaryCorners => {
                 let is_on_boundary = self.is_on_boundary();
@@ -183,9 +203,17 @@ impl<'m> Quantities<'m> {
         })
     }
 
+    /// Returns the element of an index: that of a triangle, or the number of triangles plus that of a quadrilateral.
+    fn element(&self, index: usize) -> Element {
+        match index.checked_sub(self.measured.topology().triangles().len()) {
+            None => Element::Triangle(index),
+            Some(index) => Element::Quadrilateral(index),
+        }
+    }
+
     fn place(&self, part: Part, index: usize) -> Place {
         match part {
-            Part::Triangle => Place::Triangle(self.file.source.triangle_location(index)),
+            Part::Triangle => Place::of_element(&self.file.source, self.element(index)),
             Part::Vertex | Part::Hole => Place::Vertex(self.file.vertex_place(index as u32)),
             Part::Edge => {
                 let mut ends = self.edges()[index].vertices.map(|v| self.file.vertex_place(v));
@@ -227,8 +255,7 @@ impl Finding {
     /// Returns a sentence with the number of violations and the place of the worst value. Values have no sign for degrees
     /// if `is_plain` is true.
     pub(crate) fn sentence(&self, is_plain: bool) -> String {
-        let Self { threshold, count, total, worst } = self;
-        let parts = threshold.quantity.part().noun(false);
+        let Self { threshold, parts, count, total, worst } = self;
         let counted = match count {
             0 => format!("none of {total} {parts} has {threshold}"),
             count => format!("{count} of {total} {parts} have {threshold}"),
@@ -245,8 +272,8 @@ impl Finding {
     pub(crate) fn worst_of_all(&self, is_plain: bool) -> String {
         let quantity = self.threshold.quantity;
         let Some(worst) = &self.worst else { return String::new() };
-        let parts = quantity.part().noun(false);
-        format!("the worst of {} {parts} is {}", self.total, worst.described(quantity, is_plain))
+        let (total, parts) = (self.total, self.parts);
+        format!("the worst of {total} {parts} is {}", worst.described(quantity, is_plain))
     }
 }
 

@@ -1,8 +1,8 @@
 //! The request on how meshes are read.
 
-use mesh_io::ReadOptions;
+use mesh_io::{MeshFile, ReadOptions};
 
-use crate::args::{MoveArgs, Quadrilaterals, ReadArgs};
+use crate::args::{Quadrilaterals, ReadArgs};
 
 /// How meshes are read.
 #[derive(Clone)]
@@ -16,6 +16,8 @@ pub(crate) struct ReadRequest {
     pub(crate) regions: Option<String>,
     /// Whether quadrilaterals are elements of the mesh, whose vertices may move.
     pub(crate) takes_quadrilaterals: bool,
+    /// Whether quadrilaterals are elements of a mesh that has no triangle.
+    pub(crate) takes_quadrilaterals_alone: bool,
 }
 
 impl ReadRequest {
@@ -25,7 +27,9 @@ impl ReadRequest {
             .weld(self.weld)
             .allow_outside(self.allow_outside)
             .regions(self.regions.clone())
-            .allow_quadrilaterals_alone(self.takes_quadrilaterals)
+            .allow_quadrilaterals_alone(
+                self.takes_quadrilaterals || self.takes_quadrilaterals_alone,
+            )
     }
 
     /// Returns the request with quadrilaterals as elements of the mesh.
@@ -34,9 +38,18 @@ impl ReadRequest {
     }
 
     /// Returns the request with quadrilaterals as elements of the mesh, if the options let their vertices move.
-    pub(crate) fn moving(self, args: &MoveArgs) -> Self {
-        let takes_quadrilaterals = args.quadrilaterals == Quadrilaterals::Move;
-        Self { takes_quadrilaterals, ..self }
+    pub(crate) fn moving(self, quadrilaterals: Quadrilaterals) -> Self {
+        Self { takes_quadrilaterals: quadrilaterals == Quadrilaterals::Move, ..self }
+    }
+
+    /// Returns the request with quadrilaterals as elements of meshes that have no triangle.
+    pub(crate) fn taking_quadrilaterals_alone(self) -> Self {
+        Self { takes_quadrilaterals_alone: true, ..self }
+    }
+
+    /// Returns whether the quadrilaterals of a file are elements of its mesh.
+    pub(crate) fn has_elements_of(&self, file: &MeshFile) -> bool {
+        self.takes_quadrilaterals || self.takes_quadrilaterals_alone && file.triangles().is_empty()
     }
 
     /// Returns the options by which a file is read that a command may replace. Its cell data may have other names.
@@ -52,6 +65,7 @@ impl From<&ReadArgs> for ReadRequest {
             allow_outside: args.allow_outside,
             regions: args.regions.clone(),
             takes_quadrilaterals: false,
+            takes_quadrilaterals_alone: false,
         }
     }
 }

@@ -120,7 +120,7 @@ impl SmoothRequest {
         };
         Ok(Self {
             meshes,
-            reading: ReadRequest::from(&args.reading).moving(&args.moving),
+            reading: ReadRequest::from(&args.reading).moving(args.moving.quadrilaterals),
             form: (&args.form).into(),
             surface: settings.surface,
             z: ThirdCoordinate::of(settings, &args.fields.interpolate),

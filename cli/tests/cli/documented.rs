@@ -115,6 +115,24 @@ fn gmsh(mesh: &Mesh) -> String {
     text + "$EndNodeData\n"
 }
 
+/// Returns a square of 8 times 8 quadrilaterals as a legacy VTK file. The vertex in the middle is off by `share` of an edge
+/// in both directions.
+fn quadrilaterals(share: f64) -> String {
+    let mut text =
+        "# vtk DataFile Version 3.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 81 double\n"
+            .to_owned();
+    for v in 0..81 {
+        let off = if v == 40 { share } else { 0.0 };
+        writeln!(text, "{} {} 0", f64::from(v % 9) + off, f64::from(v / 9) + off).unwrap();
+    }
+    text += "CELLS 64 320\n";
+    for k in 0..64 {
+        let a = k / 8 * 9 + k % 8;
+        writeln!(text, "4 {a} {} {} {}", a + 1, a + 10, a + 9).unwrap();
+    }
+    text + "CELL_TYPES 64\n" + &"9\n".repeat(64)
+}
+
 /// Makes a folder with all files that the documented commands name.
 fn original() -> Folder {
     // Commands for coasts improve bad triangles; thresholds need a mesh without bad triangles.
@@ -146,6 +164,8 @@ fn original() -> Folder {
         false => vtk.insert_str(data, &scalars),
     }
     fs::write(folder.path("part.vtk"), vtk).unwrap();
+    fs::write(folder.path("block.vtk"), quadrilaterals(0.3)).unwrap();
+    fs::write(folder.path("tangled.vtk"), quadrilaterals(0.8)).unwrap();
     folder
 }
 

@@ -39,7 +39,10 @@ fn vtk(n: usize, is_cut: impl Fn(usize) -> bool, region: impl Fn(usize) -> usize
 fn quadrilaterals_alone_move_on_request_and_are_refused_otherwise() {
     let folder = Folder::new(&[("in.vtk", &vtk(10, |_| false, |_| 1))]);
     let refused = folder.line("in.vtk out.vtk --engine cpu");
-    refused.refused(&["100 quadrilaterals, but no triangle", "--quadrilaterals move"]);
+    refused.refused(&[
+        "121 vertices and 100 quadrilaterals, but no triangle",
+        "--quadrilaterals move",
+    ]);
     let run = folder.line("in.vtk out.vtk --engine cpu --quadrilaterals move --report r.json");
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert_holds(&run.err, &["100 quadrilaterals, whose vertices may move"]);
@@ -149,4 +152,54 @@ fn pictures_color_quadrilaterals_that_move() {
     let line = format!("{line} --quadrilaterals move --picture-measure size-ratio");
     assert_eq!(folder.line(&line).code, Some(0));
     assert_holds(&folder.text("p.svg"), &["quadrilateral", "worst elements"]);
+}
+
+#[test]
+fn quality_measures_and_lists_quadrilaterals() {
+    let cut = |k: usize| k % 8 < 4;
+    let concave = vtk(4, |_| false, |k| k % 2).replacen("\n0 0 0\n", "\n1.5 1.5 0\n", 1);
+    let folder = Folder::new(&[
+        ("block.vtk", &vtk(8, |_| false, |_| 1)),
+        ("mixed.vtk", &vtk(8, cut, |k| k % 2)),
+        ("concave.vtk", &concave),
+    ]);
+    // A mesh without triangles needs no option.
+    let run = folder.line("quality block.vtk --worst 2 --html p.html --picture p.png");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(
+        &run.out,
+        &["81 vertices (49 free), 64 quadrilaterals", "75 to 80", "worst elements by shape"],
+    );
+    assert_holds(&run.out, &["  quadrilateral ", "med-aspect-frobenius", "inverted or concave"]);
+    assert!(!run.out.contains("size-ratio"), "{}", run.out);
+
+    let run = folder.line("quality mixed.vtk --json");
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&run.out).unwrap()["triangles"], 64);
+    let line = "quality mixed.vtk --quadrilaterals move --json --by-region --threshold shape<0.99";
+    let run = folder.line(line);
+    assert_eq!(run.code, Some(1));
+    let told: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!((&told["triangles"], &told["quadrilaterals"]), (&64.into(), &32.into()));
+    let regions = told["regions"].as_array().unwrap();
+    let counts: Vec<[u64; 2]> = regions
+        .iter()
+        .map(|of| ["triangles", "quadrilaterals"].map(|kind| of[kind].as_u64().unwrap()))
+        .collect();
+    assert_eq!(counts, [[32, 16]; 2]);
+    let threshold = &told["thresholds"][0];
+    let violating = threshold["elements"].as_u64().unwrap();
+    assert!((33..=96).contains(&violating), "{threshold}");
+    // Both kinds are among the worst elements, each with its corners.
+    let run = folder.line("quality mixed.vtk --quadrilaterals move --json --worst 96");
+    let told: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    let corners = |key: &str, corners: usize| {
+        let worst = told["worst"].as_array().unwrap().iter();
+        let of_kind = worst.filter(|part| !part[key].is_null());
+        of_kind.filter(|part| part["vertices"].as_array().unwrap().len() == corners).count()
+    };
+    assert_eq!([corners("triangle", 3), corners("quadrilateral", 4)], [64, 32]);
+
+    let run = folder.line("quality concave.vtk");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.out, &["quadrilateral ", "is concave at vertex "]);
 }

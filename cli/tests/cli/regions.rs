@@ -354,7 +354,7 @@ fn an_option_chooses_the_cell_data_of_regions() {
         let all = "`error`, `marked`, `id`, `partition`, `zone`";
         for (name, problem) in [
             ("zones", "it has no cell data `zones`"),
-            ("error", "the cell data `error` are not a whole number for each triangle"),
+            ("error", "the cell data `error` are not a whole number for each element"),
         ] {
             let run = line(&format!("--regions {name}"));
             assert_eq!(run.code, Some(3));

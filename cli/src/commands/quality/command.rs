@@ -100,7 +100,8 @@ fn entry(quality: &MeshQuality, is_alone: bool) -> Option<PageEntry<'_>> {
     };
     let numbers = MeshNumbers {
         name,
-        triangles: quality.triangles,
+        elements: quality.triangles + quality.quadrilaterals,
+        has_quadrilaterals: quality.quadrilaterals > 0,
         bad: quality.report.inverted,
         statistics: &quality.statistics,
     };

@@ -8,8 +8,9 @@ use serde_json::{Value, json};
 use crate::commands::quality::mesh_quality::{MeshQuality, Region};
 use crate::commands::quality::worst::WorstPart;
 use crate::error::CliError;
+use crate::load::explain::BadCorner;
 use crate::render::columns::quoted;
-use crate::report::{Finding, Histogram, Worst, placed};
+use crate::report::{Finding, Histogram, Place, Worst, placed};
 
 /// Returns an object for a single mesh, or an array of objects for several meshes.
 pub(crate) fn json(qualities: &[MeshQuality]) -> Result<Value, CliError> {
@@ -26,6 +27,10 @@ fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
     value["format"] = quality.format.clone().into();
     value["vertices"] = quality.vertices.into();
     value["triangles"] = quality.triangles.into();
+    if quality.quadrilaterals > 0 {
+        value["quadrilaterals"] = quality.quadrilaterals.into();
+        value["bad_corners"] = quality.bad_corners.iter().map(bad_corner).collect();
+    }
     value["free"] = quality.free.into();
     value["flat"] = quality.flat.into();
     value["hanging_nodes"] = quality.hanging_nodes.into();
@@ -37,9 +42,12 @@ fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
     value["worst"] = quality.worst.iter().map(worst).collect();
     if !quality.regions.is_empty() {
         let regions = quality.regions.iter().map(|region| {
-            let mut object = placed("first_triangle", &region.first);
+            let mut object = placed(first_of(region), region.first.location());
             object.insert("groups".into(), json!(spellings(region)));
             object.insert("triangles".into(), region.triangles.into());
+            if quality.quadrilaterals > 0 {
+                object.insert("quadrilaterals".into(), region.quadrilaterals.into());
+            }
             object.insert("measures".into(), measures(&region.statistics));
             Value::from(object)
         });
@@ -71,6 +79,21 @@ fn histogram(histogram: &Histogram) -> Value {
     json!({ "measure": measure.name(), "edges": edges, "counts": counts })
 }
 
+/// Returns the key of the first element of a region.
+fn first_of(region: &Region) -> &'static str {
+    match region.first {
+        Place::Quadrilateral(_) => "first_quadrilateral",
+        _ => "first_triangle",
+    }
+}
+
+fn bad_corner(bad: &BadCorner) -> Value {
+    let mut object = bad.place.json();
+    object.insert("vertex".into(), bad.vertex.into());
+    object.insert("problem".into(), bad.problem.into());
+    object.into()
+}
+
 fn worst(worst: &WorstPart) -> Value {
     let mut object = worst.place.json();
     object.insert("vertices".into(), json!(worst.vertices));
@@ -83,15 +106,14 @@ fn worst(worst: &WorstPart) -> Value {
 }
 
 fn finding(finding: &Finding) -> Value {
-    let Finding { threshold, count, worst, .. } = finding;
+    let Finding { threshold, parts, count, worst, .. } = finding;
     let violating = worst.as_ref().filter(|_| *count > 0);
     let worst = violating.map(|Worst { place, value }| {
         let mut object = place.json();
         object.insert("value".into(), json!(value));
         object
     });
-    let parts = threshold.quantity.part().noun(false);
-    json!({ "threshold": threshold.to_string(), parts: count, "worst": worst })
+    json!({ "threshold": threshold.to_string(), *parts: count, "worst": worst })
 }
 
 /// Returns the group names of a region, in the spelling that options accept.

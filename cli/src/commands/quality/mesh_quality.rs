@@ -6,24 +6,26 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use gpu_smooth::{
-    Quality, Topology,
+    Element, Quality, Topology,
     measure::{Measure, Measured, Statistics},
     topology::BadTriangle,
 };
-use mesh_io::{Group, Groups, SourceLocation};
+use mesh_io::{Group, Groups};
 
 use crate::args::QualityArgs;
 use crate::commands::quality::worst::{WorstPart, worst};
 use crate::limits::Quantity;
-use crate::load::explain::{self, BadTriangleReport};
+use crate::load::explain::{self, BadCorner, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
 use crate::load::{depths, lay_out};
 use crate::profiles::Profile;
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
-use crate::report::{Finding, Histogram, ProfileReport, QualityReport, Quantities, histogram};
-use crate::request::{Outputs, ThirdCoordinate};
+use crate::report::{
+    Finding, Histogram, Place, ProfileReport, QualityReport, Quantities, elements, histogram,
+};
+use crate::request::{Outputs, ReadRequest, ThirdCoordinate};
 use crate::terminal::progress::{Display, Stage};
 
 /// Measurements of one mesh. The mesh is not stored, so that many meshes can be shown side by side.
@@ -34,22 +36,28 @@ pub(crate) struct MeshQuality {
     pub(crate) vertices: usize,
     pub(crate) free: usize,
     pub(crate) triangles: usize,
+    /// Number of measured quadrilaterals.
+    pub(crate) quadrilaterals: usize,
     /// Quality with the fields of a run's report.
     pub(crate) report: QualityReport,
-    /// Location of the triangle with the largest inverse mean ratio.
-    pub(crate) worst_place: SourceLocation,
+    /// The element with the largest inverse mean ratio.
+    pub(crate) worst_place: Place,
     /// Statistics of the measures of `--measure`, or of all measures.
     pub(crate) statistics: Vec<Statistics>,
     pub(crate) regions: Vec<Region>,
     pub(crate) histograms: Vec<Histogram>,
-    /// The worst triangles or edges by the first measure with a histogram, worst first.
+    /// The worst elements or edges by the first measure with a histogram, worst first.
     pub(crate) worst: Vec<WorstPart>,
     /// The parts of the mesh with values in the ranges of `--threshold`.
     pub(crate) findings: Vec<Finding>,
     /// The mesh beside the limits of `--for`.
     pub(crate) profile: Option<ProfileReport>,
+    /// Numbers of inverted and flat triangles, and of corners of quadrilaterals that are not convex.
+    pub(crate) bad_counts: [usize; 2],
     /// Inverted and flat triangles: all for JSON, otherwise the first [`explain::TOLD`].
     pub(crate) bad: Vec<BadTriangleReport>,
+    /// Corners of quadrilaterals that are not convex: all for JSON, otherwise the first [`explain::TOLD`].
+    pub(crate) bad_corners: Vec<BadCorner>,
     pub(crate) flat: usize,
     pub(crate) hanging_nodes: usize,
     pub(crate) duplicate_vertices: usize,
@@ -58,14 +66,14 @@ pub(crate) struct MeshQuality {
     pub(crate) page: Option<MeshPart>,
 }
 
-/// A region of the file: a class of triangles.
+/// A region of the file: a class of elements.
 pub(crate) struct Region {
-    /// Location of the region's first triangle.
-    pub(crate) first: SourceLocation,
+    /// The region's first triangle; without triangles, its first quadrilateral.
+    pub(crate) first: Place,
     /// The groups that contain the region's triangles, named groups first.
     pub(crate) groups: Vec<GroupNames>,
-    /// Number of triangles.
     pub(crate) triangles: usize,
+    pub(crate) quadrilaterals: usize,
     /// Statistics of the region by the measures of `MeshQuality::statistics`.
     pub(crate) statistics: Vec<Statistics>,
 }
@@ -92,7 +100,8 @@ impl MeshQuality {
     ) -> Result<Self, CliError> {
         display
             .stage(Stage::Reading { bytes: std::fs::metadata(path).map_or(0, |file| file.len()) });
-        let mut file = read(path, &(&args.reading).into())?;
+        let reading = ReadRequest::from(&args.reading).moving(args.quadrilaterals);
+        let mut file = read(path, &reading.taking_quadrilaterals_alone())?;
         let settings = args.coordinates.settings();
         let surface = settings.surface;
         let laid_out = lay_out(&mut file, surface, ThirdCoordinate::of(settings, &[]))?;
@@ -102,6 +111,7 @@ impl MeshQuality {
         let topology = Topology::new(mesh).map_err(refused)?;
         let quality = Quality::on(surface, &mesh.points, &topology).map_err(refused)?;
         let bad = topology.bad_triangles(&mesh.points).map_err(refused)?;
+        let bad_corners = topology.bad_quadrilaterals(&mesh.points).map_err(refused)?;
         let measured = Measured::on(surface, &mesh.points, &topology).map_err(refused)?;
         let hanging = topology.hanging_nodes(&mesh.points).map_err(refused)?;
         let picture = outputs.picture.as_ref();
@@ -132,7 +142,7 @@ impl MeshQuality {
                 profile,
                 worst: args.worst,
                 is_alone: args.meshes.len() == 1,
-                sentences: sentences(&file, &topology, bad.len(), &remarks),
+                sentences: sentences(&file, &topology, quality.inverted, &remarks),
             })
         });
         let page = page.transpose()?;
@@ -144,7 +154,8 @@ impl MeshQuality {
         let depths = if needs_depths { depths(&file, &[])? } else { None };
         let quantities = Quantities::new(&file, &measured, depths);
         limited.iter().try_for_each(|&quantity| quantities.check(quantity))?;
-        let listed = if args.json { bad.len() } else { bad.len().min(explain::TOLD) };
+        let listed = if args.json { usize::MAX } else { explain::TOLD };
+        let [of_triangles, of_corners] = [bad.len(), bad_corners.len()].map(|n| n.min(listed));
         Ok(Self {
             path: path.to_owned(),
             format: file.source.format().to_string(),
@@ -152,8 +163,9 @@ impl MeshQuality {
             vertices: file.source.points().len(),
             free: topology.free_count(),
             triangles: mesh.triangles.len(),
+            quadrilaterals: mesh.quadrilaterals.len(),
             report: QualityReport::from(&quality),
-            worst_place: file.source.triangle_location(quality.worst.index()),
+            worst_place: Place::of_element(&file.source, quality.worst),
             statistics: measured.statistics(&args.statistics()),
             regions: match args.by_region {
                 true => regions(&file, &measured, &args.statistics())?,
@@ -163,7 +175,9 @@ impl MeshQuality {
             worst: worst(&file, &measured, args),
             profile: profile.map(|profile| ProfileReport::new(profile, &quantities)),
             findings: args.threshold.iter().map(|t| quantities.finding(t)).collect(),
-            bad: explain::bad_triangles(&file, &bad[..listed]),
+            bad_counts: [bad.len(), bad_corners.len()],
+            bad: explain::bad_triangles(&file, &bad[..of_triangles]),
+            bad_corners: explain::bad_corners(&file, &bad_corners[..of_corners]),
             flat: bad.iter().filter(|bad: &&BadTriangle| bad.flat).count(),
             hanging_nodes: hanging.len(),
             duplicate_vertices: measured.duplicate_vertices().len(),
@@ -180,14 +194,18 @@ fn sentences(
     bad: usize,
     remarks: &[String],
 ) -> Vec<String> {
-    let (vertices, triangles) = (file.source.points().len(), topology.triangles().len());
+    let vertices = file.source.points().len();
+    let elements = elements(topology.triangles().len(), topology.quadrilaterals().len());
     let (format, free) = (file.source.format(), topology.free_count());
-    let mut sentences =
-        vec![format!("{format}: {vertices} vertices ({free} free), {triangles} triangles")];
+    let mut sentences = vec![format!("{format}: {vertices} vertices ({free} free), {elements}")];
+    let (one, several, problem) = match topology.quadrilaterals().len() {
+        0 => ("triangle", "triangles", "inverted or flat"),
+        _ => ("element", "elements", "inverted, flat or not convex"),
+    };
     sentences.push(match bad {
-        0 => "No triangle is inverted or flat".to_owned(),
-        1 => "1 triangle is inverted or flat".to_owned(),
-        n => format!("{n} triangles are inverted or flat"),
+        0 => format!("No {one} is {problem}"),
+        1 => format!("1 {one} is {problem}"),
+        n => format!("{n} {several} are {problem}"),
     });
     sentences.extend_from_slice(remarks);
     sentences
@@ -209,41 +227,54 @@ fn regions(
     measured: &Measured<'_>,
     measures: &[Measure],
 ) -> Result<Vec<Region>, CliError> {
-    let zeros;
-    let regions = match file.source.regions() {
-        Some(regions) => regions,
-        None => {
-            zeros = vec![0; measured.count()];
-            &zeros
-        }
+    let triangles = file.mesh().triangles.len();
+    let mut regions = match file.source.regions() {
+        Some(regions) => regions.to_vec(),
+        None => vec![0; triangles],
     };
+    let of_quadrilaterals = file.source.quadrilateral_regions().iter().copied();
+    // Without regions of the file, all elements are of one region.
+    regions
+        .extend(of_quadrilaterals.chain(std::iter::repeat(0)).take(measured.count() - triangles));
     let count = regions.iter().max().map_or(0, |&most| most as usize + 1);
     let mut first = vec![None; count];
-    let mut triangles = vec![0; count];
-    for (t, &region) in regions.iter().enumerate() {
-        first[region as usize].get_or_insert(t);
-        triangles[region as usize] += 1;
+    let mut counts = vec![[0, 0]; count];
+    for (index, &region) in regions.iter().enumerate() {
+        let is_other = index >= triangles;
+        let element = match is_other {
+            false => Element::Triangle(index),
+            true => Element::Quadrilateral(index - triangles),
+        };
+        first[region as usize].get_or_insert(element);
+        counts[region as usize][usize::from(is_other)] += 1;
     }
-    let first: Vec<usize> = first.into_iter().map(Option::unwrap_or_default).collect();
-    let places = file.source.triangle_locations(first.iter().copied());
-    let statistics = measured.statistics_by_region(measures, regions, count);
+    let statistics = measured.statistics_by_region(measures, &regions, count);
+    // A number of the file may belong to elements that are not measured.
+    let known = first.into_iter().zip(counts).zip(statistics);
+    let known = known.filter_map(|((first, counts), found)| Some((first?, counts, found)));
+    let known: Vec<(Element, [usize; 2], Vec<Statistics>)> = known.collect();
+    let first: Vec<Element> = known.iter().map(|(first, ..)| *first).collect();
     let groups = file.source.groups()?;
-    let mut named = groups_of(&first, &groups).into_iter();
-    let region = |((first, triangles), statistics): ((&usize, usize), Vec<Statistics>)| Region {
-        first: places[first].clone(),
-        triangles,
-        groups: named.next().unwrap_or_default(),
-        statistics,
-    };
-    Ok(first.iter().zip(triangles).zip(statistics).map(region).collect())
+    let named = groups_of(&first, &groups).into_iter();
+    let places = Place::of_elements(&file.source, &first).into_iter();
+    let mut regions = Vec::with_capacity(known.len());
+    for ((first, groups), (_, counts, statistics)) in places.zip(named).zip(known) {
+        let [triangles, quadrilaterals] = counts;
+        regions.push(Region { first, groups, triangles, quadrilaterals, statistics });
+    }
+    Ok(regions)
 }
 
-/// Returns the groups of each triangle in `triangles`, named groups first. All triangles of a region belong to equal
-/// groups, so one triangle represents its region.
-fn groups_of(triangles: &[usize], groups: &Groups) -> Vec<Vec<GroupNames>> {
+/// Returns the groups of each element in `elements`, named groups first. All triangles of a region belong to equal
+/// groups, so one triangle represents its region. Groups do not list their quadrilaterals.
+fn groups_of(elements: &[Element], groups: &Groups) -> Vec<Vec<GroupNames>> {
     // One pass over each group's triangles suffices, though the mesh may have as many regions as groups.
-    let asked: HashMap<u32, usize> = triangles.iter().map(|&t| t as u32).zip(0..).collect();
-    let mut found: Vec<Vec<(&Group, GroupNames)>> = vec![Vec::new(); triangles.len()];
+    let triangle = |(element, k): (&Element, usize)| match *element {
+        Element::Triangle(index) => Some((index as u32, k)),
+        Element::Quadrilateral(_) => None,
+    };
+    let asked: HashMap<u32, usize> = elements.iter().zip(0..).filter_map(triangle).collect();
+    let mut found: Vec<Vec<(&Group, GroupNames)>> = vec![Vec::new(); elements.len()];
     for (group, spelling) in groups.iter().zip(groups.unique_names()) {
         let regions: Vec<usize> =
             group.triangles().iter().filter_map(|t| asked.get(t)).copied().collect();

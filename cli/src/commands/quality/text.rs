@@ -12,7 +12,7 @@ use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region};
 use crate::commands::quality::worst::WorstPart;
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
-use crate::report::{DistinctMeasures, Place};
+use crate::report::{DistinctMeasures, Place, elements};
 use crate::terminal::numbers::{coordinate, fit8, sig6};
 
 /// Width of a table's first column, in characters.
@@ -35,10 +35,11 @@ fn shown(style: &Style) -> [bool; COLUMNS.len()] {
 pub(crate) fn text(qualities: &[MeshQuality], is_usual: bool, style: &Style) -> String {
     let mut text = String::new();
     for quality in qualities {
-        let MeshQuality { path, format, vertices, free, triangles, remarks, .. } = quality;
+        let MeshQuality { path, format, vertices, free, remarks, .. } = quality;
+        let elements = elements(quality.triangles, quality.quadrilaterals);
         let _ = writeln!(text, "{}: {format}", path.display());
         remarks.iter().for_each(|remark| text.push_str(&format!("{remark}\n")));
-        let _ = writeln!(text, "{vertices} vertices ({free} free), {triangles} triangles\n");
+        let _ = writeln!(text, "{vertices} vertices ({free} free), {elements}\n");
     }
     text.push_str(&table(qualities, is_usual, style));
     for quality in qualities {
@@ -53,10 +54,11 @@ pub(crate) fn text(qualities: &[MeshQuality], is_usual: bool, style: &Style) -> 
 
 /// Describes a mesh in one line, for logs.
 pub(crate) fn in_short(quality: &MeshQuality, style: &Style) -> String {
-    let (report, triangles) = (&quality.report, quality.triangles);
+    let report = &quality.report;
+    let elements = elements(quality.triangles, quality.quadrilaterals);
     let angle = valued(Measure::MinAngle, report.min_angle, style);
     let (worst, inverted) = (sig6(report.worst_imr), report.inverted);
-    format!("{triangles} triangles, {angle}, worst imr {worst}, {inverted} inverted or flat")
+    format!("{elements}, {angle}, worst imr {worst}, {inverted} inverted or flat")
 }
 
 /// Writes a table of statistics: one row per measure, or one row per measure and file. Measures with equal values share
@@ -65,11 +67,15 @@ fn table(qualities: &[MeshQuality], is_usual: bool, style: &Style) -> String {
     let mut text = head(style);
     let Some(first) = qualities.first() else { return text };
     let measures: Vec<Measure> = first.statistics.iter().map(|row| row.measure).collect();
-    let DistinctMeasures { mut shown, equal } = DistinctMeasures::of(&measures);
+    let has_quadrilaterals = qualities.iter().any(|quality| quality.quadrilaterals > 0);
+    let DistinctMeasures { mut shown, equal } = DistinctMeasures::of(&measures, has_quadrilaterals);
     if is_usual {
         shown.retain(|measure| !matches!(measure, Measure::Metric(_)));
     }
-    let shown = measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure));
+    // Quadrilaterals lack some measures.
+    let has_value = |i: usize| qualities.iter().any(|quality| quality.statistics[i].count > 0);
+    let is_shown = |&(i, measure): &(usize, &Measure)| shown.contains(measure) && has_value(i);
+    let shown = measures.iter().enumerate().filter(is_shown);
     for (i, measure) in shown {
         match qualities {
             [only] => text.push_str(&row(&named(*measure, style), &only.statistics[i], style)),
@@ -101,10 +107,13 @@ fn row(name: &str, statistics: &Statistics, style: &Style) -> String {
 }
 
 fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
-    let mut text = left(name, NAME);
+    let (mut text, mut end) = (left(name, NAME), NAME);
     for (field, is_shown) in fields.iter().zip(shown(style)) {
         if is_shown {
-            text += &right(field, COLUMN);
+            end += COLUMN;
+            // A long name takes blanks of the first column.
+            let width = end.saturating_sub(text.chars().count());
+            text += &right(field, width.max(field.chars().count() + 1));
         }
     }
     text + "\n"
@@ -129,7 +138,11 @@ fn details(quality: &MeshQuality, is_usual: bool, style: &Style) -> String {
     text.push_str(&by_region(quality, style));
     if let Some(first) = quality.worst.first() {
         let by = first.values.first().map_or("", |value| value.0.name());
-        let parts = if matches!(first.place, Place::Edge(_)) { "edges" } else { "triangles" };
+        let parts = match (&first.place, quality.quadrilaterals) {
+            (Place::Edge(_), _) => "edges",
+            (_, 0) => "triangles",
+            _ => "elements",
+        };
         let _ = writeln!(text, "worst {parts} by {by}");
         quality.worst.iter().for_each(|worst| text.push_str(&worst_line(worst, style)));
         text.push('\n');
@@ -137,17 +150,17 @@ fn details(quality: &MeshQuality, is_usual: bool, style: &Style) -> String {
     let report = &quality.report;
     let objectives = match is_usual {
         true => vec![("f imr".to_owned(), Metric::Imr)],
-        false => objectives(),
+        false => objectives(quality.quadrilaterals > 0),
     };
     for (name, metric) in objectives {
         let _ = writeln!(text, "{name:<22}{:>12}", sig6(report.f[metric.name()]));
     }
     let (worst, place) = (sig6(report.worst_imr), &quality.worst_place);
-    let at = format!("  triangle {} ({place})", place.id);
-    let _ = writeln!(text, "{:<22}{worst:>12}{at}", "worst imr");
+    let _ = writeln!(text, "{:<22}{worst:>12}  {place}", "worst imr");
     if quality.free > 0 && report.worst_movable_imr < report.worst_imr {
         let movable = sig6(report.worst_movable_imr);
-        let among = "among triangles with a free vertex";
+        let kind = if quality.quadrilaterals > 0 { "elements" } else { "triangles" };
+        let among = format!("among {kind} with a free vertex");
         let _ = writeln!(text, "{:<22}{movable:>12}  {among}", "worst imr movable");
     }
     for (name, count) in [
@@ -157,20 +170,29 @@ fn details(quality: &MeshQuality, is_usual: bool, style: &Style) -> String {
     ] {
         let _ = writeln!(text, "{name:<22}{count:>12}");
     }
-    let _ = writeln!(text, "{:<22}{:>12}", "inverted or flat", report.inverted);
-    for line in explain::list(&quality.bad, report.inverted, "--json") {
+    let bad = match quality.quadrilaterals {
+        0 => "inverted or flat",
+        _ => "inverted or concave",
+    };
+    let _ = writeln!(text, "{bad:<22}{:>12}", report.inverted);
+    let [triangles, corners] = quality.bad_counts;
+    let mut lines = explain::list(&quality.bad, triangles, "--json");
+    lines.extend(explain::list_corners(&quality.bad_corners, corners, "--json"));
+    for line in lines {
         let _ = writeln!(text, "  {line}");
     }
     text
 }
 
-/// Returns the metrics whose objectives are listed, each with the names of all metrics with equal objectives.
-fn objectives() -> Vec<(String, Metric)> {
+/// Returns the metrics whose objectives are listed, each with the names of all metrics with equal objectives, which only
+/// meshes of triangles have.
+fn objectives(has_quadrilaterals: bool) -> Vec<(String, Metric)> {
     let mut rows: Vec<(String, Metric)> = Vec::new();
     for &metric in Metric::ALL {
         let twin = |metric| Measure::Metric(metric).equal_to();
-        let is_twin =
-            |row: &&mut (String, Metric)| twin(metric).is_some() && twin(row.1) == twin(metric);
+        let is_twin = |row: &&mut (String, Metric)| {
+            !has_quadrilaterals && twin(metric).is_some() && twin(row.1) == twin(metric)
+        };
         match rows.iter_mut().find(is_twin) {
             Some((name, _)) => *name += &format!(", {metric}"),
             None => rows.push((format!("f {metric}"), metric)),
@@ -200,12 +222,13 @@ fn by_region(quality: &MeshQuality, style: &Style) -> String {
         text.push('\n');
     }
     for (number, region) in (1..).zip(&quality.regions) {
-        let Region { first, triangles, groups, .. } = region;
+        let Region { first, groups, .. } = region;
+        let elements = elements(region.triangles, region.quadrilaterals);
         let full = |group: &GroupNames| format!("{} ({})", group.spelling, group.kind);
         let groups: Vec<String> = groups.iter().map(full).collect();
         let named = if groups.is_empty() { String::new() } else { groups.join(", ") + "; " };
         let _ =
-            writeln!(text, "region {number}: {named}{triangles} triangles, the first at {first}");
+            writeln!(text, "region {number}: {named}{elements}, the first at {}", first.location());
     }
     if quality.regions.len() > 1 && quality.regions.iter().all(|region| region.groups.is_empty()) {
         text.push_str("The file has no groups, so --only accepts no name of a region\n");
@@ -216,7 +239,7 @@ fn by_region(quality: &MeshQuality, style: &Style) -> String {
     text
 }
 
-/// Writes the location of a triangle or edge, its values, and whether smoothing can improve them.
+/// Writes the location of an element or edge, its values, and whether smoothing can improve them.
 fn worst_line(worst: &WorstPart, style: &Style) -> String {
     let WorstPart { place, at, values, can_move, .. } = worst;
     let [x, y] = at.map(|x| coordinate(x, worst.length));

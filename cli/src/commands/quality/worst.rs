@@ -1,4 +1,4 @@
-//! The worst triangles or edges of a mesh, in the terms of its file.
+//! The worst elements or edges of a mesh, in the terms of its file.
 
 use gpu_smooth::Element;
 use gpu_smooth::measure::{Better, InnerEdge, Measure, Measured};
@@ -7,10 +7,10 @@ use crate::args::QualityArgs;
 use crate::load::{LoadedMesh, as_in_file};
 use crate::report::{Place, of_edge};
 
-/// One of the worst triangles or edges.
+/// One of the worst elements or edges.
 pub(crate) struct WorstPart {
     pub(crate) place: Place,
-    /// Numbers or tags in the file of the corners of a triangle, or of the ends of an edge.
+    /// Numbers or tags in the file of the corners of an element, or of the ends of an edge.
     pub(crate) vertices: Vec<u64>,
     /// Positions of the vertices in coordinates of the file, without continued longitudes. `at` is their mean.
     pub(crate) corners: Vec<[f64; 2]>,
@@ -19,11 +19,11 @@ pub(crate) struct WorstPart {
     pub(crate) length: f64,
     /// Values of the measures with a histogram; for an edge, of those that are of edges.
     pub(crate) values: Vec<(Measure, f64)>,
-    /// Whether the triangle, or one of the two triangles at the edge, has a free vertex.
+    /// Whether the element, or one of the two triangles at the edge, has a free vertex.
     pub(crate) can_move: bool,
 }
 
-/// Finds the worst triangles by the first measure with a histogram, worst first; the worst edges if the measure is one of
+/// Finds the worst elements by the first measure with a histogram, worst first; the worst edges if the measure is one of
 /// edges.
 pub(crate) fn worst(
     file: &LoadedMesh,
@@ -33,33 +33,49 @@ pub(crate) fn worst(
     match args.histograms().first() {
         None => Vec::new(),
         Some(&measure) if measure.is_of_edges() => edges(file, measured, measure, args),
-        Some(&measure) => triangles(file, measured, measure, args),
+        Some(&measure) => elements(file, measured, measure, args),
     }
 }
 
-fn triangles(
+fn elements(
     file: &LoadedMesh,
     measured: &Measured<'_>,
     measure: Measure,
     args: &QualityArgs,
 ) -> Vec<WorstPart> {
     let mesh = file.mesh();
-    let found = measured.worst(measure, args.worst);
-    let places = file.source.triangle_locations(found.iter().map(|found| found.0));
-    let names = file.vertex_places(found.iter().flat_map(|found| mesh.triangles[found.0]));
-    let one = |&(t, _): &(usize, f64)| {
-        let points = mesh.triangles[t].map(|v| mesh.points[v as usize]);
-        WorstPart {
-            place: Place::Triangle(places[&t].clone()),
-            vertices: mesh.triangles[t].map(|v| names[&v].id).to_vec(),
-            corners: file.source.triangles()[t].map(|v| file.positions()[v as usize]).to_vec(),
-            at: as_in_file(file, mean(&points)),
-            length: longest_edge(&points),
-            values: args.histograms().iter().map(|&m| (m, measured.value(m, t))).collect(),
-            can_move: measured.topology().can_move(Element::Triangle(t)),
+    let found: Vec<usize> =
+        measured.worst(measure, args.worst).into_iter().map(|found| found.0).collect();
+    let element = |&index: &usize| match index.checked_sub(mesh.triangles.len()) {
+        None => Element::Triangle(index),
+        Some(index) => Element::Quadrilateral(index),
+    };
+    // The vertices of an element in the mesh, and in the file, which has no copies of vertices.
+    let vertices = |element: Element| -> [&[u32]; 2] {
+        match element {
+            Element::Triangle(t) => [&mesh.triangles[t], &file.source.triangles()[t]],
+            Element::Quadrilateral(k) => {
+                [&mesh.quadrilaterals[k], &file.source.quadrilaterals()[k]]
+            }
         }
     };
-    found.iter().map(one).collect()
+    let elements: Vec<Element> = found.iter().map(element).collect();
+    let places = Place::of_elements(&file.source, &elements);
+    let names = file.vertex_places(elements.iter().flat_map(|&e| vertices(e)[0]).copied());
+    let one = |((index, element), place): ((usize, Element), Place)| {
+        let [in_mesh, in_file] = vertices(element);
+        let points: Vec<[f64; 2]> = in_mesh.iter().map(|&v| mesh.points[v as usize]).collect();
+        WorstPart {
+            place,
+            vertices: in_mesh.iter().map(|v| names[v].id).collect(),
+            corners: in_file.iter().map(|&v| file.positions()[v as usize]).collect(),
+            at: as_in_file(file, mean(&points)),
+            length: longest_edge(&points),
+            values: args.histograms().iter().map(|&m| (m, measured.value(m, index))).collect(),
+            can_move: measured.topology().can_move(element),
+        }
+    };
+    found.into_iter().zip(elements).zip(places).map(one).collect()
 }
 
 fn edges(

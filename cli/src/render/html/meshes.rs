@@ -111,9 +111,12 @@ pub(crate) fn write_meshes(path: &Path, meshes: &[PageEntry<'_>]) -> Result<(), 
 
 fn page(meshes: &[PageEntry<'_>]) -> String {
     let numbers: Vec<&MeshNumbers<'_>> = meshes.iter().map(|entry| &entry.numbers).collect();
-    let notes = tables::notes(&tables::measures(numbers.first().map_or(&[], |n| n.statistics)));
-    let statistics =
-        |entry: &PageEntry<'_>| tables::statistics_table(&[("", entry.numbers.statistics)]);
+    let measures = tables::measures(numbers.first().map_or(&[], |n| n.statistics));
+    let has_quadrilaterals = numbers.iter().any(|mesh| mesh.has_quadrilaterals);
+    let notes = tables::notes(&measures, has_quadrilaterals);
+    let statistics = |entry: &PageEntry<'_>| {
+        tables::statistics_table(&[("", entry.numbers.statistics)], has_quadrilaterals)
+    };
     let [entry @ PageEntry { numbers: MeshNumbers { name, .. }, part }] = meshes else {
         let mut page = Page::new(&format!("Quality of {} meshes", meshes.len()));
         page.section("Overview", &(overview::table(&numbers) + &notes));

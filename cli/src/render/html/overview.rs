@@ -17,9 +17,10 @@ pub(crate) const TOP: &str = "overview";
 pub(crate) struct MeshNumbers<'a> {
     /// Name of the mesh.
     pub(crate) name: String,
-    /// Number of triangles.
-    pub(crate) triangles: usize,
-    /// Number of inverted or flat triangles.
+    /// Number of triangles, and of quadrilaterals if they are measured.
+    pub(crate) elements: usize,
+    pub(crate) has_quadrilaterals: bool,
+    /// Number of inverted, flat or concave elements.
     pub(crate) bad: usize,
     /// Statistics of each measure; all rows of a table have the same measures.
     pub(crate) statistics: &'a [Statistics],
@@ -35,7 +36,12 @@ pub(crate) fn anchor(index: usize) -> String {
 pub(crate) fn table(meshes: &[&MeshNumbers<'_>]) -> String {
     let first = meshes.first().map_or(&[][..], |mesh| mesh.statistics);
     let all = measures(first);
-    let shown = DistinctMeasures::of(&all).shown;
+    let has_quadrilaterals = meshes.iter().any(|mesh| mesh.has_quadrilaterals);
+    let (name, bad) = match has_quadrilaterals {
+        true => ("elements", "inverted, flat or concave"),
+        false => ("triangles", "inverted or flat"),
+    };
+    let shown = DistinctMeasures::of(&all, has_quadrilaterals).shown;
     let columns: Vec<usize> = (0..all.len()).filter(|&i| shown.contains(&all[i])).collect();
     let mut text = format!(
         "<p>The worst value of each measure. A click on a heading sorts the table, worst first; a second click reverses the \
@@ -51,17 +57,17 @@ pub(crate) fn table(meshes: &[&MeshNumbers<'_>]) -> String {
         );
     };
     header("text", "mesh", "the file", columns.is_empty());
-    header("number", "triangles", "the number of triangles", false);
-    header("number", "inverted or flat", "the number of inverted or flat triangles", false);
+    header("number", name, &format!("the number of {name}"), false);
+    header("number", bad, &format!("the number of {bad} {name}"), false);
     for (place, &i) in columns.iter().enumerate() {
         header("number", &measure_name(all[i]), all[i].definition().formula, place == 0);
     }
     text += "</tr></thead><tbody>";
     for (index, mesh) in sorted(meshes, columns.first().copied()) {
-        let MeshNumbers { name, triangles, bad, statistics } = mesh;
+        let MeshNumbers { name, elements, bad, statistics, .. } = mesh;
         let _ = write!(
             text,
-            "<tr><td><a href=\"#{}\">{}</a></td><td data-key=\"-{triangles}\">{triangles}</td><td data-key=\"-{bad}\">{bad}</td>",
+            "<tr><td><a href=\"#{}\">{}</a></td><td data-key=\"-{elements}\">{elements}</td><td data-key=\"-{bad}\">{bad}</td>",
             anchor(index),
             escape(name)
         );

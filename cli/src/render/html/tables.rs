@@ -42,12 +42,17 @@ pub(crate) fn summary(report: &Report) -> String {
 /// Writes a table with the statistics of all measures, in pairs of rows before and after a run, and the notes on it.
 pub(crate) fn statistics(states: [&Measured<'_>; 2]) -> String {
     let [before, after] = states.map(|state| state.statistics(Measure::ALL));
-    statistics_table(&[("before", &before), ("after", &after)]) + &notes(Measure::ALL)
+    let has_quadrilaterals = states[0].topology().quadrilaterals().len() > 0;
+    statistics_table(&[("before", &before), ("after", &after)], has_quadrilaterals)
+        + &notes(Measure::ALL, has_quadrilaterals)
 }
 
 /// Writes a table of statistics. Each state has a name and statistics by the same measures, and a row for each measure. A
 /// single state has no column of names.
-pub(crate) fn statistics_table(states: &[(&str, &[Statistics])]) -> String {
+pub(crate) fn statistics_table(
+    states: &[(&str, &[Statistics])],
+    has_quadrilaterals: bool,
+) -> String {
     let is_alone = states.len() == 1;
     let class = if is_alone { "one" } else { "pairs" };
     let mut text =
@@ -58,7 +63,7 @@ pub(crate) fn statistics_table(states: &[(&str, &[Statistics])]) -> String {
     }
     text += "</tr></thead><tbody>";
     let measures = measures(states.first().map_or(&[][..], |(_, statistics)| statistics));
-    let shown = DistinctMeasures::of(&measures).shown;
+    let shown = DistinctMeasures::of(&measures, has_quadrilaterals).shown;
     for (i, measure) in measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure)) {
         let (name, source) =
             (escape(&measure_name(*measure)), escape(measure.definition().formula));
@@ -81,8 +86,8 @@ pub(crate) fn measures(statistics: &[Statistics]) -> Vec<Measure> {
 }
 
 /// Writes which of the measures are equal to others, and where measures are defined.
-pub(crate) fn notes(measures: &[Measure]) -> String {
-    let equal = DistinctMeasures::of(measures).equal;
+pub(crate) fn notes(measures: &[Measure], has_quadrilaterals: bool) -> String {
+    let equal = DistinctMeasures::of(measures, has_quadrilaterals).equal;
     let equal = if equal.is_empty() { String::new() } else { format!("{}. ", equal.join(", ")) };
     format!("<p>{equal}docs/quality.md of the program defines each measure.</p>")
 }
