@@ -208,10 +208,13 @@ fn mesh_error(mesh: &Mesh) -> MeshError {
 
 #[test]
 fn an_empty_mesh_is_refused() {
-    assert_eq!(mesh_error(&Mesh::default()).to_string(), "the mesh has no triangles");
+    assert_eq!(
+        mesh_error(&Mesh::default()).to_string(),
+        "the mesh has no triangles and no quadrilaterals"
+    );
     let points = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let error = mesh_error(&Mesh { points, ..Mesh::default() });
-    assert_eq!(error.to_string(), "the mesh has no triangles");
+    assert_eq!(error.to_string(), "the mesh has no triangles and no quadrilaterals");
 }
 
 #[test]
