@@ -2,8 +2,8 @@
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::load::Place;
 use crate::load::fixed::nothing_free;
-use crate::report::Place;
 use gpu_smooth::{
     Element, MeshError, Topology,
     topology::{BadQuadrilateral, BadTriangle, Crossing, HangingNode},

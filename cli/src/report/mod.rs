@@ -6,7 +6,6 @@ mod floored;
 mod histogram;
 mod improved;
 mod large_angles;
-mod place;
 mod profile;
 mod quantities;
 mod reasons;
@@ -23,7 +22,6 @@ pub(crate) use floored::FlooredReport;
 pub(crate) use histogram::{Histogram, histogram};
 pub(crate) use improved::ImprovedReport;
 pub(crate) use large_angles::LargeAnglesReport;
-pub(crate) use place::{Place, placed};
 pub(crate) use profile::{ProfileChange, ProfileReport, Verdict};
 pub(crate) use quantities::{Finding, Quantities, Worst, of_edge};
 pub(crate) use run::{

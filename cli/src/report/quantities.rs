@@ -10,8 +10,8 @@ use gpu_smooth::topology::signed_area;
 use crate::error::CliError;
 use crate::limits::{Part, Quantity, Threshold};
 use crate::load::LoadedMesh;
+use crate::load::Place;
 use crate::load::remarks::degrees;
-use crate::report::place::Place;
 use crate::terminal::numbers::fit8;
 
 /// A mesh with the values of all quantities of its elements, edges and vertices.

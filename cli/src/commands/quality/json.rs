@@ -9,8 +9,9 @@ use crate::commands::quality::mesh_quality::{MeshQuality, Region};
 use crate::commands::quality::worst::WorstPart;
 use crate::error::CliError;
 use crate::load::explain::BadCorner;
+use crate::load::{Place, placed};
 use crate::render::columns::quoted;
-use crate::report::{Finding, Histogram, Place, Worst, placed};
+use crate::report::{Finding, Histogram, Worst};
 
 /// Returns an object for a single mesh, or an array of objects for several meshes.
 pub(crate) fn json(qualities: &[MeshQuality]) -> Result<Value, CliError> {

@@ -18,12 +18,12 @@ use crate::limits::Quantity;
 use crate::load::explain::{self, BadCorner, BadTriangleReport};
 use crate::load::remarks;
 use crate::load::streams::read;
-use crate::load::{depths, lay_out};
+use crate::load::{Place, depths, lay_out};
 use crate::profiles::Profile;
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
 use crate::report::{
-    Finding, Histogram, Place, ProfileReport, QualityReport, Quantities, elements, histogram,
+    Finding, Histogram, ProfileReport, QualityReport, Quantities, elements, histogram,
 };
 use crate::request::{Outputs, ReadRequest, ThirdCoordinate};
 use crate::terminal::progress::{Display, Stage};

@@ -10,9 +10,10 @@ use gpu_smooth::{
 use crate::commands::quality::bars::{self, Style};
 use crate::commands::quality::mesh_quality::{GroupNames, MeshQuality, Region};
 use crate::commands::quality::worst::WorstPart;
+use crate::load::Place;
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
-use crate::report::{DistinctMeasures, Place, elements};
+use crate::report::{DistinctMeasures, elements};
 use crate::terminal::numbers::{coordinate, fit8, sig6};
 
 /// Width of a table's first column, in characters.

@@ -4,8 +4,8 @@ use gpu_smooth::Element;
 use gpu_smooth::measure::{Better, InnerEdge, Measure, Measured};
 
 use crate::args::QualityArgs;
-use crate::load::{LoadedMesh, as_in_file};
-use crate::report::{Place, of_edge};
+use crate::load::{LoadedMesh, Place, as_in_file};
+use crate::report::of_edge;
 
 /// One of the worst elements or edges.
 pub(crate) struct WorstPart {
