@@ -16,7 +16,7 @@
 //!     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.9, 0.2]],
 //!     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 //!     fixed: vec![],
-//!     ..Mesh::default(),
+//!     ..Mesh::default()
 //! };
 //! let smoother = Smoother::new(&mesh)?;
 //! let backend = Backend::Cpu; // or Backend::Gpu(Gpu::open(None).block()?), or what Backend::auto chooses

@@ -7,7 +7,7 @@
 //!     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.9, 0.5]],
 //!     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 //!     fixed: vec![],
-//!     ..Mesh::default(),
+//!     ..Mesh::default()
 //! };
 //! let topology = Topology::new(&mesh)?;
 //! let bad = select::corners_above(&mesh.points, &topology, 3.0);

@@ -36,7 +36,7 @@ impl Smoother<'_> {
     ///     points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]],
     ///     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
     ///     fixed: vec![],
-    ///     ..Mesh::default(),
+    ///     ..Mesh::default()
     /// };
     /// let mut smoother = Smoother::new(&mesh)?;
     /// let mut points = mesh.points.clone();

@@ -48,7 +48,7 @@ type Observe<'r> = dyn FnMut(&Untangling) -> ControlFlow<()> + 'r;
 ///     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.5, 0.5]],
 ///     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 ///     fixed: vec![],
-///     ..Mesh::default(),
+///     ..Mesh::default()
 /// };
 /// assert!(Smoother::new(&mesh).is_err());
 /// let untangled = Untangle::new(&mesh).run()?;
