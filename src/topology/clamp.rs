@@ -29,7 +29,7 @@ impl Topology<'_> {
     /// #     points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
     /// #     triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
     /// #     fixed: vec![],
-    /// #     ..Mesh::default(),
+    /// #     ..Mesh::default()
     /// # };
     /// // The middle vertex of a unit square, dragged out of it.
     /// let topology = Topology::new(&mesh)?;
