@@ -29,8 +29,8 @@ impl Mesh {
     }
 }
 
-/// An element of a [`Mesh`], by its kind and its index in the list of that kind. Displayed as its kind and number, such as
-/// "quadrilateral 7".
+/// A triangle or a quadrilateral of a [`Mesh`], with its index among the elements of its kind. `Display` writes kind and index,
+/// such as "quadrilateral 7".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Element {
     /// Index in [`Mesh::triangles`].

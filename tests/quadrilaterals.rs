@@ -189,7 +189,7 @@ fn windings_and_orders_of_the_elements_do_not_matter() {
     assert!(all.fold(f64::INFINITY, f64::min) > 0.0);
 }
 
-/// Brute force: an edge is on the boundary if one element has it, and a vertex is free if it is on no such edge.
+/// Brute force: a boundary edge belongs to a single element, and a free vertex to no boundary edge.
 #[test]
 fn boundary_and_free_vertices_are_those_of_the_edges() {
     let mut random = Random(3);

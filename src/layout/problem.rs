@@ -584,7 +584,7 @@ fn parts<'p>(triangles: &'p [[u32; 3]], of_quadrilaterals: &'p [[u32; 3]]) -> [C
 }
 
 /// Returns a list of corners with those of judged elements first, and the number of the latter. Elements have `size` corners
-/// each. The list is `None` if the given one is in this order.
+/// each. The list is `None` if the judged elements come first in `corners`.
 fn judged_first(
     corners: &[[u32; 3]],
     size: usize,

@@ -9,6 +9,7 @@ use crate::measure::quadrilateral::Quadrilateral;
 use crate::measure::sizes::{doubled_areas, size_ratios};
 use crate::measure::table::Measure;
 use crate::measure::triangle::Triangle;
+use crate::mesh::Element;
 use crate::parallel::{collect, map_ranges};
 use crate::targets::Surface;
 use crate::topology::Topology;
@@ -93,8 +94,16 @@ impl<'a> Measured<'a> {
         self.topology.element_count()
     }
 
+    /// Returns the element of an index below [`count`](Self::count).
+    pub fn element(&self, index: usize) -> Element {
+        match index.checked_sub(self.topology.triangles().len()) {
+            None => Element::Triangle(index),
+            Some(index) => Element::Quadrilateral(index),
+        }
+    }
+
     /// Returns the number of elements with the measure. The indices of these elements are smaller than the number.
-    pub(crate) fn count_with(&self, measure: Measure) -> usize {
+    pub fn count_with(&self, measure: Measure) -> usize {
         if measure.of_quadrilateral() { self.count() } else { self.topology.triangles().len() }
     }
 

@@ -2,8 +2,8 @@
 
 use crate::topology::Topology;
 
-/// Calls `visit` with the triangle across the edge from `start` to `end` of triangle `t`; not at all on the boundary, and
-/// where a quadrilateral is across the edge.
+/// Calls `visit` with the triangle across the edge from `start` to `end` of triangle `t`. Does nothing if
+/// the edge is a boundary edge, or if a quadrilateral is across the edge.
 ///
 /// Searches the star of the vertex that has fewer triangles. For all edges of a mesh this takes linear time, however
 /// many triangles some vertices have.

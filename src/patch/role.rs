@@ -2,8 +2,8 @@
 
 use crate::metric::Given;
 
-/// The place of a visited vertex in a corner. A quadrilateral has three corners with the vertex: its own corner, and those at
-/// the vertices before and after.
+/// The place of a visited vertex in a corner. Three corners of a quadrilateral have the vertex: the corner at
+/// the vertex, the corner at the next vertex and the corner at the last vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Role {
     /// Any vertex of a triangle, which is then written with the visited vertex first.

@@ -9,12 +9,11 @@ use crate::options::{Options, WorstBy};
 use crate::outcome::Floored;
 use crate::parallel::paced;
 use crate::slide::OnCurves;
-use crate::targets::Surface;
 use crate::whole::altitude;
 use crate::worst::{Penalties, WorstShapes};
 
 use super::prepared::Smoother;
-use super::rounds::{Aim, Movable, Present};
+use super::rounds::{Aim, Movable, PlacedCorner, Present};
 
 /// Number of triangles that one task measures.
 const CHUNK: usize = 1 << 12;
@@ -41,28 +40,16 @@ impl Aim for ToShapes {
         self.penalties.in_round(round)
     }
 
-    fn is_beyond(
-        &self,
-        surface: Surface,
-        points: &[[f64; 2]],
-        corner: &[u32; 3],
-        is_right: bool,
-    ) -> bool {
-        !WorstShapes::of(surface, points, corner, is_right).is_within(self.penalties.limits())
+    fn is_beyond(&self, corner: PlacedCorner<'_>) -> bool {
+        !corner.shapes().is_within(self.penalties.limits())
     }
 
     fn heavy(&self, _: &Movable<'_>, _: &[[f64; 2]]) -> Vec<[u32; 3]> {
         Vec::new()
     }
 
-    fn demands_more(
-        &self,
-        surface: Surface,
-        points: &[[f64; 2]],
-        corner: &[u32; 3],
-        is_right: bool,
-    ) -> bool {
-        !WorstShapes::of(surface, points, corner, is_right).is_within(self.aim)
+    fn demands_more(&self, corner: PlacedCorner<'_>) -> bool {
+        !corner.shapes().is_within(self.aim)
     }
 }
 
@@ -178,18 +165,15 @@ impl Floor<'_> {
         options: &Options,
         points: &mut [[f64; 2]],
     ) -> Result<(), MeshError> {
-        let Movable { smoother, surface, .. } = self.movable;
+        let smoother = self.movable.smoother;
         let Smoother { mesh, topology, .. } = smoother;
-        let corners = topology.corner_list();
-        let is_worse = |points: &[[f64; 2]], t: &[u32; 3], is_right: bool| {
-            !WorstShapes::of(surface, points, t, is_right).is_within(self.worst[0])
-        };
+        let is_worse = |corner: PlacedCorner<'_>| !corner.shapes().is_within(self.worst[0]);
         let before = &mesh.points;
         loop {
-            let mut worse = self.movable.chosen(|t, is_right| is_worse(points, t, is_right)).await;
+            let mut worse = self.movable.chosen(points, is_worse).await;
             while !worse.is_empty() {
                 let mut touched = Vec::new();
-                for &v in worse.iter().flat_map(|&t| &corners.all()[t as usize]) {
+                for &v in worse.iter().flat_map(|&t| &topology.corners()[t as usize]) {
                     let (point, before) = (&mut points[v as usize], before[v as usize]);
                     if point.map(f64::to_bits) != before.map(f64::to_bits) {
                         *point = before;
@@ -198,11 +182,7 @@ impl Floor<'_> {
                 }
                 touched.sort_unstable();
                 touched.dedup();
-                touched.retain(|&t| {
-                    let corner = &corners.all()[t as usize];
-                    let is_right = !corners.is_triangle(t);
-                    self.movable.can_move(corner) && is_worse(points, corner, is_right)
-                });
+                touched.retain(|&c| self.movable.placed(points, c).is_some_and(is_worse));
                 worse = touched;
             }
             let mut more = smoother.certified(points, Some(options.stored)).await?;

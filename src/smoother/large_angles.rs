@@ -9,12 +9,11 @@ use crate::metric::Metric;
 use crate::options::Options;
 use crate::outcome::LargeAngles;
 use crate::slide::OnCurves;
-use crate::targets::Surface;
 use crate::whole::altitude;
-use crate::worst::{Penalties, WorstShapes};
+use crate::worst::Penalties;
 
 use super::prepared::Smoother;
-use super::rounds::{Aim, Movable, Present};
+use super::rounds::{Aim, Movable, PlacedCorner, Present};
 
 /// Weight of the penalties in the first round. Each round doubles the weight.
 const FIRST_WEIGHT: f64 = 1000.0;
@@ -40,15 +39,9 @@ impl Aim for ToAcute {
         Penalties::on_large_angles(self.small, FIRST_WEIGHT * 2f64.powi(round as i32))
     }
 
-    fn is_beyond(
-        &self,
-        surface: Surface,
-        points: &[[f64; 2]],
-        corner: &[u32; 3],
-        is_right: bool,
-    ) -> bool {
+    fn is_beyond(&self, corner: PlacedCorner<'_>) -> bool {
         // The right angles of quadrilaterals are no large angles.
-        !is_right && WorstShapes::least_cotangent(surface, points, corner) < LargeAngles::COTANGENT
+        !corner.is_right && corner.least_cotangent() < LargeAngles::COTANGENT
     }
 
     /// Returns the triangles on both sides of edges with a short flow link, or far from orthogonal to it. Both triangles
@@ -62,16 +55,6 @@ impl Aim for ToAcute {
         let edges = inner_edges(movable.surface, points, topology);
         let bad = edges.iter().filter(|edge| is_bad(edge)).flat_map(|edge| edge.triangles);
         bad.map(|t| topology.triangles()[t as usize]).collect()
-    }
-
-    fn demands_more(
-        &self,
-        surface: Surface,
-        points: &[[f64; 2]],
-        corner: &[u32; 3],
-        is_right: bool,
-    ) -> bool {
-        self.is_beyond(surface, points, corner, is_right)
     }
 }
 
@@ -102,7 +85,7 @@ impl Smoother<'_> {
         let [worst] = movable.worst_shapes([points]).await;
         let aim = ToAcute { small: worst.cotangent.max(LARGEST_SMALL) };
         let count = async |points: &[[f64; 2]]| {
-            movable.chosen(|t, right| aim.is_beyond(movable.surface, points, t, right)).await.len()
+            movable.chosen(points, |corner| aim.is_beyond(corner)).await.len()
         };
         let before = count(points).await;
         if before == 0 {

@@ -12,7 +12,9 @@ use crate::run::Plan;
 use crate::slide::{OnCurves, Sliding};
 use crate::targets::Surface;
 use crate::whole::altitude;
-use crate::worst::{Badness, MoveConstraints, Penalties, TriangleSet, around, rounds, sorted};
+use crate::worst::{
+    Badness, MoveConstraints, Penalties, TriangleSet, WorstShapes, around, rounds, sorted,
+};
 
 use super::prepared::Smoother;
 
@@ -32,26 +34,36 @@ pub(super) trait Aim: Sync {
     /// Returns the penalties of a round, counted from 0.
     fn penalties(&self, round: u32) -> Penalties;
 
-    /// Returns whether vertices around a corner take steps in the rounds. The corner is of a quadrilateral if it `is_right`.
-    fn is_beyond(
-        &self,
-        surface: Surface,
-        points: &[[f64; 2]],
-        corner: &[u32; 3],
-        is_right: bool,
-    ) -> bool;
+    /// Returns whether the vertices around a corner take steps in the rounds.
+    fn is_beyond(&self, corner: PlacedCorner<'_>) -> bool;
 
     /// Returns the triangles of the mesh on which penalties are larger from now on.
     fn heavy(&self, movable: &Movable<'_>, points: &[[f64; 2]]) -> Vec<[u32; 3]>;
 
     /// Returns whether a corner that is beyond the limits demands another round.
-    fn demands_more(
-        &self,
-        surface: Surface,
-        points: &[[f64; 2]],
-        corner: &[u32; 3],
-        is_right: bool,
-    ) -> bool;
+    fn demands_more(&self, corner: PlacedCorner<'_>) -> bool {
+        self.is_beyond(corner)
+    }
+}
+
+/// A corner of the mesh with its vertices at points on a surface.
+#[derive(Clone, Copy)]
+pub(super) struct PlacedCorner<'p> {
+    surface: Surface,
+    points: &'p [[f64; 2]],
+    vertices: &'p [u32; 3],
+    /// Whether the corner is of a quadrilateral, whose ideal angle is right.
+    pub(super) is_right: bool,
+}
+
+impl PlacedCorner<'_> {
+    pub(super) fn shapes(self) -> WorstShapes {
+        WorstShapes::of(self.surface, self.points, self.vertices, self.is_right)
+    }
+
+    pub(super) fn least_cotangent(self) -> f64 {
+        WorstShapes::least_cotangent(self.surface, self.points, self.vertices)
+    }
 }
 
 /// A mesh on which rounds move the free vertices, and the vertices that slide.
@@ -86,19 +98,29 @@ impl<'s> Movable<'s> {
         triangle.iter().any(|&v| self.may_move[v as usize])
     }
 
-    /// Returns the indices of the corners that can move and satisfy `is_chosen`, ascending. `is_chosen` is called with the
-    /// vertices of a corner, and with whether it is of a quadrilateral.
+    /// Returns a corner with the vertices at `points`; `None` if none of its vertices can move.
+    pub(super) fn placed<'p>(
+        &'p self,
+        points: &'p [[f64; 2]],
+        corner: u32,
+    ) -> Option<PlacedCorner<'p>> {
+        let corners = self.smoother.topology.corner_list();
+        let vertices = &corners.all()[corner as usize];
+        let is_right = !corners.is_triangle(corner);
+        let surface = self.surface;
+        self.can_move(vertices).then_some(PlacedCorner { surface, points, vertices, is_right })
+    }
+
+    /// Returns the indices of the corners that can move and satisfy `is_chosen` at `points`, ascending.
     pub(super) async fn chosen(
         &self,
-        is_chosen: impl Fn(&[u32; 3], bool) -> bool + Sync,
+        points: &[[f64; 2]],
+        is_chosen: impl Fn(PlacedCorner<'_>) -> bool + Sync,
     ) -> Vec<u32> {
-        let corners = self.smoother.topology.corner_list();
-        let of = |c: &u32| {
-            let corner = &corners.all()[*c as usize];
-            self.can_move(corner) && is_chosen(corner, !corners.is_triangle(*c))
-        };
-        let chosen = paced::map_ranges(corners.all().len(), CHUNK, |range| -> Vec<u32> {
-            (range.start as u32..range.end as u32).filter(of).collect()
+        let count = self.smoother.topology.corners().len();
+        let is_one = |c: &u32| self.placed(points, *c).is_some_and(&is_chosen);
+        let chosen = paced::map_ranges(count, CHUNK, |range| -> Vec<u32> {
+            (range.start as u32..range.end as u32).filter(is_one).collect()
         });
         chosen.await.concat()
     }
@@ -119,11 +141,9 @@ impl<'s> Movable<'s> {
         let mut heavy = TriangleSet::new();
         let topology = &self.smoother.topology;
         let corners = |t: u32| topology.corners()[t as usize];
-        let is_right = |t: u32| !topology.corner_list().is_triangle(t);
         let number = problem.numbers(points.len());
         let mut positions = paced::copied(positions).await;
-        let mut beyond =
-            self.chosen(|t, right| aim.is_beyond(self.surface, points, t, right)).await;
+        let mut beyond = self.chosen(points, |corner| aim.is_beyond(corner)).await;
         let [least, share] = MAX_VISITS;
         let mut visits = least.max(share * problem.free_count());
         for round in 0..A::ROUNDS {
@@ -166,13 +186,10 @@ impl<'s> Movable<'s> {
             }
             beyond.sort_unstable();
             beyond.dedup();
-            beyond.retain(|&t| {
-                let corner = &corners(t);
-                self.can_move(corner) && aim.is_beyond(self.surface, points, corner, is_right(t))
-            });
-            let demands_more =
-                |&t: &u32| aim.demands_more(self.surface, points, &corners(t), is_right(t));
-            if !beyond.iter().any(demands_more) {
+            let placed = |c: u32| self.placed(points, c);
+            beyond.retain(|&c| placed(c).is_some_and(|corner| aim.is_beyond(corner)));
+            let mut left = beyond.iter().filter_map(|&c| placed(c));
+            if !left.any(|corner| aim.demands_more(corner)) {
                 return;
             }
         }

@@ -98,7 +98,7 @@ impl<T: Real> Corner<T> {
 
 impl Corner<f64> {
     /// Returns the blocks of the convex part of the Hessian by the edges: first and first, first and second, second and second.
-    /// [`Self::blocks`] has the same part by the positions of the vertices of a triangle.
+    /// [`Self::blocks`] returns the convex part by the vertices of a triangle.
     fn edge_blocks(&self, epsilon: f64) -> [DMat2; 3] {
         let [a, b] = self.edges.map(DVec2::from);
         let (chi, root) = regularized(epsilon, self.area());

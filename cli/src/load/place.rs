@@ -61,13 +61,7 @@ impl Place {
     /// # Panics
     /// Panics if the file has no such element.
     pub(crate) fn of_element(file: &MeshFile, element: Element) -> Self {
-        match element {
-            Element::Triangle(index) => Self::Triangle(file.triangle_location(index)),
-            Element::Quadrilateral(index) => {
-                let mut found = file.quadrilateral_locations([index]);
-                Self::Quadrilateral(found.remove(&index).expect("an element of the file"))
-            }
-        }
+        Self::of_elements(file, &[element]).remove(0)
     }
 
     /// Returns the location of an element or a vertex; of the first end of an edge.

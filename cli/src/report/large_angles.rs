@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::report::improved::cost;
 
-/// The work on large angles. Each pair holds a number after the last sweep and the number at the end of the run.
+/// The work on large angles. Pairs hold numbers after the last sweep and at the end of the run.
 #[derive(Serialize)]
 pub(crate) struct LargeAnglesReport {
     /// Number of vertices that moved after the sweeps.

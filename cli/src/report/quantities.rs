@@ -3,7 +3,6 @@
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
-use gpu_smooth::Element;
 use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
 use gpu_smooth::topology::signed_area;
 
@@ -29,7 +28,7 @@ pub(crate) struct Finding {
     pub(crate) threshold: Threshold,
     /// Name of several parts, such as `triangles`.
     pub(crate) parts: &'static str,
-    /// Number of parts with a value in the range.
+    /// Number of parts whose value is in the range of the threshold.
     pub(crate) count: usize,
     /// Number of parts that have the quantity.
     pub(crate) total: usize,
@@ -98,7 +97,7 @@ impl<'m> Quantities<'m> {
             // Measures of elements need no list of all values.
             Quantity::Measure(measure) if !measure.is_of_edges() => {
                 count = self.measured.count_where(measure, |value| threshold.is_met(value)).0;
-                total = self.count_with(measure);
+                total = self.measured.count_with(measure);
                 let found = self.measured.worst(measure, 1);
                 worst = found.first().map(|&(index, value)| Valued { index, value });
             }
@@ -121,20 +120,13 @@ impl<'m> Quantities<'m> {
         Finding { threshold: threshold.clone(), parts, count, total, worst }
     }
 
-    /// Returns the number of elements that have a measure: triangles, and quadrilaterals unless the measure is of triangles alone.
-    fn count_with(&self, measure: Measure) -> usize {
-        match measure.of_quadrilateral() {
-            true => self.measured.count(),
-            false => self.measured.topology().triangles().len(),
-        }
-    }
-
     /// Returns the name of the parts with a quantity.
     fn parts(&self, quantity: Quantity) -> &'static str {
         let triangles = self.measured.topology().triangles().len();
         match quantity {
             Quantity::Measure(measure)
-                if quantity.part() == Part::Triangle && self.count_with(measure) > triangles =>
+                if quantity.part() == Part::Triangle
+                    && self.measured.count_with(measure) > triangles =>
             {
                 "elements"
             }
@@ -154,7 +146,7 @@ impl<'m> Quantities<'m> {
             }
             Quantity::Measure(measure) => {
                 let values = self.measured.values(measure).into_iter().enumerate();
-                values.take(self.count_with(measure)).map(valued).collect()
+                values.take(self.measured.count_with(measure)).map(valued).collect()
             }
             Quantity::BoundaryCorners => {
                 let is_on_boundary = self.is_on_boundary();
@@ -203,17 +195,9 @@ impl<'m> Quantities<'m> {
         })
     }
 
-    /// Returns the element of an index: that of a triangle, or the number of triangles plus that of a quadrilateral.
-    fn element(&self, index: usize) -> Element {
-        match index.checked_sub(self.measured.topology().triangles().len()) {
-            None => Element::Triangle(index),
-            Some(index) => Element::Quadrilateral(index),
-        }
-    }
-
     fn place(&self, part: Part, index: usize) -> Place {
         match part {
-            Part::Triangle => Place::of_element(&self.file.source, self.element(index)),
+            Part::Triangle => Place::of_element(&self.file.source, self.measured.element(index)),
             Part::Vertex | Part::Hole => Place::Vertex(self.file.vertex_place(index as u32)),
             Part::Edge => {
                 let mut ends = self.edges()[index].vertices.map(|v| self.file.vertex_place(v));

@@ -240,13 +240,8 @@ fn regions(
     let mut first = vec![None; count];
     let mut counts = vec![[0, 0]; count];
     for (index, &region) in regions.iter().enumerate() {
-        let is_other = index >= triangles;
-        let element = match is_other {
-            false => Element::Triangle(index),
-            true => Element::Quadrilateral(index - triangles),
-        };
-        first[region as usize].get_or_insert(element);
-        counts[region as usize][usize::from(is_other)] += 1;
+        first[region as usize].get_or_insert(measured.element(index));
+        counts[region as usize][usize::from(index >= triangles)] += 1;
     }
     let statistics = measured.statistics_by_region(measures, &regions, count);
     // A number of the file may belong to elements that are not measured.

@@ -17,7 +17,7 @@ pub(crate) struct WorstPart {
     pub(crate) at: [f64; 2],
     /// Length of the longest edge.
     pub(crate) length: f64,
-    /// Values of the measures with a histogram; for an edge, of those that are of edges.
+    /// Values of the measures with a histogram. Edges have values of measures of edges alone.
     pub(crate) values: Vec<(Measure, f64)>,
     /// Whether the element, or one of the two triangles at the edge, has a free vertex.
     pub(crate) can_move: bool,
@@ -46,10 +46,6 @@ fn elements(
     let mesh = file.mesh();
     let found: Vec<usize> =
         measured.worst(measure, args.worst).into_iter().map(|found| found.0).collect();
-    let element = |&index: &usize| match index.checked_sub(mesh.triangles.len()) {
-        None => Element::Triangle(index),
-        Some(index) => Element::Quadrilateral(index),
-    };
     // The vertices of an element in the mesh, and in the file, which has no copies of vertices.
     let vertices = |element: Element| -> [&[u32]; 2] {
         match element {
@@ -59,7 +55,7 @@ fn elements(
             }
         }
     };
-    let elements: Vec<Element> = found.iter().map(element).collect();
+    let elements: Vec<Element> = found.iter().map(|&index| measured.element(index)).collect();
     let places = Place::of_elements(&file.source, &elements);
     let names = file.vertex_places(elements.iter().flat_map(|&e| vertices(e)[0]).copied());
     let one = |((index, element), place): ((usize, Element), Place)| {
