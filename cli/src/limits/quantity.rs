@@ -14,7 +14,7 @@ pub(crate) enum Quantity {
     BoundaryCorners,
     /// Number of edges around a hole of the mesh, such as an island.
     HoleEdges,
-    /// Number of triangles at a vertex; inside the mesh, also the number of its neighbors.
+    /// Number of elements at a vertex; inside the mesh, also the number of its neighbors along edges.
     Neighbors,
     /// Least altitude of a triangle over the speed of long waves, in seconds. Only wet triangles have the quantity.
     TimeStep,

@@ -36,6 +36,8 @@ pub(crate) struct ProfileReport {
     /// The metric by which runs for the solver smooth meshes.
     scheme: Option<Metric>,
     pub(crate) limits: Vec<LimitReport>,
+    /// Number of quadrilaterals, which no limit is for.
+    quadrilaterals: usize,
     /// The edges beyond limits of edges, by the reason that no move of free vertices mends them.
     reasons: Vec<Reason>,
 }
@@ -57,12 +59,13 @@ const RANGE: usize = 10;
 impl ProfileReport {
     /// Compares a mesh with the limits of a profile.
     pub(crate) fn new(profile: &Profile, quantities: &Quantities<'_>) -> Self {
+        let of_triangles = |range: &Threshold| quantities.finding_of_triangles(range);
         let compared = |limit: &Limit| LimitReport {
             limit: limit.clone(),
-            warn: limit.warn.as_ref().map(|range| quantities.finding(range)),
-            fail: limit.fail.as_ref().map(|range| quantities.finding(range)),
+            warn: limit.warn.as_ref().map(of_triangles),
+            fail: limit.fail.as_ref().map(of_triangles),
             listed: (limit.warn.is_none() && limit.fail.is_none())
-                .then(|| quantities.finding(&Threshold::none(limit.quantity))),
+                .then(|| of_triangles(&Threshold::none(limit.quantity))),
         };
         // A listed quantity that no part has, such as the time step without depths, has no line.
         let is_shown =
@@ -72,6 +75,7 @@ impl ProfileReport {
             title: profile.title.clone(),
             scheme: profile.scheme,
             limits: profile.limits.iter().map(compared).filter(is_shown).collect(),
+            quadrilaterals: quantities.quadrilaterals(),
             reasons: reasons(profile, quantities),
         }
     }
@@ -138,9 +142,16 @@ impl ProfileReport {
         }
     }
 
-    /// Returns a table without blanks at the ends of its lines, and a line for each reason of edges beyond limits.
+    /// Returns a table without blanks at the ends of its lines, a line on quadrilaterals, and a line for each reason of edges
+    /// beyond limits.
     fn explained(&self, table: &str) -> String {
         let mut lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
+        if self.quadrilaterals > 0 {
+            let count = self.quadrilaterals;
+            lines.push(format!(
+                "the limits are of triangles: {count} quadrilaterals have no verdict"
+            ));
+        }
         if !self.reasons.is_empty() {
             lines.push("edges beyond the limits, by reason".to_owned());
         }
@@ -269,6 +280,9 @@ impl Serialize for ProfileReport {
             "name": self.name, "title": self.title, "scheme": self.scheme.map(Metric::name),
             "verdict": self.verdict().name(), "limits": limits,
         });
+        if self.quadrilaterals > 0 {
+            value["without_verdict"] = json!({ "quadrilaterals": self.quadrilaterals });
+        }
         if self.limits.iter().any(|limit| limit.limit.quantity.part() == Part::Edge) {
             value["reasons"] = self.reasons.iter().map(Reason::json).collect();
         }

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
+use gpu_smooth::Element;
 use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
 use gpu_smooth::topology::signed_area;
 
@@ -42,6 +43,13 @@ pub(crate) struct Finding {
 pub(crate) struct Worst {
     pub(crate) place: Place,
     pub(crate) value: f64,
+}
+
+/// The elements on which parts of a mesh are sought, with their vertices.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Among {
+    Elements,
+    Triangles,
 }
 
 /// The value of an element, an edge or a vertex.
@@ -90,53 +98,64 @@ impl<'m> Quantities<'m> {
         }
     }
 
-    /// Counts the parts with a value in the range of a threshold, and locates the worst part.
+    /// Counts the elements, or other parts, with a value in the range of a threshold, and locates the worst part.
     pub(crate) fn finding(&self, threshold: &Threshold) -> Finding {
+        self.find(threshold, Among::Elements)
+    }
+
+    /// Does the work of [`finding`](Self::finding) for a limit of a solver. Such limits are of triangles, so that quadrilaterals are
+    /// left out: other values are good for quadrilaterals.
+    pub(crate) fn finding_of_triangles(&self, threshold: &Threshold) -> Finding {
+        self.find(threshold, Among::Triangles)
+    }
+
+    /// Returns the number of quadrilaterals.
+    pub(crate) fn quadrilaterals(&self) -> usize {
+        self.measured.topology().quadrilaterals().len()
+    }
+
+    /// Returns the number of elements that have a measure.
+    fn count_with(&self, measure: Measure, among: Among) -> usize {
+        match among {
+            Among::Elements => self.measured.count_with(measure),
+            Among::Triangles => self.measured.topology().triangles().len(),
+        }
+    }
+
+    /// Finds the parts in the range of a threshold.
+    fn find(&self, threshold: &Threshold, among: Among) -> Finding {
         let (count, total, worst);
-        match threshold.quantity {
-            // Measures of elements need no list of all values.
-            Quantity::Measure(measure) if !measure.is_of_edges() => {
-                count = self.measured.count_where(measure, |value| threshold.is_met(value)).0;
-                total = self.measured.count_with(measure);
-                let found = self.measured.worst(measure, 1);
-                worst = found.first().map(|&(index, value)| Valued { index, value });
-            }
-            _ => {
-                let values = self.values(threshold);
-                count = values.iter().filter(|part| threshold.is_met(part.value)).count();
-                total = values.len();
-                let worse = |a: Valued, b: Valued| match threshold.is_worse(b.value, a.value) {
-                    true => b,
-                    false => a,
-                };
-                worst = values.into_iter().reduce(worse);
-            }
+        let of_elements = threshold.quantity.measure().filter(|measure| !measure.is_of_edges());
+        let is_of_all = |m: &Measure| self.count_with(*m, among) == self.measured.count_with(*m);
+        if let Some(measure) = of_elements.filter(is_of_all) {
+            // Measures of all elements need no list of values.
+            count = self.measured.count_where(measure, |value| threshold.is_met(value)).0;
+            total = self.measured.count_with(measure);
+            let found = self.measured.worst(measure, 1);
+            worst = found.first().map(|&(index, value)| Valued { index, value });
+        } else {
+            let values = self.values(threshold, among);
+            count = values.iter().filter(|part| threshold.is_met(part.value)).count();
+            total = values.len();
+            let worse = |a: Valued, b: Valued| match threshold.is_worse(b.value, a.value) {
+                true => b,
+                false => a,
+            };
+            worst = values.into_iter().reduce(worse);
         }
         let worst = worst.map(|Valued { index, value }| {
             let place = self.place(threshold.quantity.part(), index);
             Worst { place, value }
         });
-        let parts = self.parts(threshold.quantity);
-        Finding { threshold: threshold.clone(), parts, count, total, worst }
-    }
-
-    /// Returns the name of the parts with a quantity.
-    fn parts(&self, quantity: Quantity) -> &'static str {
         let triangles = self.measured.topology().triangles().len();
-        match quantity {
-            Quantity::Measure(measure)
-                if quantity.part() == Part::Triangle
-                    && self.measured.count_with(measure) > triangles =>
-            {
-                "elements"
-            }
-            _ => quantity.part().noun(false),
-        }
+        let has_others = of_elements.is_some_and(|m| self.count_with(m, among) > triangles);
+        let parts = if has_others { "elements" } else { threshold.quantity.part().noun(false) };
+        Finding { threshold: threshold.clone(), parts, count, total, worst }
     }
 
     /// Returns the values of all parts that have a quantity. Vertices on the boundary have few triangles in every mesh, so
     /// a threshold of small numbers is for vertices inside alone.
-    fn values(&self, threshold: &Threshold) -> Vec<Valued> {
+    fn values(&self, threshold: &Threshold, among: Among) -> Vec<Valued> {
         let valued = |(index, value)| Valued { index, value };
         let topology = self.measured.topology();
         match threshold.quantity {
@@ -146,7 +165,7 @@ impl<'m> Quantities<'m> {
             }
             Quantity::Measure(measure) => {
                 let values = self.measured.values(measure).into_iter().enumerate();
-                values.take(self.measured.count_with(measure)).map(valued).collect()
+                values.take(self.count_with(measure, among)).map(valued).collect()
             }
             Quantity::BoundaryCorners => {
                 let is_on_boundary = self.is_on_boundary();
@@ -174,8 +193,12 @@ impl<'m> Quantities<'m> {
             }
             Quantity::Neighbors => {
                 let is_on_boundary = self.is_on_boundary();
+                let is_triangle = |&c: &u32| matches!(topology.element(c), Element::Triangle(_));
+                let is_of_triangles = |v: usize| {
+                    among == Among::Elements || topology.star(v as u32).iter().all(is_triangle)
+                };
                 let is_counted = |&(v, count): &(usize, usize)| {
-                    count > 0 && !(threshold.is_below && is_on_boundary[v])
+                    count > 0 && !(threshold.is_below && is_on_boundary[v]) && is_of_triangles(v)
                 };
                 let counts = (0..topology.free().len()).map(|v| (v, topology.star(v as u32).len()));
                 counts.filter(is_counted).map(|(v, count)| valued((v, count as f64))).collect()

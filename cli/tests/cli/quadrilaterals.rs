@@ -157,11 +157,13 @@ fn pictures_color_quadrilaterals_that_move() {
 #[test]
 fn quality_measures_and_lists_quadrilaterals() {
     let cut = |k: usize| k % 8 < 4;
+    let few = "name = 'few'\n[[limits]]\nquantity = 'neighbors'\nfail = '< 6'\nsource = 's'\n";
     let concave = vtk(4, |_| false, |k| k % 2).replacen("\n0 0 0\n", "\n1.5 1.5 0\n", 1);
     let folder = Folder::new(&[
         ("block.vtk", &vtk(8, |_| false, |_| 1)),
         ("mixed.vtk", &vtk(8, cut, |k| k % 2)),
         ("concave.vtk", &concave),
+        ("few.toml", few),
     ]);
     // A mesh without triangles needs no option.
     let run = folder.line("quality block.vtk --worst 2 --html p.html --picture p.png");
@@ -198,6 +200,21 @@ fn quality_measures_and_lists_quadrilaterals() {
         of_kind.filter(|part| part["vertices"].as_array().unwrap().len() == corners).count()
     };
     assert_eq!([corners("triangle", 3), corners("quadrilateral", 4)], [64, 32]);
+
+    // Limits of solvers are of triangles.
+    let run = folder.line("quality mixed.vtk --quadrilaterals move --for fea --json");
+    let told: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    for limit in told["profile"]["limits"].as_array().unwrap() {
+        assert_eq!(limit["triangles"], 64, "{limit}");
+        assert!(limit["worst"]["triangle"].is_u64(), "{limit}");
+    }
+    let run = folder.line("quality block.vtk --for fea");
+    assert_holds(&run.out, &["the limits are of triangles: 64 quadrilaterals have no verdict"]);
+    // Each vertex inside of `block.vtk` is in four quadrilaterals.
+    let run = folder.line("quality block.vtk --threshold neighbors>4 --threshold neighbors<4 -q");
+    assert_eq!((run.code, run.out), (Some(0), String::new()));
+    let run = folder.line("quality mixed.vtk --quadrilaterals move --for few.toml");
+    assert_eq!(run.code, Some(0), "{}", run.err);
 
     let run = folder.line("quality concave.vtk");
     assert_eq!(run.code, Some(0), "{}", run.err);
