@@ -193,8 +193,7 @@ impl BadTriangle {
     }
 }
 
-/// A corner of a quadrilateral that is not convex: its triangle, of a vertex and the two vertices beside it, is inverted or
-/// flat.
+/// A concave or flat corner of a quadrilateral: the triangle of a vertex and both neighbors along edges is inverted or flat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BadQuadrilateral {
     /// Index of the quadrilateral in [`Mesh::quadrilaterals`](crate::Mesh::quadrilaterals).

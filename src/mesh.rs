@@ -29,8 +29,8 @@ impl Mesh {
     }
 }
 
-/// A triangle or a quadrilateral of a [`Mesh`], with its index among the elements of its kind. `Display` writes kind and index,
-/// such as "quadrilateral 7".
+/// A triangle or a quadrilateral of a [`Mesh`], by its index in the list of triangles or quadrilaterals. `Display` writes kind
+/// and index, such as "quadrilateral 7".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Element {
     /// Index in [`Mesh::triangles`].
@@ -40,7 +40,7 @@ pub enum Element {
 }
 
 impl Element {
-    /// Returns the index of the element in the list of its kind.
+    /// Returns the index in [`Mesh::triangles`] or [`Mesh::quadrilaterals`].
     pub fn index(self) -> usize {
         match self {
             Self::Triangle(index) | Self::Quadrilateral(index) => index,

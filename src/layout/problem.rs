@@ -267,8 +267,8 @@ impl Problem {
     }
 
     /// Returns the vertices of the elements around all free vertices, vertex by vertex, counter-clockwise around each vertex.
-    /// The list of a vertex starts with a neighbor along an edge. The vertex opposite to it in a quadrilateral stands between
-    /// the neighbors of that quadrilateral, with `OPPOSITE` added to its number.
+    /// The list of a vertex starts with a neighbor along an edge. Between two neighbors in a quadrilateral stands the
+    /// opposite vertex, with `OPPOSITE` added to its number.
     pub fn ring(&self) -> &[u32] {
         &self.layout.ring
     }

@@ -18,7 +18,7 @@ const CHUNK: usize = 1 << 12;
 
 /// A mesh with vertices at given positions, whose elements can be measured by each [`Measure`]. All threads share the work.
 ///
-/// The index of an element is that of a triangle, or the number of triangles plus the index of a quadrilateral.
+/// Elements are numbered from 0: first all triangles, then all quadrilaterals.
 ///
 /// ```
 /// use gpu_smooth::{measure::{Measure, Measured}, Mesh, Topology};
@@ -102,7 +102,7 @@ impl<'a> Measured<'a> {
         }
     }
 
-    /// Returns the number of elements with the measure. The indices of these elements are smaller than the number.
+    /// Returns the number n of elements with the measure. Elements 0 to n - 1 have the measure.
     pub fn count_with(&self, measure: Measure) -> usize {
         if measure.of_quadrilateral() { self.count() } else { self.topology.triangles().len() }
     }

@@ -1,4 +1,4 @@
-//! The place of a visited vertex in the corners that depend on it.
+//! The place of a visited vertex in the corners around the vertex.
 
 use crate::metric::Given;
 

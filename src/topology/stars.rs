@@ -5,8 +5,8 @@ use crate::parallel::counting_sort::Groups;
 use crate::parallel::map_parts;
 use crate::topology::corners::Corners;
 
-/// Returns the corners at each vertex as ascending indices: the triangles with the vertex, and the corners of quadrilaterals
-/// whose first vertex it is.
+/// Returns the corners at each vertex as ascending indices: all triangles with the vertex, and the corners of quadrilaterals
+/// with this first vertex.
 pub(crate) fn stars(vertices: usize, corners: &Corners<'_>) -> Groups {
     let (all, triangles) = (corners.all(), corners.triangles().len());
     if all.len() == triangles {

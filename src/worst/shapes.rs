@@ -30,8 +30,8 @@ impl WorstShapes {
 
     const FLAT: Self = Self { cotangent: f64::INFINITY, imr: f64::INFINITY };
 
-    /// Returns the shape of a corner with vertices at `points`, as seen on `surface`. `is_right` tells whether the corner is of
-    /// a quadrilateral, which has its first angle alone.
+    /// Returns the shape of a corner with vertices at `points`, as seen on `surface`. Corners of quadrilaterals, for which
+    /// `is_right` is true, are judged by their first angle alone.
     #[inline]
     pub(crate) fn of(
         surface: Surface,

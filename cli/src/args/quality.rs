@@ -41,7 +41,7 @@ pub(crate) struct QualityArgs {
     #[arg(long)]
     pub(crate) by_region: bool,
     /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. orthogonality and flow-link are
-    /// those of edges, neighbors the number of triangles at a vertex, boundary-corners the number of corners of a
+    /// those of edges, neighbors the number of elements at a vertex, boundary-corners the number of corners of a
     /// triangle on the boundary, hole-edges the number of edges around a hole, and time-step the altitude over the speed of
     /// waves by the depths of the file, in seconds. The exit code is 1 if a part of the mesh has such a value. Each threshold has a line that
     /// says whether it holds and where the worst part is; -q prints the violated ones alone

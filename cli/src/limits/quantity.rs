@@ -90,7 +90,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the unit that follows a value, with a blank if necessary; empty for a ratio or a number of parts.
+    /// Returns the unit that follows a value, with a blank if necessary. Ratios and counts have an empty unit.
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::Measure(measure) => measure.definition().unit,

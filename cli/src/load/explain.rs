@@ -76,7 +76,7 @@ pub(crate) struct BadCorner {
     pub(crate) problem: &'static str,
 }
 
-/// Returns the corner as a sentence, which has its place.
+/// Writes a sentence with the place, the problem and the vertex.
 impl fmt::Display for BadCorner {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} is {} at vertex {}", self.place, self.problem, self.vertex)

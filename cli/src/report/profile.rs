@@ -36,7 +36,7 @@ pub(crate) struct ProfileReport {
     /// The metric by which runs for the solver smooth meshes.
     scheme: Option<Metric>,
     pub(crate) limits: Vec<LimitReport>,
-    /// Number of quadrilaterals, which no limit is for.
+    /// Number of quadrilaterals. All limits concern triangles.
     quadrilaterals: usize,
     /// The edges beyond limits of edges, by the reason that no move of free vertices mends them.
     reasons: Vec<Reason>,

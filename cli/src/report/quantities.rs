@@ -29,7 +29,7 @@ pub(crate) struct Finding {
     pub(crate) threshold: Threshold,
     /// Name of several parts, such as `triangles`.
     pub(crate) parts: &'static str,
-    /// Number of parts whose value is in the range of the threshold.
+    /// Number of parts beyond the threshold.
     pub(crate) count: usize,
     /// Number of parts that have the quantity.
     pub(crate) total: usize,
@@ -45,7 +45,7 @@ pub(crate) struct Worst {
     pub(crate) value: f64,
 }
 
-/// The elements on which parts of a mesh are sought, with their vertices.
+/// The kinds of elements that a search for the worst part visits.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Among {
     Elements,
@@ -114,7 +114,7 @@ impl<'m> Quantities<'m> {
         self.measured.topology().quadrilaterals().len()
     }
 
-    /// Returns the number of elements that have a measure.
+    /// Counts the visited elements that have a measure.
     fn count_with(&self, measure: Measure, among: Among) -> usize {
         match among {
             Among::Elements => self.measured.count_with(measure),
@@ -122,7 +122,7 @@ impl<'m> Quantities<'m> {
         }
     }
 
-    /// Finds the parts in the range of a threshold.
+    /// Counts the parts beyond a threshold, and locates the worst part.
     fn find(&self, threshold: &Threshold, among: Among) -> Finding {
         let (count, total, worst);
         let of_elements = threshold.quantity.measure().filter(|measure| !measure.is_of_edges());
