@@ -21,8 +21,20 @@ fn angle_penalties(cotangent: f32) -> vec3<f32> {
     return 300.0 * vec3(large.x, -large.y, large.z) + 30.0 * angle_hinge(cotangent - 1.3);
 }
 
+#if QUADRILATERALS
+// The penalty on the angle at a corner of a quadrilateral, with its first two derivatives by the cotangent.
+fn right_angle_penalty(cotangent: f32) -> vec3<f32> {
+    return 100.0 * vec3(cotangent * cotangent, 2.0 * cotangent, 2.0);
+}
+
+#endif
 // The penalties on the angles of a triangle with this doubled area.
 fn angles_value(t: Corner, area: f32) -> f32 {
+#if QUADRILATERALS
+    if is_right {
+        return right_angle_penalty(HEIGHT * dot(t.a, before_shear(t)) / area).x;
+    }
+#endif
     let c = t.b - t.a;
     let cotangents = vec3(dot(t.a, t.b), -dot(t.a, c), dot(t.b, c)) / area;
     return angle_penalties(cotangents.x).x
@@ -40,7 +52,14 @@ fn with_angle(
     curvature: f32,
 ) -> Derivatives {
     let cotangent = n * unit;
+#if QUADRILATERALS
+    var penalties = right_angle_penalty(cotangent);
+    if !is_right {
+        penalties = angle_penalties(cotangent);
+    }
+#else
     let penalties = angle_penalties(cotangent);
+#endif
     let g = (slope - cotangent * area_slope) * unit;
     let s = 0.5 * penalties.z * g - penalties.y * unit * area_slope;
     let own = penalties.y * unit * curvature;
@@ -53,10 +72,31 @@ fn with_angle(
 
 // Adds the penalties on the angles of a triangle to a function of the triangle. `unit` is 1 over the doubled area.
 fn with_angles(start: Derivatives, t: Corner, unit: f32) -> Derivatives {
+#if QUADRILATERALS
+    let s = edge_slopes;
+    let of_area = area_slope(t);
+    if is_right {
+        // The shear multiplies areas by √3/2. In the plane, the edges are a and b.
+        let b = before_shear(t);
+        let plane = vec2(s.x, (s.y - 0.5 * s.x) / HEIGHT);
+        let slope = plane.x * b + plane.y * t.a;
+        let bend = 2.0 * plane.x * plane.y;
+        return with_angle(start, unit * HEIGHT, of_area / HEIGHT, dot(t.a, b), slope, bend);
+    }
+    let c = t.b - t.a;
+    let third = s.y - s.x;
+    let one = s.x * t.b + s.y * t.a;
+    let two = -(s.x * c + third * t.a);
+    let three = s.y * c + third * t.b;
+    var sum = with_angle(start, unit, of_area, dot(t.a, t.b), one, 2.0 * s.x * s.y);
+    sum = with_angle(sum, unit, of_area, -dot(t.a, c), two, -2.0 * s.x * third);
+    return with_angle(sum, unit, of_area, dot(t.b, c), three, 2.0 * s.y * third);
+#else
     // If the vertex moves by d, the edges a and b change by -d, and c does not change.
     let c = t.b - t.a;
     let area_slope = vec2(t.a.y - t.b.y, t.b.x - t.a.x);
     var sum = with_angle(start, unit, area_slope, dot(t.a, t.b), -t.a - t.b, 2.0);
     sum = with_angle(sum, unit, area_slope, -dot(t.a, c), c, 0.0);
     return with_angle(sum, unit, area_slope, dot(t.b, c), -c, 0.0);
+#endif
 }

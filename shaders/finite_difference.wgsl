@@ -5,7 +5,13 @@ fn differences(t: Corner, h: f32) -> Derivatives {
     var displacements = DISPLACEMENTS;
     var values: array<f32, 16>;
     for (var i = 0u; i < 16u; i++) {
+#if QUADRILATERALS
+        let d = displacements[i] * h;
+        let moved = Corner(t.a + edge_slopes.x * d, t.b + edge_slopes.y * d, t.ideal);
+        values[i] = metric_model(moved);
+#else
         values[i] = metric_model(displaced(t, displacements[i] * h));
+#endif
     }
     let here = vec2(values[1] - values[0], values[2] - values[0]) / h;
     let right = vec2(values[5] - values[4], values[6] - values[4]) / h;

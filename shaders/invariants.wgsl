@@ -48,13 +48,27 @@ fn invariants(t: Corner) -> Invariants {
 
 fn expansion(t: Corner, slopes: Slopes) -> Derivatives {
     let uv = distortion(t);
+#if QUADRILATERALS
+    // Moving the vertex changes u by (α, -γ) and v by (γ, α), with the slopes α and β of the edges and γ = (2β - α)/√3.
+    let alpha = edge_slopes.x;
+    let gamma = TARGET_W * (2.0 * edge_slopes.y - alpha);
+    let e = vec2(uv.x * alpha + uv.y * gamma, uv.y * alpha - uv.x * gamma)
+        * (0.5 / TARGET_W * slopes.unit);
+    let d = area_slope(t) * slopes.unit;
+#else
     // Moving the vertex changes u by (-1, w) and v by (-w, -1): the Hessian of the excess is 2/√3 times the
     // identity. The area is linear.
     let e = vec2(-(uv.x + uv.y * TARGET_W), uv.x * TARGET_W - uv.y) * (0.5 / TARGET_W * slopes.unit);
     let d = vec2(t.a.y - t.b.y, t.b.x - t.a.x) * slopes.unit;
+#endif
     let p = slopes.excess_excess * e + slopes.excess_area * d;
     let r = slopes.excess_area * e + slopes.area_area * d;
+#if QUADRILATERALS
+    let square = dot(edge_slopes, edge_slopes) - edge_slopes.x * edge_slopes.y;
+    let own = slopes.excess * (2.0 * TARGET_W * square) * slopes.unit;
+#else
     let own = slopes.excess * (2.0 * TARGET_W) * slopes.unit;
+#endif
     return Derivatives(
         slopes.value,
         slopes.excess * e + slopes.area * d,

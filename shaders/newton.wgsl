@@ -5,21 +5,34 @@
 // is feasible: 0 if a triangle is inverted, has an area that is not finite, or breaks the shape guard, else 1.
 fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     var sum = 0.0;
+#if QUADRILATERALS
+    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
+        let now = corner_around(p, at, d);
+        let t = transformed(metric_form(now), map_of_corner(p, at));
+#else
     var a = ring_edge(p, p.end - 1u) - d;
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i) - d;
         let t = transformed(Corner(a, b, p.ideal), map_around(p, i));
+#endif
         if !is_positive(doubled_area(t)) {
             return vec2(0.0, 0.0);
         }
+#if QUADRILATERALS
+        let before = moved_back(now, d);
+        if BOUNDED && !keeps_altitude(before.a, before.b, now.a, now.b, p.unit) {
+#else
         if BOUNDED && !keeps_altitude(a + d, b + d, a, b, p.unit) {
+#endif
             return vec2(0.0, 0.0);
         }
         if limit < NO_GUARD && inverse_mean_ratio(t) > limit {
             return vec2(0.0, 0.0);
         }
         sum += metric_model(t);
+#if !QUADRILATERALS
         a = b;
+#endif
     }
     return vec2(sum, 1.0);
 }
@@ -41,11 +54,17 @@ fn newton_step(vertex: u32, p: Patch, omega: f32) -> vec2<f32> {
     var hessian = vec3(0.0);
     var limit = part.shape_guard;
     let width = difference_width(p);
+#if QUADRILATERALS
+    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
+        let map = map_of_corner(p, at);
+        let t = transformed(metric_form(corner_around(p, at, vec2(0.0))), map);
+#else
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
         let map = map_around(p, i);
         let t = transformed(Corner(a, b, p.ideal), map);
+#endif
         if part.shape_guard < NO_GUARD {
             limit = max(limit, inverse_mean_ratio(t));
         }
@@ -53,7 +72,9 @@ fn newton_step(vertex: u32, p: Patch, omega: f32) -> vec2<f32> {
         value += d.value;
         gradient += d.gradient;
         hessian += d.hessian;
+#if !QUADRILATERALS
         a = b;
+#endif
     }
     let inverse = inverse_of(p.own * p.map_unit);
     // The eigenvalue floor is meant for nearly equilateral triangles, so the floor is applied in the coordinates of the
@@ -71,7 +92,11 @@ fn newton_step(vertex: u32, p: Patch, omega: f32) -> vec2<f32> {
     if down.z >= 0.0 {
         return vec2(0.0);
     }
+#if QUADRILATERALS
+    let squares = value + counts_of(p).y * IDEAL_SQUARED;
+#else
     let squares = value + f32(p.end - p.start) * IDEAL_SQUARED;
+#endif
     let slack = SLACK * squares;
     var length = omega * lengthening(-down.z, squares);
     for (var trial = 0u; trial < TRIALS; trial++) {

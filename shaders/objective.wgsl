@@ -36,12 +36,26 @@ fn objective(
         worst = partial_sums[TRACKED * stride + id.x];
     }
     for (var t = id.x; t < part.count; t += stride) {
+#if QUADRILATERALS
+        for (var k = 0u; k < 4u; k++) {
+        let corners = vec3(
+            triangles[4u * t + k],
+            triangles[4u * t + (k + 1u) % 4u],
+            triangles[4u * t + (k + 3u) % 4u],
+        );
+        set_role(OWN);
+#else
         let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
+#endif
         let p = position(corners.x);
         let a = edge(p, position(corners.y));
         let b = edge(p, position(corners.z));
         let ideal = Ideal(params.mean_area, params.size_weight);
+#if QUADRILATERALS
+        let corner = transformed(metric_form(Corner(a, b, ideal)), map_of(corners));
+#else
         let corner = transformed(Corner(a, b, ideal), map_of(corners));
+#endif
         let values = tracked_values(corner);
         let seen = edge_is_finite(a) && edge_is_finite(b);
         for (var i = 0u; i < TRACKED; i++) {
@@ -53,6 +67,9 @@ fn objective(
         if excess > worst.x {
             worst = vec2(excess, as_float(part.first + t));
         }
+#if QUADRILATERALS
+        }
+#endif
     }
     for (var i = 0u; i < TRACKED; i++) {
         partial_sums[i * stride + id.x] = sums[i];

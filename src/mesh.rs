@@ -22,9 +22,9 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Returns the numbers of vertices and of triangles, with two triangles for each quadrilateral.
+    /// Returns the numbers of vertices and of triangles, with four triangles for each quadrilateral.
     pub fn size(&self) -> MeshSize {
-        let triangles = self.triangles.len() + 2 * self.quadrilaterals.len();
+        let triangles = self.triangles.len() + 4 * self.quadrilaterals.len();
         MeshSize { vertices: self.points.len(), triangles }
     }
 }
@@ -64,6 +64,6 @@ impl fmt::Display for Element {
 pub struct MeshSize {
     /// Number of vertices.
     pub vertices: usize,
-    /// Number of triangles. A quadrilateral counts as two.
+    /// Number of triangles. A quadrilateral counts as four, one for each corner.
     pub triangles: usize,
 }

@@ -23,8 +23,15 @@ struct Corners {
 }
 
 fn corners_of(t: u32) -> Corners {
+#if QUADRILATERALS
+    set_role(select(TRIANGLE, OWN, (corners[6u * t] & OPPOSITE) != 0u));
+#endif
     return Corners(
+#if QUADRILATERALS
+        position(corners[6u * t] & ~OPPOSITE),
+#else
         position(corners[6u * t]),
+#endif
         position(corners[6u * t + 1u]),
         position(corners[6u * t + 2u]),
     );
@@ -33,7 +40,11 @@ fn corners_of(t: u32) -> Corners {
 // Returns the inverse mean ratio of the triangle spanned by edges a and b; 0 for an inverted, flat or infinite
 // triangle.
 fn imr(a: vec2<f32>, b: vec2<f32>) -> f32 {
+#if QUADRILATERALS
+    let t = metric_form(Corner(a, b, Ideal()));
+#else
     let t = Corner(a, b, Ideal());
+#endif
     let area = doubled_area(t);
     if !is_positive(area) {
         return 0.0;
@@ -93,6 +104,12 @@ fn gives_way(t: u32) -> f32 {
     var f = edge(c.p, c.r);
     var de = way_vector(t, 1u, c.q) - dp;
     var df = way_vector(t, 2u, c.r) - dp;
+#if QUADRILATERALS
+    if is_right {
+        f = 0.5 * e + HEIGHT * f;
+        df = 0.5 * de + HEIGHT * df;
+    }
+#endif
     // Scaled by the largest coordinate of these vectors, so that nothing overflows.
     let most = max(max(abs(e), abs(f)), max(abs(de), abs(df)));
     let unit = 1.0 / max(most.x, most.y);

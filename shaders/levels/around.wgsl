@@ -5,7 +5,11 @@ fn root_of_stiffness(p: Patch, hessian: vec3<f32>) -> f32 {
     let half = 0.5 * (hessian.x - hessian.z);
     // The eigenvalues are the mean plus and minus the radius.
     let radius = sqrt(half * half + hessian.y * hessian.y);
+#if QUADRILATERALS
+    return sqrt(max(abs(mean), radius) / counts_of(p).x) * p.unit;
+#else
     return sqrt(max(abs(mean), radius) / f32(p.end - p.start)) * p.unit;
+#endif
 }
 
 // Returns the sums of the metric's gradients and Hessians over the triangles of a patch, in the patch's unit. The value
@@ -13,14 +17,23 @@ fn root_of_stiffness(p: Patch, hessian: vec3<f32>) -> f32 {
 
 fn derivatives_around(p: Patch) -> Derivatives {
     var sum = Derivatives(0.0, vec2(0.0), vec3(0.0));
+#if QUADRILATERALS
+    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
+        let map = map_of_corner(p, at);
+        let t = transformed(metric_form(corner_around(p, at, vec2(0.0))), map);
+        let one = pulled_back(metric_derivatives(t, 0.0), map);
+#else
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
         let map = map_around(p, i);
         let one = pulled_back(metric_derivatives(transformed(Corner(a, b, p.ideal), map), 0.0), map);
+#endif
         sum.gradient += one.gradient;
         sum.hessian += one.hessian;
+#if !QUADRILATERALS
         a = b;
+#endif
     }
     return sum;
 }

@@ -26,20 +26,38 @@ fn objective_along_correction(
         }
     }
     for (var t = id.x; t < op.rows; t += stride) {
+#if QUADRILATERALS
+        for (var k = 0u; k < 4u; k++) {
+        let corners = vec3(
+            triangles[4u * t + k],
+            triangles[4u * t + (k + 1u) % 4u],
+            triangles[4u * t + (k + 3u) % 4u],
+        );
+        set_role(OWN);
+#else
         let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
+#endif
         let p = position(corners.x);
         let a = edge(p, position(corners.y));
         let b = edge(p, position(corners.z));
         let d = displacement(corners.x);
         let map = map_of(corners);
         let ideal = Ideal(params.mean_area, params.size_weight);
+#if QUADRILATERALS
+        let here = transformed(metric_form(Corner(a, b, ideal)), map);
+#else
         let here = transformed(Corner(a, b, ideal), map);
+#endif
         let moved = Corner(
             moved_edge(a, d, displacement(corners.y)),
             moved_edge(b, d, displacement(corners.z)),
             ideal,
         );
+#if QUADRILATERALS
+        let there = transformed(metric_form(moved), map);
+#else
         let there = transformed(moved, map);
+#endif
         sums[0] = pair_accumulate(sums[0], metric_model(here));
         if !is_positive(doubled_area(here)) || is_broken(here, there)
             || !keeps_altitude(a, b, moved.a, moved.b, 1.0) {
@@ -47,6 +65,9 @@ fn objective_along_correction(
         } else {
             sums[1] = pair_accumulate(sums[1], metric_model(there));
         }
+#if QUADRILATERALS
+        }
+#endif
     }
     for (var i = 0u; i < 4u; i++) {
         vectors[op.partial_sums + i * stride + id.x] = sums[i];

@@ -34,10 +34,35 @@ struct AlongCurve {
 
 // Returns a triangle of a patch in the plane, with the vertex moved by d.
 fn corner_around(p: Patch, i: u32, d: vec2<f32>) -> Corner {
+#if QUADRILATERALS
+    let others = others_of(i);
+    return corner_of(p, role_of(i), others.x, others.y, d);
+}
+
+// Returns the other two vertices of a corner, without the marks of the role.
+fn others_of(i: u32) -> vec2<u32> {
+    return corners[i] & vec2(~OPPOSITE);
+}
+
+// Returns the role of the sliding vertex in a corner, from the marks of the other two vertices.
+fn role_of(i: u32) -> u32 {
+    return (corners[i].x >> 31u) + 2u * (corners[i].y >> 31u);
+}
+
+// Returns the sum of the weights of the corners of a patch.
+fn weight_of(p: Patch) -> f32 {
+    var sum = 0.0;
+    for (var i = p.start; i < p.end; i++) {
+        sum += select(0.25, 1.0, role_of(i) == TRIANGLE);
+    }
+    return sum;
+}
+#else
     let a = edge(p.at, position(corners[i].x)) * p.unit - d;
     let b = edge(p.at, position(corners[i].y)) * p.unit - d;
     return Corner(a, b, p.ideal);
 }
+#endif
 
 fn along_curve() -> AlongCurve {
     var found = AlongCurve(0.0, 0.0, 0.0, part.shape_guard);
@@ -47,8 +72,14 @@ fn along_curve() -> AlongCurve {
         var gradient = vec2(0.0);
         var hessian = vec3(0.0);
         for (var i = p.start; i < p.end; i++) {
+#if QUADRILATERALS
+            let others = others_of(i);
+            let map = map_of_patch(p, others.x, others.y);
+            let t = transformed(metric_form(corner_around(p, i, vec2(0.0))), map);
+#else
             let map = map_of_patch(p, corners[i].x, corners[i].y);
             let t = transformed(corner_around(p, i, vec2(0.0)), map);
+#endif
             if part.shape_guard < NO_GUARD {
                 found.limit = max(found.limit, inverse_mean_ratio(t));
             }
@@ -138,11 +169,21 @@ fn objective_at(to: vec2<f32>, limit: f32) -> vec2<f32> {
         let d = edge(p.at, there[side].at) * p.unit;
         for (var i = p.start; i < p.end; i++) {
             let moved = corner_around(p, i, d);
+#if QUADRILATERALS
+            let others = others_of(i);
+            let t = transformed(metric_form(moved), map_of_patch(p, others.x, others.y));
+#else
             let t = transformed(moved, map_of_patch(p, corners[i].x, corners[i].y));
+#endif
             if !is_positive(doubled_area(t)) {
                 return vec2(0.0);
             }
+#if QUADRILATERALS
+            let was = moved_back(moved, d);
+            if BOUNDED && !keeps_altitude(was.a, was.b, moved.a, moved.b, p.unit) {
+#else
             if BOUNDED && !keeps_altitude(moved.a + d, moved.b + d, moved.a, moved.b, p.unit) {
+#endif
                 return vec2(0.0);
             }
             if limit < NO_GUARD && inverse_mean_ratio(t) > limit {
@@ -189,9 +230,17 @@ fn slid() -> i32 {
     let share = share_within_bounds(way);
     let pressed = select(0, select(-1, 1, way > 0.0), share < 1.0);
     way *= share;
+#if QUADRILATERALS
+    var weight = weight_of(patches[0]);
+    if sides == 2u {
+        weight += weight_of(patches[1]);
+    }
+    let slack = SLACK * (now.value + weight * IDEAL_SQUARED);
+#else
     let triangles = patches[0].end - patches[0].start
         + select(0u, patches[1].end - patches[1].start, sides == 2u);
     let slack = SLACK * (now.value + f32(triangles) * IDEAL_SQUARED);
+#endif
     let decrease = SUFFICIENT_DECREASE * now.slope * way * unit;
     var length = 1.0;
     for (var trial = 0u; trial < TRIALS; trial++) {
@@ -248,7 +297,11 @@ fn slide(
     }
     let unit = unit_of(edge(
         position(visited.vertices.x),
+#if QUADRILATERALS
+        position(others_of(visited.first_corner).x),
+#else
         position(corners[visited.first_corner].x),
+#endif
     ));
     sides = 1u;
     patches[0] = patch_around(

@@ -16,6 +16,20 @@ fn find_hessian(
     let p = patch_of(v);
     var gradient = vec2(0.0);
     var own = vec4(0.0);
+#if QUADRILATERALS
+    for (var i = p.start; i < p.end; i++) {
+        entries[i] = vec4(0.0);
+    }
+    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
+        let map = map_of_corner(p, at);
+        let others = others_of(p, at);
+        let made = blocks_of(transformed(metric_form(corner_around(p, at, vec2(0.0))), map));
+        gradient += select(made.gradient, mapped(map, made.gradient), HAS_TARGETS);
+        own += block_in_plane(made.own, map, p.unit);
+        entries[others.x] += block_in_plane(made.a, map, p.unit);
+        entries[others.y] += block_in_plane(made.b, map, p.unit);
+    }
+#else
     // The last neighbor has its second triangle at the start of the one-ring.
     var of_last = vec4(0.0);
     var before = vec4(0.0);
@@ -36,6 +50,7 @@ fn find_hessian(
         a = b;
     }
     entries[p.end - 1u] = before + of_last;
+#endif
     if op.is_positive != 0u {
         let determinant = own.x * own.w - own.y * own.y;
         let by = select(0.0, 1.0 / determinant, determinant > 0.0);

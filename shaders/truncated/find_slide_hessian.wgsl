@@ -23,9 +23,14 @@ fn find_slide_hessian(
         let first = corner_at(2u * i);
         let second = corner_at(2u * i + 1u);
         let map = map_of_patch(p, first, second);
+#if QUADRILATERALS
+        let t = corner_of(p, role_at(i), first, second, vec2(0.0));
+        let made = blocks_of(transformed(metric_form(t), map));
+#else
         let a = edge(p.at, position(first)) * p.unit;
         let b = edge(p.at, position(second)) * p.unit;
         let made = blocks_of(transformed(Corner(a, b, p.ideal), map));
+#endif
         gradient += select(made.gradient, mapped(map, made.gradient), HAS_TARGETS);
         own += block_in_plane(made.own, map, p.unit);
         entries[op.slide_entries + 2u * i] = block_in_plane(made.a, map, p.unit);

@@ -12,7 +12,11 @@ fn multiply(@builtin(global_invocation_id) id: vec3<u32>) {
         var product = vec2(0.0);
         let end = ring_place(ring_start[v + 1u]);
         for (var i = ring_place(ring_start[v]); i < end; i++) {
+#if QUADRILATERALS
+            let k = ring[i] & ~OPPOSITE;
+#else
             let k = ring[i];
+#endif
             // Fixed vertices do not move.
             let other = select(vec2(0.0), fine[direction_at(min(k, op.movers - 1u))], k < op.movers);
             let block = entries[i];

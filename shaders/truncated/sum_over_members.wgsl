@@ -73,7 +73,11 @@ fn sum_over_members(
             var neighbor = NONE;
             var entry = vec4(0.0);
             if is_free {
+#if QUADRILATERALS
+                neighbor = ring[k] & ~OPPOSITE;
+#else
                 neighbor = ring[k];
+#endif
                 entry = entries[k];
             } else {
                 neighbor = corner_at(k);

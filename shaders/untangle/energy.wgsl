@@ -32,10 +32,18 @@ fn energy_derivatives(t: Corner, epsilon: f32) -> Derivatives {
     let inverse = 1.0 / r.chi;
     let per_root = 1.0 / r.root;
     let s = PER_DOUBLED_AREA * squared_length_sum(t);
+#if QUADRILATERALS
+    let slopes = vec3(edge_slopes, edge_slopes.y - edge_slopes.x);
+    let ds = 2.0 * PER_DOUBLED_AREA * (slopes.x * t.a + slopes.y * t.b + slopes.z * (t.b - t.a));
+    let ss = 2.0 * PER_DOUBLED_AREA * inverse * dot(slopes, slopes);
+    // Division by the root keeps slopes in range for tiny and huge areas.
+    let dd = area_slope(t) * per_root;
+#else
     let ds = (-2.0 * PER_DOUBLED_AREA) * (t.a + t.b);
     let ss = 4.0 * PER_DOUBLED_AREA * inverse;
     // Division by the root keeps slopes in range for tiny and huge areas.
     let dd = vec2(t.a.y - t.b.y, t.b.x - t.a.x) * per_root;
+#endif
     let mixed = -inverse * ds;
     let second = 2.0 * s * per_root;
     return Derivatives(

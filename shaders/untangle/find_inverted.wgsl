@@ -18,13 +18,31 @@ fn depth_of(area: f32) -> f32 {
 }
 
 fn look_at(t: u32) {
+#if QUADRILATERALS
+    for (var k = 0u; k < 4u; k++) {
+        look_at_corner(vec3(
+            triangles[4u * t + k],
+            triangles[4u * t + (k + 1u) % 4u],
+            triangles[4u * t + (k + 3u) % 4u],
+        ));
+    }
+}
+
+fn look_at_corner(corners: vec3<u32>) {
+    set_role(OWN);
+#else
     let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
+#endif
     let p = position(corners.x);
     let a = edge(p, position(corners.y));
     let b = edge(p, position(corners.z));
     let map = map_of(corners);
     // The area is computed as in objective.wgsl, so that both kernels count equal triangles.
+#if QUADRILATERALS
+    let area = doubled_area(transformed(metric_form(Corner(a, b, Ideal())), map));
+#else
     let area = doubled_area(transformed(Corner(a, b, Ideal()), map));
+#endif
     if is_positive(area) {
         return;
     }

@@ -12,7 +12,11 @@ fn joins_in(vertex: u32, first: u32, end: u32) -> bool {
         return true;
     }
     for (var i = first; i < end; i++) {
+#if QUADRILATERALS
+        let near = atomicLoad(&vertices[vertex_at(i)].reached);
+#else
         let near = atomicLoad(&vertices[ring[i]].reached);
+#endif
         if near >= tangle.since && near < tangle.sweep {
             atomicStore(&vertices[vertex].reached, tangle.sweep);
             return true;
@@ -26,7 +30,11 @@ fn tangled_patch_of(vertex: u32) -> Patch {
     var p = patch_of(vertex);
     var longest = vec2(0.0);
     for (var i = p.start; i < p.end; i++) {
+#if QUADRILATERALS
+        longest = max(longest, abs(edge(p.at, position(vertex_at(i)))));
+#else
         longest = max(longest, abs(edge(p.at, position(ring[i]))));
+#endif
     }
     p.unit = unit_of(longest);
     return p;
@@ -44,10 +52,12 @@ fn reach(p: Patch, vertex: u32) -> f32 {
     return 2.0 * max(shortest, sqrt(vertices[vertex].area) * p.unit);
 }
 
+#if !QUADRILATERALS
 // Returns a triangle of the patch with the vertex moved by d, transformed by the triangle's target map.
 fn triangle_at(p: Patch, before: u32, i: u32, d: vec2<f32>, map: vec3<f32>) -> Corner {
     return transformed(Corner(ring_edge(p, before) - d, ring_edge(p, i) - d, Ideal()), map);
 }
+#endif
 
 // Returns ε in the unit of the triangle's doubled area, at least 1e-30 so that nothing is divided by zero.
 fn epsilon_of(p: Patch, corners: vec3<u32>, map: vec3<f32>) -> f32 {
@@ -55,8 +65,24 @@ fn epsilon_of(p: Patch, corners: vec3<u32>, map: vec3<f32>) -> f32 {
     return max((tangle.epsilon * p.unit) * (wanted * p.unit), 1.0e-30);
 }
 
+#if QUADRILATERALS
+// Returns the vertices of a corner around a vertex.
+fn corners_at(p: Patch, vertex: u32, at: Around) -> vec3<u32> {
+    let others = others_of(p, at);
+    return vec3(vertex, vertex_at(others.x), vertex_at(others.y));
+}
+
+#endif
 fn energy_of_patch(p: Patch, vertex: u32, d: vec2<f32>) -> f32 {
     var sum = 0.0;
+#if QUADRILATERALS
+    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
+        let map = map_of_corner(p, at);
+        let epsilon = epsilon_of(p, corners_at(p, vertex, at), map);
+        let t = transformed(metric_form(corner_around(p, at, d)), map);
+        sum += corner_weight * energy(t, epsilon);
+    }
+#else
     var before = p.end - 1u;
     for (var i = p.start; i < p.end; i++) {
         let map = map_around(p, i);
@@ -64,12 +90,24 @@ fn energy_of_patch(p: Patch, vertex: u32, d: vec2<f32>) -> f32 {
         sum += energy(triangle_at(p, before, i, d, map), epsilon);
         before = i;
     }
+#endif
     return sum;
 }
 
 // Returns a Newton step after its line search, in the patch's unit; zero if no trial lowers the energy.
 fn untangling_step(p: Patch, vertex: u32) -> vec2<f32> {
     var sum = Derivatives(0.0, vec2(0.0), vec3(0.0));
+#if QUADRILATERALS
+    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
+        let map = map_of_corner(p, at);
+        let epsilon = epsilon_of(p, corners_at(p, vertex, at), map);
+        let t = transformed(metric_form(corner_around(p, at, vec2(0.0))), map);
+        let d = pulled_back(energy_derivatives(t, epsilon), map);
+        sum.value += corner_weight * d.value;
+        sum.gradient += corner_weight * d.gradient;
+        sum.hessian += corner_weight * d.hessian;
+    }
+#else
     var before = p.end - 1u;
     for (var i = p.start; i < p.end; i++) {
         let map = map_around(p, i);
@@ -81,6 +119,7 @@ fn untangling_step(p: Patch, vertex: u32) -> vec2<f32> {
         sum.hessian += d.hessian;
         before = i;
     }
+#endif
     let inverse = inverse_of(p.own * p.map_unit);
     let seen = pulled_back(sum, inverse);
     var down = descent(seen.gradient, seen.hessian);

@@ -372,6 +372,15 @@ impl Problem {
         &self.judged_first()[..self.judged.count]
     }
 
+    /// Returns the quadrilaterals over which the objective is the mean, counter-clockwise.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn judged_quadrilaterals(&self) -> Vec<[u32; 4]> {
+        let corners = &self.judged_first_corners()[..self.judged.corner_count];
+        // The corners of a quadrilateral follow each other, each with its own vertex first.
+        let (quadrilaterals, _) = corners.as_chunks::<4>();
+        quadrilaterals.iter().map(|corners| corners.map(|[own, ..]| own)).collect()
+    }
+
     fn judged_first(&self) -> &[[u32; 3]] {
         self.judged.reordered.as_deref().unwrap_or_else(|| self.triangles())
     }
@@ -454,11 +463,10 @@ impl Problem {
     }
 
     /// Returns whether the vertices have both target maps and local maps, for which a device has no room, or bounds in the
-    /// coordinates of a sphere, which single precision does not test, or whether the mesh has quadrilaterals, for which a
-    /// device has no kernels.
+    /// coordinates of a sphere, which single precision does not test.
     pub(crate) fn is_for_cpu_alone(&self) -> bool {
         let has_two_maps = self.targets.is_some() && self.local_maps.is_some();
-        self.has_quadrilaterals() || has_two_maps || self.is_bounded() && self.projection.is_some()
+        has_two_maps || self.is_bounded() && self.projection.is_some()
     }
 
     /// Returns whether some map of the vertices is anisotropic. Coarse levels then work in coordinates transformed by

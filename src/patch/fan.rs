@@ -4,6 +4,8 @@ use std::ops::Mul;
 
 use glam::DVec2;
 
+#[cfg(feature = "gpu")]
+use crate::layout::OPPOSITE;
 use crate::layout::{MeshCoordinates, Problem};
 use crate::measure::altitude;
 use crate::metric::{Corner, Dual, Given, Ideal, TargetMap};
@@ -41,6 +43,16 @@ impl Fan {
     /// Returns the vertices of the corners, each with the common vertex first.
     pub(crate) fn corners(&self) -> &[[u32; 3]] {
         &self.corners
+    }
+
+    /// Returns the other two vertices of each corner, counter-clockwise, in the form in which a device reads them: marks of
+    /// [`OPPOSITE`] on both are the two bits of the role of the common vertex.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn marked_others(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.corners.iter().zip(&self.roles).map(|(&[_, a, b], &role)| {
+            let bit = |bit: u32| (role as u32 >> bit & 1) * OPPOSITE;
+            [a | bit(0), b | bit(1)]
+        })
     }
 
     /// Returns the common vertex of the corners, 0 if there are none.

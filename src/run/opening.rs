@@ -10,7 +10,7 @@
 use glam::DVec2;
 
 use crate::error::GpuError;
-use crate::layout::Problem;
+use crate::layout::{CornerPart, Problem};
 use crate::metric::{Corner, Ideal};
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
@@ -54,7 +54,7 @@ pub(crate) enum Obstacle {
     Small,
 }
 
-/// Returns the worst obstacle among all triangles.
+/// Returns the worst obstacle among all triangles and corners of quadrilaterals.
 pub(crate) async fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle {
     let of = |t: &[u32; 3]| {
         let [p, q, r] = t.map(|v| positions[v as usize]);
@@ -74,10 +74,10 @@ pub(crate) async fn obstacle(problem: &Problem, positions: &[DVec2]) -> Obstacle
             Obstacle::None
         }
     };
-    let worst = |_, chunk: &[[u32; 3]]| chunk.iter().map(of).max().unwrap_or(Obstacle::None);
-    let worst =
-        paced::map_parts(problem.judged_triangles().chunks(4096), worst).await.into_iter().max();
-    worst.unwrap_or(Obstacle::None)
+    let worst = |_, part: CornerPart<'_>| part.corners.iter().map(of).max();
+    let parts = problem.judged_parts().into_iter().flat_map(|part| part.chunks(4096));
+    let worst = paced::map_parts(parts.collect::<Vec<_>>(), worst).await;
+    worst.into_iter().flatten().max().unwrap_or(Obstacle::None)
 }
 
 /// Sweeps by an engine in double precision until no triangle is too flat or too small, in whole periods of the plan's

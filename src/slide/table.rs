@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::layout::Problem;
+use crate::layout::{OPPOSITE, Problem};
 use crate::patch::Fan;
 pub(crate) use crate::slide::curve::Knot;
 use crate::slide::on_curves::OnCurves;
@@ -18,7 +18,7 @@ pub(crate) struct CurveTable {
     /// Ranges of `vertices`. Vertices of a color, and their partners, share no triangle and no line, so they can be visited
     /// at the same time.
     pub(crate) colors: Vec<Range<u32>>,
-    /// The other two vertices of each triangle around a sliding vertex, counter-clockwise.
+    /// The other two vertices of each corner around a sliding vertex, as of [`Fan::marked_others`].
     pub(crate) corners: Vec<[u32; 2]>,
 }
 
@@ -126,8 +126,7 @@ impl CurveTable {
 
     fn add_corners(&mut self, fan: Option<&Fan>) -> Range<u32> {
         let first = self.corners.len() as u32;
-        let triangles = fan.into_iter().flat_map(Fan::corners);
-        self.corners.extend(triangles.map(|&[_, a, b]| [a, b]));
+        self.corners.extend(fan.into_iter().flat_map(Fan::marked_others));
         first..self.corners.len() as u32
     }
 
@@ -146,7 +145,7 @@ impl CurveTable {
         for (i, vertex) in vertices.iter().enumerate() {
             let around = vertex.corners.iter().cloned().flatten();
             let around = around.flat_map(|corner| corners[corner as usize]);
-            let sharing = around.map(|v| number[v as usize] as usize);
+            let sharing = around.map(|v| number[(v & !OPPOSITE) as usize] as usize);
             let others = sharing.chain(vertex.neighbors.iter().filter_map(at_place));
             let known = others.filter_map(|other| color_of.get(other).copied().flatten());
             let taken: Vec<usize> = known.collect();

@@ -293,12 +293,12 @@ impl<'a> Smoother<'a> {
         self.sliding.is_some()
     }
 
-    /// Returns whether runs are on the CPU, whatever their backend is, because the mesh has quadrilaterals, because vertices slide
-    /// in the projection of a sphere, or because no vertex is free.
+    /// Returns whether runs are on the CPU, whatever their backend is, because vertices slide in the projection of a sphere, or
+    /// because vertices slide and no vertex is free.
     pub fn stays_on_cpu(&self) -> bool {
         // Single precision has too few digits for curves in a projection.
         let slides_on_cpu = self.problem.is_projected() || self.problem.free_count() == 0;
-        self.problem.has_quadrilaterals() || self.slides() && slides_on_cpu
+        self.slides() && slides_on_cpu
     }
 
     pub(super) fn stop_sliding(&mut self) {
@@ -369,7 +369,7 @@ impl<'a> Smoother<'a> {
     /// Returns the size of the mesh. Only vertices that some element uses are counted.
     pub fn size(&self) -> MeshSize {
         let corners = self.problem.corners();
-        let triangles = corners.triangles().len() + 2 * corners.quadrilateral_count();
+        let triangles = corners.triangles().len() + 4 * corners.quadrilateral_count();
         MeshSize { vertices: self.problem.positions().len(), triangles }
     }
 

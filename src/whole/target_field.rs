@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::cpu::objective;
 use crate::error::MeshError;
-use crate::layout::Problem;
+use crate::layout::{CornerPart, Problem};
 use crate::mesh::Mesh;
 use crate::parallel::map_parts;
 use crate::run::{NOISE, Named, PeriodState, Plan, Stop};
@@ -197,16 +197,18 @@ impl<'s> TargetFieldStage<'s> {
     }
 }
 
-/// Returns whether a move from `from` to `to` is sound: no triangle may become inverted or flat, and none may have an inverse
+/// Returns whether a move from `from` to `to` is sound: no corner may become inverted or flat, and none may have an inverse
 /// mean ratio both above the guard and worse than before.
 fn is_sound(problem: &Problem, guard: f64, from: &[DVec2], to: &[DVec2]) -> bool {
-    let ratio = |positions: &[DVec2], t: &[u32; 3]| {
-        problem.corner(t, |v| positions[v as usize]).inverse_mean_ratio()
+    let are_sound = |_, CornerPart { corners, is_right }: CornerPart<'_>| {
+        let ratio = |positions: &[DVec2], t: &[u32; 3]| {
+            problem.corner_of(is_right, t, |v| positions[v as usize]).inverse_mean_ratio()
+        };
+        corners.iter().all(|t| {
+            let now = ratio(to, t);
+            now.is_finite() && (now <= guard || now <= ratio(from, t))
+        })
     };
-    let is_sound = |t: &[u32; 3]| {
-        let now = ratio(to, t);
-        now.is_finite() && (now <= guard || now <= ratio(from, t))
-    };
-    let parts = map_parts(problem.triangles().chunks(4096), |_, part| part.iter().all(is_sound));
-    parts.into_iter().all(|is_sound| is_sound)
+    let parts = problem.corner_parts().into_iter().flat_map(|part| part.chunks(4096));
+    map_parts(parts.collect::<Vec<_>>(), are_sound).into_iter().all(|are_sound| are_sound)
 }

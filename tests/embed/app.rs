@@ -166,13 +166,14 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// Makes a buffer full of [`filler`], except for the coordinates of vertices that triangles use.
+    /// Makes a buffer full of [`filler`], except for the coordinates of vertices that elements use.
     pub(crate) fn new(app: &App, mesh: &Mesh, offset: u64, stride: u64) -> Self {
         let bytes = offset + stride * mesh.points.len() as u64;
         let usage = Usage::VERTEX | Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
         let vertices = Self { buffer: app.buffer(bytes, usage), offset, stride };
         let mut words: Vec<u32> = (0..bytes as usize / 4).map(filler).collect();
-        for &v in mesh.triangles.as_flattened() {
+        let of_quadrilaterals = mesh.quadrilaterals.as_flattened();
+        for &v in mesh.triangles.as_flattened().iter().chain(of_quadrilaterals) {
             let [x, y] = mesh.points[v as usize].map(|x| (x as f32).to_bits());
             let at = vertices.word(v);
             (words[at], words[at + 1]) = (x, y);

@@ -20,6 +20,7 @@ mod objective;
 mod parts;
 mod passes;
 mod pins;
+mod quadrilaterals;
 mod readback;
 mod refusals;
 mod sliding;

@@ -158,7 +158,7 @@ fn the_worst_triangle_is_named() {
     let mut named = std::collections::HashSet::new();
     for _ in 0..8 {
         let found = app.objective(&sweeps);
-        let corners = device_mesh.corners(found.worst_triangle).unwrap();
+        let corners = device_mesh.vertices_of(found.worst_element).unwrap().try_into().unwrap();
         let ratio = imr(&app.points(&device_mesh), corners);
         assert!((f64::from(found.worst_imr) / ratio - 1.0).abs() < 1e-4, "{ratio} in {found:?}");
         named.insert(corners);
@@ -171,9 +171,9 @@ fn the_worst_triangle_is_named() {
     vertices.put(&app, interior(&mesh)[70], [-0.4, 2.5]);
     app.submit(|encoder| vertices.bind(&device_mesh).encode_import(encoder));
     let found = app.objective(&sweeps);
-    let corners = device_mesh.corners(found.worst_triangle).unwrap();
+    let corners = device_mesh.vertices_of(found.worst_element).unwrap().try_into().unwrap();
     assert!(found.inverted > 0 && imr(&app.points(&device_mesh), corners) < 0.0);
-    assert_eq!(device_mesh.corners(mesh.triangles.len() as u32), None);
+    assert_eq!(device_mesh.vertices_of(mesh.triangles.len() as u32), None);
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn equilateral_triangles_are_named_too() {
     let device_mesh = app.mesh(&Mesh { points, triangles, ..Mesh::default() });
     let found = app.objective(&Sweeps::new(&device_mesh, &Options::default()).block().unwrap());
     assert!((found.worst_imr - 1.0).abs() < 1e-6);
-    assert!(device_mesh.corners(found.worst_triangle).unwrap().contains(&6));
+    assert!(device_mesh.vertices_of(found.worst_element).unwrap().contains(&6));
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod differences;
 mod oracles;
 mod pairs;
 mod properties;
+mod quadrilaterals;
 mod shader;
 mod triangles;
 mod untangling;

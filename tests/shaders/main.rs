@@ -36,7 +36,7 @@ struct Validated {
 }
 
 /// Returns the distinct modules of each kernel: for meshes bound as a whole, for large meshes, for meshes with targets,
-/// for strongly stretched meshes, and for bounded meshes. All tests share them, as validation takes most of their time.
+/// for strongly stretched meshes, for bounded meshes, and for quadrilaterals. All tests share them, as validation takes most of their time.
 fn modules() -> &'static [Validated] {
     static MODULES: OnceLock<Vec<Validated>> = OnceLock::new();
     MODULES.get_or_init(|| {
@@ -47,6 +47,7 @@ fn modules() -> &'static [Validated] {
                 kernel.wgsl_for_targets(),
                 kernel.wgsl_for_stretched_meshes(),
                 kernel.wgsl_for_bounded_meshes(),
+                kernel.wgsl_for_quadrilaterals(),
             ]);
             forms.into_iter().map(move |wgsl| (kernel.clone(), wgsl))
         };

@@ -9,6 +9,8 @@ pub mod check;
 pub mod disturb;
 pub mod generate;
 pub mod outline;
+#[cfg(feature = "smoother")]
+pub mod quadrilaterals;
 pub mod rearrange;
 pub mod recipe;
 pub mod regions;

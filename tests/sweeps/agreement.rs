@@ -6,6 +6,7 @@ use gpu_smooth::{
     internal::{Plan, Problem, Stepwise, StopRule, run_on_cpu, run_on_gpu},
     options::{Derivatives, PNormExponent},
 };
+use support::quadrilaterals;
 
 /// Objectives after one sweep, and the largest distance of a vertex between CPU and GPU, relative to the distance it
 /// moved.
@@ -47,6 +48,33 @@ fn one_sweep_is_the_same_on_both_engines() {
             let [of_f, of_moves] = if is_of_angles(metric) { [2e-5, 0.1] } else { [1e-6, 1e-3] };
             assert!((gpu / cpu - 1.0).abs() < of_f, "{metric}: {gpu} for {cpu}");
             assert!(moved_apart < of_moves, "{metric}: {moved_apart:e}");
+        }
+    }
+}
+
+#[test]
+fn one_sweep_of_quadrilaterals_is_the_same_on_both_engines() {
+    for mesh in [quadrilaterals::squares(24), quadrilaterals::mixed(24)] {
+        let problem = problem(&quadrilaterals::perturbed(&mesh, 0.2));
+        for &metric in Metric::ALL {
+            // Differences lose the digits of penalties on angles in single precision.
+            let all = [Derivatives::Analytic, Derivatives::FiniteDifference];
+            let count = if is_of_angles(metric) { 1 } else { 2 };
+            for derivatives in &all[..count] {
+                let derivatives = [*derivatives; Metric::ALL.len()];
+                let plan = Plan { derivatives, track_all: true, ..plan(metric.into(), 1) };
+                let found = one_sweep(&problem, [plan.clone(), plan]);
+                let OneSweep { f: [cpu, gpu], moved_apart } = found;
+                // Differences over a short way lose digits in single precision.
+                let [of_f, of_moves] = match (is_of_angles(metric), derivatives[0]) {
+                    (true, _) => [2e-4, 0.2],
+                    (_, Derivatives::FiniteDifference) => [5e-3, 0.3],
+                    _ => [1e-6, 1e-3],
+                };
+                let kind = (metric, derivatives[0]);
+                assert!((gpu / cpu - 1.0).abs() < of_f, "{kind:?}: {gpu} for {cpu}");
+                assert!(moved_apart < of_moves, "{kind:?}: {moved_apart:e}");
+            }
         }
     }
 }

@@ -142,18 +142,11 @@ pub(super) fn set_up<'a>(
         sliding = Some(vertices);
     }
     let taken = match smoother.stays_on_cpu() {
-        true => OpenEngine::new(
-            Backend::Cpu,
-            Some(
-                match mesh.quadrilaterals.is_empty() {
-                    true => {
-                        "vertices slide on the CPU if the mesh is on a sphere or has no free vertex"
-                    }
-                    false => "a mesh with quadrilaterals is smoothed on the CPU",
-                }
-                .into(),
-            ),
-        ),
+        true => {
+            let reason =
+                "vertices slide on the CPU if the mesh is on a sphere or has no free vertex";
+            OpenEngine::new(Backend::Cpu, Some(reason.into()))
+        }
         false => taken,
     };
     let before = Quality::on(surface, &mesh.points, smoother.topology())?;

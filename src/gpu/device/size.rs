@@ -29,6 +29,8 @@ pub(crate) const POSITION: u64 = size_of::<[f32; 4]>() as u64;
 pub(crate) const ALIGNMENT: u64 = 256;
 /// Bytes of a triangle.
 pub(crate) const TRIANGLE: u64 = size_of::<[u32; 3]>() as u64;
+/// Bytes of a quadrilateral.
+pub(crate) const QUADRILATERAL: u64 = size_of::<[u32; 4]>() as u64;
 /// Bytes of a vertex number.
 pub(crate) const NUMBER: u64 = size_of::<u32>() as u64;
 

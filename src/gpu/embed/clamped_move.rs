@@ -16,7 +16,7 @@ use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Movement, pair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::scope::scoped_to_buffer;
-use crate::layout::Problem;
+use crate::layout::{CornerPart, OPPOSITE, Problem};
 use crate::run::multilevel::NONE;
 
 /// Largest bound on the inverse mean ratio; higher bounds are lowered to this value. Up to this ratio, single precision
@@ -35,8 +35,9 @@ pub(crate) struct Moves {
 }
 
 impl Moves {
-    /// Returns the triangles with a moving corner: the three corners of each, then each corner's index in `ways`, or
-    /// [`NONE`]. Reduces `ways` to the last target of each vertex.
+    /// Returns the triangles, and the corners of quadrilaterals, with a moving vertex: the three vertices of each, then each
+    /// vertex's index in `ways`, or [`NONE`]. The first vertex of a corner of a quadrilateral is marked by [`OPPOSITE`].
+    /// Reduces `ways` to the last target of each vertex.
     fn corners(&mut self, problem: &Problem) -> Vec<[u32; 6]> {
         // The last target of each vertex counts.
         self.ways.reverse();
@@ -46,9 +47,13 @@ impl Moves {
         for (way, &[vertex, _]) in (0..).zip(&self.ways) {
             way_of[vertex as usize] = way;
         }
-        let corners = problem.triangles().iter().map(|&[p, q, r]| {
-            let [a, b, c] = [p, q, r].map(|v| way_of[v as usize]);
-            [p, q, r, a, b, c]
+        let of_part = |CornerPart { corners, is_right }| {
+            let mark = if is_right { OPPOSITE } else { 0 };
+            corners.iter().map(move |&[p, q, r]| (mark, [p, q, r]))
+        };
+        let corners = problem.corner_parts().into_iter().flat_map(of_part).map(|(mark, corner)| {
+            let ([p, q, r], [a, b, c]) = (corner, corner.map(|v| way_of[v as usize]));
+            [p | mark, q, r, a, b, c]
         });
         corners.filter(|corners| corners[3..].iter().any(|&way| way != NONE)).collect()
     }

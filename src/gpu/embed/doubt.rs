@@ -42,7 +42,8 @@ impl fmt::Display for Doubt {
 impl Doubt {
     /// Returns the doubt about sweeps on a mesh at the positions of the problem.
     pub(crate) fn of(problem: &Problem) -> Option<Self> {
-        let degrees = problem.ring_start().windows(2).map(|ends| ends[1] - ends[0]);
+        let free = 0..problem.free_count() as u32;
+        let degrees = free.map(|v| problem.neighbors(v).count() as u32);
         match degrees.max() {
             Some(most) if most > MOST_NEIGHBORS => Some(Self::Hub(most)),
             _ => {

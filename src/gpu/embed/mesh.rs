@@ -31,7 +31,7 @@ use crate::run::multilevel::NONE;
 use crate::slide::{OnCurves, Sliding};
 use crate::targets::Targets;
 
-/// A mesh on an application's device. The triangles never change. [`Sweeps`](crate::gpu::Sweeps) move the vertices, and
+/// A mesh on an application's device. The elements never change. [`Sweeps`](crate::gpu::Sweeps) move the vertices, and
 /// so does the application through [`BoundVertices::encode_import`] and [`BoundMove::encode_move`]. A device may hold
 /// several meshes.
 ///
@@ -130,7 +130,6 @@ impl DeviceMesh {
     }
 
     fn uploaded(gpu: &Gpu, mesh: &Mesh, problem: Problem) -> Result<Self, SmoothError> {
-        MeshError::check_triangles_alone(mesh, "a mesh on a device")?;
         let buffers = now(MeshBuffers::new(gpu, &problem, problem.positions()))?;
         let numbers = scoped(&gpu.device, || {
             filled(gpu, "vertex numbers", problem.vertices(), Usage::STORAGE)
@@ -228,9 +227,12 @@ impl DeviceMesh {
         vertices.iter().map(|&v| self.place_of(v)).collect()
     }
 
-    /// Returns the numbers of vertices, including vertices of no triangle, and of triangles.
+    /// Returns the numbers of vertices, including vertices of no element, and of triangles, with four triangles for each
+    /// quadrilateral.
     pub fn size(&self) -> MeshSize {
-        MeshSize { vertices: self.vertex_count, triangles: self.problem.triangles().len() }
+        let corners = self.problem.corners();
+        let triangles = corners.triangles().len() + 4 * corners.quadrilateral_count();
+        MeshSize { vertices: self.vertex_count, triangles }
     }
 
     /// Binds an application's vertex buffer to the mesh, so that encoding a frame creates no resources. Several buffers
@@ -281,12 +283,20 @@ impl DeviceMesh {
         Feature::present([(Feature::Targets, self.problem.targets().is_some())])
     }
 
-    /// Returns the application's vertex indices of a triangle, counter-clockwise, given the triangle's device number
-    /// ([`ObjectiveValues::worst_triangle`](crate::gpu::ObjectiveValues::worst_triangle)). `None` for a number out of
+    /// Returns the application's vertex indices of a triangle or a quadrilateral, counter-clockwise, given the element's device
+    /// number ([`ObjectiveValues::worst_element`](crate::gpu::ObjectiveValues::worst_element)). `None` for a number out of
     /// range.
-    pub fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
-        let corners = self.problem.triangles().get(triangle as usize)?;
-        Some(corners.map(|v| self.problem.vertices()[v as usize]))
+    pub fn vertices_of(&self, element: u32) -> Option<Vec<u32>> {
+        let corners = self.problem.corners();
+        let element = element as usize;
+        let vertices = match corners.triangles().get(element) {
+            Some(triangle) => triangle.to_vec(),
+            None if element < corners.element_count() => {
+                corners.quadrilateral(element - corners.triangles().len()).to_vec()
+            }
+            None => return None,
+        };
+        Some(vertices.into_iter().map(|v| self.problem.vertices()[v as usize]).collect())
     }
 
     /// Binds vertices that the application moves toward targets, as far as the triangles allow: for handles, holes and
@@ -370,6 +380,7 @@ fn unconstrained(mesh: &Mesh) -> Cow<'_, Mesh> {
         false => Cow::Owned(Mesh {
             points: mesh.points.clone(),
             triangles: mesh.triangles.clone(),
+            quadrilaterals: mesh.quadrilaterals.clone(),
             ..Mesh::default()
         }),
     }

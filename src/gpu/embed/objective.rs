@@ -33,7 +33,7 @@ use crate::run::{Plan, Stop};
 ///     worst_imr: f32,
 ///     stop: u32,
 ///     sweeps: u32,
-///     worst_triangle: u32,
+///     worst_element: u32,
 ///     f: array<f32, 16>,
 /// }
 /// ```
@@ -42,10 +42,10 @@ use crate::run::{Plan, Stop};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ObjectiveValues {
-    /// Number of triangles that are inverted or flat in single precision.
+    /// Number of triangles, and of corners of quadrilaterals, that are inverted or flat in single precision.
     pub inverted: u32,
-    /// The largest inverse mean ratio of a triangle: at least 1, the ratio of an equilateral triangle. Infinite while
-    /// triangles are inverted or flat.
+    /// The largest inverse mean ratio of a triangle or of a corner of a quadrilateral: at least 1, the ratio of an equilateral
+    /// triangle and of a corner of a square. Infinite while `inverted` is not 0.
     pub worst_imr: f32,
     /// The code of the reason why sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) have ended, so that
     /// further sweeps do nothing: 1 for [`Stop::Reached`], 2 for [`Stop::Converged`], 3 for [`Stop::Stalled`] and 4 for
@@ -54,10 +54,9 @@ pub struct ObjectiveValues {
     /// Number of sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) since their start or the last restart
     /// by a change of the mesh. Always 0 for sweeps without a stop rule.
     pub sweeps: u32,
-    /// Device number of the triangle with the largest inverse mean ratio. While there are inverted or flat triangles,
-    /// the number of an inverted or flat triangle. [`DeviceMesh::corners`](crate::gpu::DeviceMesh::corners) returns its
-    /// vertices.
-    pub worst_triangle: u32,
+    /// Device number of the element with the largest inverse mean ratio, or of an inverted or flat element while `inverted` is
+    /// not 0. [`DeviceMesh::vertices_of`](crate::gpu::DeviceMesh::vertices_of) returns its vertices.
+    pub worst_element: u32,
     /// f = (1/n) Σ q² by each metric, in the order of [`Metric::ALL`], with room for further metrics; see [`of`](Self::of).
     /// Without [`Options::track_all`](crate::Options::track_all), only the scheme's base metric is evaluated, and all other
     /// values are 0. While triangles are inverted, f by a metric with a barrier ([`Metric::has_barrier`]) is meaningless.
@@ -103,7 +102,8 @@ pub(crate) struct Run {
     /// history has exactly one evaluation per sweep.
     pub(crate) evaluation: Arc<Dispatches>,
     pub(crate) changes: Changes,
-    pub(crate) triangles: usize,
+    /// Number of elements.
+    pub(crate) elements: usize,
 }
 
 impl Run {
@@ -116,8 +116,8 @@ impl Run {
     ) -> Result<Self, GpuError> {
         let evaluation =
             now(Dispatches::new(gpu, problem, mesh, plan, Vec::new(), false)).map(Arc::new)?;
-        let (changes, triangles) = (mesh.changes.clone(), problem.triangles().len());
-        Ok(Self { dispatches: Arc::clone(&evaluation), evaluation, changes, triangles })
+        let (changes, elements) = (mesh.changes.clone(), problem.judged_count());
+        Ok(Self { dispatches: Arc::clone(&evaluation), evaluation, changes, elements })
     }
 
     /// Returns whether the sweeps end by the stop rule.
@@ -136,14 +136,14 @@ impl BoundObjective {
     ) -> Result<Self, GpuError> {
         let window = Window::new(gpu, values, size_of::<ObjectiveValues>() as u64)?;
         let mut ideal_squared = [[0.0; 4]; SLOTS.div_ceil(4)];
-        let Run { dispatches, evaluation, changes, triangles } = run;
+        let Run { dispatches, evaluation, changes, elements } = run;
         for metric in dispatches.plan.tracked() {
             let slot = metric as usize;
             ideal_squared[slot / 4][slot % 4] = metric.ideal_squared() as f32;
         }
         let uniform = WriteObjective {
             offset: window.offset,
-            triangles: *triangles as u32,
+            triangles: *elements as u32,
             judged: run.is_judged().into(),
             padding: 0,
             ideal_squared,
@@ -206,7 +206,7 @@ mod tests {
             ("worst_imr", offset_of!(ObjectiveValues, worst_imr)),
             ("stop", offset_of!(ObjectiveValues, stop)),
             ("sweeps", offset_of!(ObjectiveValues, sweeps)),
-            ("worst_triangle", offset_of!(ObjectiveValues, worst_triangle)),
+            ("worst_element", offset_of!(ObjectiveValues, worst_element)),
             ("f", offset_of!(ObjectiveValues, f)),
         ];
         assert_eq!(named.collect::<Vec<_>>(), expected);
@@ -221,7 +221,7 @@ mod tests {
             offset_of!(ObjectiveValues, worst_imr),
             offset_of!(ObjectiveValues, stop),
             offset_of!(ObjectiveValues, sweeps),
-            offset_of!(ObjectiveValues, worst_triangle),
+            offset_of!(ObjectiveValues, worst_element),
             offset_of!(ObjectiveValues, f),
         ];
         assert_eq!(words.map(|offset| offset / 4), [0, 1, 2, 3, 4, 5]);

@@ -133,8 +133,8 @@ impl Sweeps {
             }
             Ending::SelfStopping => (dispatches(plan, steps)?, dispatches(endless, Vec::new())?),
         };
-        let (changes, triangles) = (buffers.changes.clone(), problem.triangles().len());
-        let run = Run { dispatches, evaluation, changes, triangles };
+        let (changes, elements) = (buffers.changes.clone(), problem.judged_count());
+        let run = Run { dispatches, evaluation, changes, elements };
         let judged = run.is_judged().then(|| SelfStopping::new(gpu, &run)).transpose()?;
         let corrections = match is_corrected {
             true => {

@@ -13,7 +13,7 @@ use crate::gpu::kernels::layouts::UntangleBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Params, Tangle, TangledVertex, UntanglePart};
-use crate::gpu::mesh::Parts;
+use crate::gpu::mesh::{ElementPart, Parts};
 use crate::gpu::scope::scoped;
 use crate::layout::{Problem, target_areas};
 
@@ -48,7 +48,8 @@ const EACH: u32 = 8;
 /// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. Sweeps and
 /// values count areas that are not positive in single precision as inverted.
 pub struct UntanglingSweeps {
-    find: Pipeline,
+    /// The search in each part of the elements.
+    find: Vec<Pipeline>,
     regularize: Pipeline,
     untangle: Pipeline,
     /// Bind groups by part of the mesh.
@@ -56,10 +57,10 @@ pub struct UntanglingSweeps {
     dispatches: Dispatches,
 }
 
-/// Uniforms of all dispatches, in this order: triangle parts in a call's first sweep, triangle parts in further sweeps,
+/// Uniforms of all dispatches, in this order: element parts in a call's first sweep, element parts in further sweeps,
 /// vertex parts by color.
 struct Dispatches {
-    triangles: Vec<Range<u32>>,
+    elements: Vec<ElementPart>,
     /// Color, part of the mesh and vertex range of each dispatch.
     vertices: Vec<(u32, usize, Range<u32>)>,
     /// Distance between successive uniforms, in bytes.
@@ -71,9 +72,9 @@ impl Dispatches {
     fn new(problem: &Problem, parts: &Parts, alignment: u32) -> (Self, Vec<u8>) {
         let stride = alignment.max(size_of::<UntanglePart>() as u32);
         let free = problem.free_count() as u32;
-        let part = |vertices_or_triangles: Range<u32>, ring_base, begins| UntanglePart {
-            first: vertices_or_triangles.start,
-            count: vertices_or_triangles.end - vertices_or_triangles.start,
+        let part = |(first, count): (u32, u32), ring_base, begins| UntanglePart {
+            first,
+            count,
             ring_base,
             free,
             begins,
@@ -82,7 +83,8 @@ impl Dispatches {
         };
         let mut uniforms = Vec::new();
         for begins in [1, 0] {
-            uniforms.extend(parts.triangles.iter().map(|range| part(range.clone(), 0, begins)));
+            let of = |elements: &ElementPart| (elements.first, elements.count());
+            uniforms.extend(parts.elements.iter().map(|elements| part(of(elements), 0, begins)));
         }
         let mut vertices = Vec::new();
         for (color, of_color) in (0..).zip(problem.colors()) {
@@ -90,7 +92,7 @@ impl Dispatches {
                 let first = of_color.start.max(ring.vertices.start);
                 let end = of_color.end.min(ring.vertices.end);
                 if first < end {
-                    uniforms.push(part(first..end, ring.entries.start, 0));
+                    uniforms.push(part((first, end - first), ring.entries.start, 0));
                     vertices.push((color, number, first..end));
                 }
             }
@@ -99,7 +101,7 @@ impl Dispatches {
         for (part, chunk) in uniforms.iter().zip(bytes.chunks_exact_mut(stride as usize)) {
             chunk[..size_of::<UntanglePart>()].copy_from_slice(bytemuck::bytes_of(part));
         }
-        (Self { triangles: parts.triangles.clone(), vertices, stride }, bytes)
+        (Self { elements: parts.elements.clone(), vertices, stride }, bytes)
     }
 }
 
@@ -116,8 +118,11 @@ impl UntanglingSweeps {
         let DeviceMesh { gpu, problem, buffers, .. } = mesh;
         let form = buffers.parts.form();
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
-        let [find, regularize, untangle] =
-            [Kernel::FindInverted, Kernel::Regularize, Kernel::Untangle].map(pipeline);
+        let find = buffers.parts.elements.iter().map(|elements| {
+            gpu.pipelines.get(&gpu.device, &Kernel::FindInverted, elements.form(form))
+        });
+        let find = find.collect::<Result<Vec<_>, _>>()?;
+        let [regularize, untangle] = [Kernel::Regularize, Kernel::Untangle].map(pipeline);
         let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
         let (dispatches, parts) = Dispatches::new(problem, &buffers.parts, alignment);
         let areas = target_areas(problem, problem.positions());
@@ -139,7 +144,7 @@ impl UntanglingSweeps {
                     positions: buffers.bind_positions(),
                     ring_start: buffers.ring_start.as_entire_binding(),
                     ring: buffers.bind_ring(part),
-                    triangles: buffers.bind_triangles(part),
+                    triangles: buffers.bind_elements(part),
                     tangle: tangle.as_entire_binding(),
                     vertices: vertices.as_entire_binding(),
                     changes: buffers.changes.buffer.as_entire_binding(),
@@ -148,8 +153,7 @@ impl UntanglingSweeps {
             };
             (0..buffers.parts.count()).map(bind).collect()
         })?;
-        let [find, regularize, untangle] = [find?, regularize?, untangle?];
-        Ok(Self { find, regularize, untangle, bind_groups, dispatches })
+        Ok(Self { find, regularize: regularize?, untangle: untangle?, bind_groups, dispatches })
     }
 
     /// Encodes this many untangling sweeps. When the command buffer runs, the sweeps do nothing once no triangle is
@@ -159,15 +163,14 @@ impl UntanglingSweeps {
     /// mesh: sweeps [`until_converged`](crate::gpu::Sweeps::until_converged) begin again.
     pub fn encode_untangle(&self, encoder: &mut impl Encoder, sweeps: u32) {
         let mut passes = encoder.passes("gpu-smooth untangling");
-        let Dispatches { triangles, vertices, .. } = &self.dispatches;
+        let Dispatches { elements, vertices, .. } = &self.dispatches;
         for sweep in 0..sweeps {
-            let first = if sweep == 0 { 0 } else { triangles.len() };
-            for (part, range) in triangles.iter().enumerate() {
-                let count = range.end - range.start;
-                self.run(&mut passes, &self.find, None, part, first + part, count);
+            let first = if sweep == 0 { 0 } else { elements.len() };
+            for (part, (elements, find)) in elements.iter().zip(&self.find).enumerate() {
+                self.run(&mut passes, find, None, part, first + part, elements.count());
             }
             self.run(&mut passes, &self.regularize, None, 0, first, 1);
-            for ((color, part, range), uniform) in vertices.iter().zip(2 * triangles.len()..) {
+            for ((color, part, range), uniform) in vertices.iter().zip(2 * elements.len()..) {
                 let count = range.end - range.start;
                 self.run(&mut passes, &self.untangle, Some(*color), *part, uniform, count);
             }

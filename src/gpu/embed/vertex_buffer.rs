@@ -162,7 +162,7 @@ pub(crate) struct Coordinates {
 }
 
 impl Coordinates {
-    /// Counts the triangles that are counter-clockwise until rounding to single precision inverts or flattens them.
+    /// Counts the corners that are counter-clockwise until rounding to single precision inverts or flattens them.
     /// `None` if a rounded coordinate is not finite, or if the scale or its reciprocal is no normal float.
     fn inverted_by_rounding(&self, problem: &Problem) -> Option<usize> {
         let is_usable = |x: f64| (x as f32).is_normal();
@@ -177,7 +177,7 @@ impl Coordinates {
         if !rounded.as_flattened().iter().all(|x| x.is_finite()) {
             return None;
         }
-        let bad = |points: &[[f64; 2]]| now(not_positive(points, problem.triangles())).len();
+        let bad = |points: &[[f64; 2]]| now(not_positive(points, problem.corners().all())).len();
         let inverted = bad(&rounded);
         if inverted == 0 {
             return Some(0);

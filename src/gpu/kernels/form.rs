@@ -30,11 +30,21 @@ pub(crate) struct MeshForm {
     pub(crate) maps: MapKind,
     /// Whether discs or a least altitude bound the free vertices. The discs follow the maps.
     pub(crate) is_bounded: bool,
+    /// Whether the one-rings have opposite vertices of quadrilaterals. A kernel that goes over a list of elements then takes the
+    /// list of quadrilaterals, four numbers each; [`Self::of_triangles`] is the form for the list of triangles.
+    pub(crate) has_quadrilaterals: bool,
+}
+
+impl MeshForm {
+    /// Returns the form of the kernels that go over the list of triangles.
+    pub(crate) fn of_triangles(self) -> Self {
+        Self { has_quadrilaterals: false, ..self }
+    }
 }
 
 impl From<Positions> for MeshForm {
     /// Returns the form of a mesh without maps and bounds.
     fn from(positions: Positions) -> Self {
-        Self { positions, maps: MapKind::None, is_bounded: false }
+        Self { positions, maps: MapKind::None, is_bounded: false, has_quadrilaterals: false }
     }
 }

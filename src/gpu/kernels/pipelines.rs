@@ -162,11 +162,13 @@ mod tests {
 
     #[test]
     fn every_kernel_declares_the_bindings_of_its_layout() {
-        let of_maps = |positions, is_bounded| {
-            MapKind::ALL.map(|maps| MeshForm { positions, maps, is_bounded })
-        };
-        let form = |positions| [false, true].map(|bounded| of_maps(positions, bounded)).concat();
-        let forms = Positions::ALL.map(form).concat();
+        let both = [false, true];
+        let forms: Vec<MeshForm> = Positions::ALL
+            .into_iter()
+            .flat_map(|positions| MapKind::ALL.map(|maps| MeshForm { maps, ..positions.into() }))
+            .flat_map(|form| both.map(|is_bounded| MeshForm { is_bounded, ..form }))
+            .flat_map(|form| both.map(|quads| MeshForm { has_quadrilaterals: quads, ..form }))
+            .collect();
         let each =
             |kernel: Kernel| forms.clone().into_iter().map(move |form| (kernel.clone(), form));
         for (kernel, form) in Kernel::all().into_iter().flat_map(each) {

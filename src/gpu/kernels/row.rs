@@ -16,6 +16,8 @@ pub(crate) struct Row {
     pub(crate) sees_maps: bool,
     /// Whether the kernel's source differs for meshes whose free vertices are bounded.
     pub(crate) sees_bounds: bool,
+    /// Whether the kernel's source differs for meshes with quadrilaterals.
+    pub(crate) sees_quadrilaterals: bool,
     pub(crate) user: User,
     /// Sources of the kernel, appended to the files of its layout.
     pub(crate) source: &'static [Source],
@@ -114,6 +116,8 @@ pub(crate) struct Composition {
     pub(crate) metrics: Vec<Metric>,
     /// Analytic if the kernel has no choice.
     pub(crate) derivatives: Derivatives,
+    /// Whether metrics see corners of quadrilaterals, by their weights and slopes.
+    pub(crate) has_quadrilaterals: bool,
 }
 
 impl From<()> for Composition {
@@ -136,12 +140,12 @@ impl From<InvariantMetric> for Composition {
 
 impl From<(Metric, Derivatives)> for Composition {
     fn from(of: (Metric, Derivatives)) -> Self {
-        Self { metrics: vec![of.0], derivatives: of.1 }
+        Self { derivatives: of.1, ..vec![of.0].into() }
     }
 }
 
 impl From<Vec<Metric>> for Composition {
     fn from(metrics: Vec<Metric>) -> Self {
-        Self { metrics, derivatives: Derivatives::Analytic }
+        Self { metrics, derivatives: Derivatives::Analytic, has_quadrilaterals: false }
     }
 }

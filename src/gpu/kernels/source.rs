@@ -10,7 +10,7 @@ use crate::gpu::kernels::uniforms::{
     INVERTED, MIN_NORMAL, MOST_METRICS, NO_GUARD, OFF_CURVE, SEARCH_TRIALS, SHARED_STRUCTS,
     SLOT_VECTORS, SLOTS, STEP_TRIALS, TINY, WORKGROUP, WORST,
 };
-use crate::layout::MapKind;
+use crate::layout::{MapKind, OPPOSITE};
 use crate::metric::Metric;
 use crate::metric::smoothing::PENALTY;
 use crate::options::Derivatives;
@@ -20,7 +20,7 @@ use crate::patch::search_rule::{
 };
 use crate::run::Stop;
 use crate::run::multilevel::search::{CLOSE, MAX_FIRST_LENGTH};
-use crate::run::multilevel::{MIN_FIRST_LENGTH, NONE, SMOOTHING};
+use crate::run::multilevel::{MIN_FIRST_LENGTH, NONE, OF_QUADRILATERALS, SMOOTHING};
 use crate::run::secant::MIN_CURVATURE;
 use crate::run::truncated::{ErrorBound, StepRequest, StepSearch, aggregation};
 use crate::run::{JITTER, MIN_SCALE, NOISE, line_search, regularization};
@@ -37,6 +37,7 @@ const BOUNDS: &str = include_str!("../../../shaders/bounds.wgsl");
 const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
 const ANGLES: &str = include_str!("../../../shaders/angles.wgsl");
 const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
+const QUADRILATERALS: &str = include_str!("../../../shaders/quadrilaterals.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
 
 impl Kernel {
@@ -71,10 +72,17 @@ impl Kernel {
         self.composed(MeshForm { is_bounded: true, ..Positions::Whole.into() })
     }
 
+    /// Returns the complete WGSL module for a mesh with quadrilaterals.
+    #[doc(hidden)]
+    pub fn wgsl_for_quadrilaterals(&self) -> String {
+        self.composed(MeshForm { has_quadrilaterals: true, ..Positions::Whole.into() })
+    }
+
     /// Composes the WGSL module: constants, structs and bindings that Rust declares, then the files of the bind layout,
     /// the access to positions, maps and bounds, and the sources of the kernel's row.
     pub(crate) fn composed(&self, form: MeshForm) -> String {
-        let mut source = constants();
+        let has_quadrilaterals = form.has_quadrilaterals && self.row().sees_quadrilaterals;
+        let mut source = constants(has_quadrilaterals);
         let layout = self.layout();
         let structs = SHARED_STRUCTS.iter().filter(|shared| layout.has_type(shared.name));
         source.extend(structs.map(|shared| shared.wgsl));
@@ -97,24 +105,50 @@ impl Kernel {
         if self.row().sees_bounds {
             source.push_str(if form.is_bounded { BOUNDS } else { NO_BOUNDS });
         }
-        let composition = self.composition();
+        if has_quadrilaterals && layout.has_positions() {
+            source.push_str(QUADRILATERALS);
+        }
+        let composition = Composition { has_quadrilaterals, ..self.composition() };
         for part in self.row().source {
             match part {
                 Source::File(text) => source.push_str(text),
                 Source::ActiveMetric => source.push_str(&active_metric(&composition)),
                 Source::MetricSlopes => source.push_str(&metric_slopes(&composition)),
-                Source::TrackedMetrics => source.push_str(&tracked_metrics(&composition.metrics)),
+                Source::TrackedMetrics => source.push_str(&tracked_metrics(&composition)),
                 Source::TrackedSlots => source.push_str(&tracked_slots(&composition.metrics)),
                 Source::UntanglingEnergy => source.push_str(&untangling_energy()),
             }
         }
-        source
+        chosen(&source, has_quadrilaterals)
     }
 }
 
+/// Returns a source with the lines for meshes with quadrilaterals, or for meshes without, from the lines between `#if QUADRILATERALS`
+/// or `#if !QUADRILATERALS`, `#else` and `#endif`.
+fn chosen(source: &str, has_quadrilaterals: bool) -> String {
+    let mut text = String::with_capacity(source.len());
+    let mut is_chosen = true;
+    for line in source.split_inclusive('\n') {
+        match line.trim_end() {
+            "#if QUADRILATERALS" => is_chosen = has_quadrilaterals,
+            "#if !QUADRILATERALS" => is_chosen = !has_quadrilaterals,
+            "#else" => is_chosen = !is_chosen,
+            "#endif" => is_chosen = true,
+            _ if is_chosen => text.push_str(line),
+            _ => {}
+        }
+    }
+    text
+}
+
 /// Returns the WGSL declarations of constants that kernels share with Rust.
-fn constants() -> String {
+fn constants(has_quadrilaterals: bool) -> String {
     let mut text = String::new();
+    let mut smoothing = SMOOTHING;
+    if has_quadrilaterals {
+        smoothing = OF_QUADRILATERALS;
+        let _ = writeln!(text, "const OPPOSITE: u32 = {OPPOSITE}u;");
+    }
     for (name, value) in [
         ("WORKGROUP", WORKGROUP),
         ("FINISH_WORKGROUP", FINISH_WORKGROUP),
@@ -160,7 +194,7 @@ fn constants() -> String {
         ("NOISE", NOISE),
         ("JITTER", JITTER),
         ("MIN_SCALE", MIN_SCALE),
-        ("SMOOTHING", SMOOTHING.into()),
+        ("SMOOTHING", smoothing.into()),
         ("MIN_CURVATURE", MIN_CURVATURE),
         ("NO_GUARD", NO_GUARD),
         ("AT_DISC", AT_DISC),
@@ -199,7 +233,8 @@ fn formulas(metrics: &[Metric]) -> String {
 
 /// Returns the functions of the metric that a sweep minimizes, under the names that newton.wgsl calls.
 fn active_metric(composition: &Composition) -> String {
-    let Composition { metrics, derivatives } = composition;
+    let Composition { metrics, derivatives, has_quadrilaterals } = composition;
+    let weight = if *has_quadrilaterals { "corner_weight * " } else { "" };
     let Some(&metric) = metrics.first() else { return String::new() };
     let properties = metric.properties();
     let name = wgsl_name(metric);
@@ -223,7 +258,7 @@ const EIGENVALUE_FLOOR: f32 = {floor:?}f;
 const IDEAL_SQUARED: f32 = {ideal:?}f;
 const QUADRATIC: bool = {quadratic};
 const SETTLED: f32 = {settled:?}f;
-fn metric_model(t: Corner) -> f32 {{ return {model}; }}
+fn metric_model(t: Corner) -> f32 {{ return {weight}{model}; }}
 ",
         index = metric as u32,
         floor = properties.eigenvalue_floor,
@@ -236,9 +271,13 @@ fn metric_model(t: Corner) -> f32 {{ return {model}; }}
     );
     match derivatives {
         Derivatives::Analytic => {
+            let body = match has_quadrilaterals {
+                true => format!("return weighted({derivatives_of});"),
+                false => format!("return {derivatives_of};"),
+            };
             let _ = write!(
                 text,
-                "fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ return {derivatives_of}; }}
+                "fn metric_derivatives(t: Corner, width: f32) -> Derivatives {{ {body} }}
 fn difference_width(p: Patch) -> f32 {{ return 0.0; }}
 "
             );
@@ -282,13 +321,15 @@ fn untangling_energy() -> String {
 
 /// Returns two functions of a triangle: `tracked_values`, which gives q² - ideal² of each metric and then 1 if the area
 /// is not positive, and `shape_excess`, which gives imr² - 1.
-fn tracked_metrics(metrics: &[Metric]) -> String {
+fn tracked_metrics(composition: &Composition) -> String {
+    let Composition { metrics, has_quadrilaterals, .. } = composition;
     let mut text = formulas(metrics);
+    let weight = if *has_quadrilaterals { "corner_weight * " } else { "" };
     let call = |&metric: &Metric| {
         let name = wgsl_name(metric);
         match metric.is_of_invariants() {
-            true => format!("{name}_value(i)"),
-            false => format!("{name}_excess(t)"),
+            true => format!("{weight}{name}_value(i)"),
+            false => format!("{weight}{name}_excess(t)"),
         }
     };
     let mut calls: Vec<String> = metrics.iter().map(call).collect();
@@ -334,4 +375,28 @@ const TRACKED_SLOTS = array<u32, {count}>({slots});
         count = slots.len(),
         slots = slots.join(", ")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_tells_which_kernels_differ_for_quadrilaterals() {
+        for kernel in Kernel::all() {
+            let differs = kernel.wgsl() != kernel.wgsl_for_quadrilaterals();
+            assert_eq!(differs, kernel.row().sees_quadrilaterals, "{}", kernel.label());
+            assert!(
+                !kernel.wgsl().contains('#') && !kernel.wgsl_for_quadrilaterals().contains('#')
+            );
+        }
+    }
+
+    #[test]
+    fn lines_are_chosen_between_directives() {
+        let source =
+            "a\n#if QUADRILATERALS\nb\n#else\nc\n#endif\nd\n#if !QUADRILATERALS\ne\n#endif\n";
+        assert_eq!(chosen(source, true), "a\nb\nd\n");
+        assert_eq!(chosen(source, false), "a\nc\nd\ne\n");
+    }
 }

@@ -33,6 +33,7 @@ macro_rules! kernels {
             width: $width:expr,
             sees_maps: $sees_maps:literal,
             sees_bounds: $sees_bounds:literal,
+            sees_quadrilaterals: $sees_quadrilaterals:literal,
             user: $user:ident,
             source: [$($source:tt),*],
         }
@@ -51,6 +52,7 @@ macro_rules! kernels {
                         width: $width,
                         sees_maps: $sees_maps,
                         sees_bounds: $sees_bounds,
+                        sees_quadrilaterals: $sees_quadrilaterals,
                         user: User::$user,
                         source: &[$(source!($source)),*],
                     } },)*
@@ -90,6 +92,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: true,
+        sees_quadrilaterals: true,
         user: Sweeps,
         source: ["patch.wgsl", "one_ring.wgsl", ActiveMetric, "descent.wgsl", "newton.wgsl"],
     }
@@ -101,6 +104,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Sweeps,
         source: ["patch.wgsl", TrackedMetrics, "objective.wgsl"],
     }
@@ -112,6 +116,7 @@ kernels! {
         width: FINISH_WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: [TrackedSlots, "finish.wgsl"],
     }
@@ -123,6 +128,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["keep_best.wgsl"],
     }
@@ -134,6 +140,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: true,
+        sees_quadrilaterals: true,
         user: Curves,
         source: [ActiveMetric, "slide/curve.wgsl", "slide/visit.wgsl"],
     }
@@ -145,6 +152,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Curves,
         source: ["slide/keep_best_places.wgsl"],
     }
@@ -156,6 +164,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Curves,
         source: ["slide/curve.wgsl", "slide/take_up.wgsl"],
     }
@@ -167,6 +176,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Curves,
         source: ["slide/hold_by_mask.wgsl"],
     }
@@ -178,6 +188,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["import.wgsl"],
     }
@@ -189,6 +200,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["export.wgsl"],
     }
@@ -200,6 +212,7 @@ kernels! {
         width: SLOTS as u32,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["write_objective.wgsl"],
     }
@@ -212,6 +225,7 @@ kernels! {
         width: 1,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["judged/restart_if_changed.wgsl"],
     }
@@ -223,6 +237,7 @@ kernels! {
         width: 1,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["judged/resume.wgsl"],
     }
@@ -234,6 +249,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["restore.wgsl"],
     }
@@ -245,6 +261,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["mask.wgsl"],
     }
@@ -257,6 +274,7 @@ kernels! {
         width: FINISH_WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Sweeps,
         source: ["clamp/find_share.wgsl"],
     }
@@ -268,6 +286,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["clamp/move_vertices.wgsl"],
     }
@@ -279,6 +298,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Sweeps,
         source: ["untangle/find_inverted.wgsl"],
     }
@@ -290,6 +310,7 @@ kernels! {
         width: 1,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Sweeps,
         source: ["untangle/regularize.wgsl"],
     }
@@ -301,6 +322,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Sweeps,
         source: [
             UntanglingEnergy, "one_ring.wgsl", "descent.wgsl", "untangle/energy.wgsl",
@@ -315,6 +337,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: true,
+        sees_quadrilaterals: true,
         user: Corrections,
         source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/gradient.wgsl"],
     }
@@ -326,6 +349,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Corrections,
         source: ["levels/neighbors.wgsl", "levels/smooth_gradient.wgsl"],
     }
@@ -337,6 +361,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["levels/restrict.wgsl"],
     }
@@ -348,6 +373,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Corrections,
         source: ["levels/neighbors.wgsl", "levels/prolong.wgsl"],
     }
@@ -359,6 +385,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["levels/matrix_vector.wgsl"],
     }
@@ -370,6 +397,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["levels/chebyshev.wgsl"],
     }
@@ -381,6 +409,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["levels/coarsest_solve.wgsl"],
     }
@@ -392,6 +421,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: true,
+        sees_quadrilaterals: true,
         user: Corrections,
         source: [
             "one_ring.wgsl", ActiveMetric, "levels/along.wgsl", "levels/moved.wgsl",
@@ -406,6 +436,7 @@ kernels! {
         width: FINISH_WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["levels/sum_along_correction.wgsl"],
     }
@@ -417,6 +448,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: true,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["levels/along.wgsl", "levels/move_along_correction.wgsl"],
     }
@@ -428,6 +460,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: true,
+        sees_quadrilaterals: true,
         user: Corrections,
         source: [
             "one_ring.wgsl", "levels/along.wgsl", "levels/moved.wgsl", "levels/find_broken.wgsl"
@@ -441,6 +474,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["levels/exclude_broken.wgsl"],
     }
@@ -452,6 +486,7 @@ kernels! {
         width: 1,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["search/begin_search.wgsl"],
     }
@@ -463,6 +498,7 @@ kernels! {
         width: 1,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["search/judge_trial.wgsl"],
     }
@@ -474,6 +510,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Corrections,
         source: ["one_ring.wgsl", ActiveMetric, "levels/around.wgsl", "levels/stiffness.wgsl"],
     }
@@ -485,6 +522,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["secants/complete_pair.wgsl"],
     }
@@ -496,6 +534,7 @@ kernels! {
         width: FINISH_WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["secants/sum_secants.wgsl"],
     }
@@ -507,6 +546,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["secants/bend_gradient.wgsl"],
     }
@@ -518,6 +558,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["secants/multiply_correction.wgsl"],
     }
@@ -529,6 +570,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Corrections,
         source: ["secants/begin_pair.wgsl"],
     }
@@ -540,6 +582,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/vectors.wgsl", "truncated/place_members.wgsl"],
     }
@@ -551,6 +594,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Steps,
         source: [
             "one_ring.wgsl", MetricSlopes, "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
@@ -565,6 +609,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: true,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Slides,
         source: [
             MetricSlopes, "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
@@ -579,6 +624,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Slides,
         source: [
             "truncated/vectors.wgsl", "truncated/slide_lines.wgsl", "truncated/project_residual.wgsl"
@@ -592,6 +638,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Slides,
         source: [
             "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/slide_lines.wgsl",
@@ -606,6 +653,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Slides,
         source: [
             "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/slide_lines.wgsl",
@@ -620,6 +668,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Steps,
         source: [
             "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/sum_over_members.wgsl"
@@ -633,6 +682,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/vectors.wgsl", "truncated/advance.wgsl"],
     }
@@ -644,6 +694,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: [
             "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/precondition.wgsl"
@@ -657,6 +708,7 @@ kernels! {
         width: FINISH_WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/begin_iteration.wgsl"],
     }
@@ -668,6 +720,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/vectors.wgsl", "truncated/turn.wgsl"],
     }
@@ -679,6 +732,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: true,
         user: Steps,
         source: ["truncated/vectors.wgsl", "truncated/multiply.wgsl"],
     }
@@ -690,6 +744,7 @@ kernels! {
         width: FINISH_WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/judge_iteration.wgsl"],
     }
@@ -701,6 +756,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/join_aggregates.wgsl"],
     }
@@ -712,6 +768,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/find_shifts.wgsl"],
     }
@@ -723,6 +780,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/sum_blocks.wgsl"],
     }
@@ -734,6 +792,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/invert_diagonal.wgsl"],
     }
@@ -745,6 +804,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/restrict_residual.wgsl"],
     }
@@ -756,6 +816,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/prolong.wgsl"],
     }
@@ -767,6 +828,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/smooth_residual.wgsl"],
     }
@@ -778,6 +840,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/smooth_again.wgsl"],
     }
@@ -789,6 +852,7 @@ kernels! {
         width: 1,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/begin_trials.wgsl"],
     }
@@ -800,6 +864,7 @@ kernels! {
         width: 1,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Steps,
         source: ["truncated/judge_length.wgsl"],
     }
@@ -811,6 +876,7 @@ kernels! {
         width: WORKGROUP,
         sees_maps: false,
         sees_bounds: false,
+        sees_quadrilaterals: false,
         user: Check,
         source: ["check_arithmetic.wgsl"],
     }
@@ -837,7 +903,8 @@ impl Kernel {
         let positions = self.layout().sees(form.positions);
         let maps = if self.row().sees_maps { form.maps } else { MapKind::None };
         let is_bounded = form.is_bounded && self.row().sees_bounds;
-        MeshForm { positions, maps, is_bounded }
+        let has_quadrilaterals = form.has_quadrilaterals && self.row().sees_quadrilaterals;
+        MeshForm { positions, maps, is_bounded, has_quadrilaterals }
     }
 
     /// Returns the name of the entry point.

@@ -10,7 +10,7 @@ use crate::gpu::device::buffers::{
 };
 use crate::gpu::device::pending::Waiting;
 use crate::gpu::device::readback;
-use crate::gpu::device::size::{NUMBER, POSITION, TRIANGLE};
+use crate::gpu::device::size::{NUMBER, POSITION, QUADRILATERAL, TRIANGLE};
 use crate::gpu::kernels::layouts::BoundPositions;
 use crate::gpu::kernels::uniforms::split;
 use crate::gpu::mesh::{Changes, Curves, Parts, bounds, of_part};
@@ -25,6 +25,8 @@ pub(crate) struct MeshBuffers {
     pub(crate) ring_start: wgpu::Buffer,
     pub(crate) ring: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
+    /// `None` for a mesh of triangles alone.
+    pub(crate) quadrilaterals: Option<wgpu::Buffer>,
     /// The vertices that slide along curves. `None` if no vertex slides.
     pub(crate) curves: Option<Curves>,
     /// Counters of the application's changes to the mesh.
@@ -50,8 +52,25 @@ impl MeshBuffers {
         let (ring, triangles) = (problem.ring(), problem.judged_triangles());
         let ring = filled_with_pauses(gpu, "one-rings", &[ring], Usage::STORAGE).await?;
         let triangles = filled_with_pauses(gpu, "triangles", &[triangles], Usage::STORAGE).await?;
+        let listed = problem.judged_quadrilaterals();
+        let quadrilaterals = match &listed[..] {
+            [] => None,
+            listed => {
+                let (label, usage) = ("quadrilaterals", Usage::STORAGE);
+                Some(filled_with_pauses(gpu, label, &[listed], usage).await?)
+            }
+        };
         let changes = scoped(&gpu.device, || Changes::new(gpu))?;
-        Ok(Self { positions, ring_start, ring, triangles, curves: None, changes, parts })
+        Ok(Self {
+            positions,
+            ring_start,
+            ring,
+            triangles,
+            quadrilaterals,
+            curves: None,
+            changes,
+            parts,
+        })
     }
 
     /// Creates a mesh at other `positions`, with its own counters of changes. Both meshes share all other buffers.
@@ -98,6 +117,7 @@ impl MeshBuffers {
             ring_start: self.ring_start.clone(),
             ring: self.ring.clone(),
             triangles: self.triangles.clone(),
+            quadrilaterals: self.quadrilaterals.clone(),
             curves: None,
             changes: Changes::new(gpu),
             parts: self.parts.clone(),
@@ -191,9 +211,15 @@ impl MeshBuffers {
         rows(&self.ring, &of_part(&self.parts.rings, part).entries, NUMBER)
     }
 
-    /// Returns the binding of the mesh's triangles in one part.
-    pub(crate) fn bind_triangles(&self, part: usize) -> wgpu::BindingResource<'_> {
-        rows(&self.triangles, of_part(&self.parts.triangles, part), TRIANGLE)
+    /// Returns the binding of the mesh's elements in one part.
+    pub(crate) fn bind_elements(&self, part: usize) -> wgpu::BindingResource<'_> {
+        let part = of_part(&self.parts.elements, part);
+        match &self.quadrilaterals {
+            Some(quadrilaterals) if part.are_quadrilaterals => {
+                rows(quadrilaterals, &part.range, QUADRILATERAL)
+            }
+            _ => rows(&self.triangles, &part.range, TRIANGLE),
+        }
     }
 }
 

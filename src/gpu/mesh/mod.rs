@@ -9,4 +9,4 @@ mod parts;
 pub(crate) use buffers::MeshBuffers;
 pub(crate) use changes::Changes;
 pub(crate) use curves::Curves;
-pub(crate) use parts::{Parts, RingPart, of_part};
+pub(crate) use parts::{ElementPart, Parts, RingPart, of_part};

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::error::GpuError;
 use crate::gpu::device::size::{
-    NUMBER, POSITION, TRIANGLE, check_limit, check_rows, objective_invocations,
+    NUMBER, POSITION, QUADRILATERAL, TRIANGLE, check_limit, check_rows, objective_invocations,
 };
 use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::uniforms::WORKGROUP;
@@ -28,8 +28,10 @@ pub(crate) struct Parts {
     is_bounded: bool,
     /// Parts of the one-rings, cut between vertices.
     pub(crate) rings: Vec<RingPart>,
-    /// Parts of the triangles, as ranges of triangle numbers.
-    pub(crate) triangles: Vec<Range<u32>>,
+    /// Parts of the elements: of the triangles, then of the quadrilaterals.
+    pub(crate) elements: Vec<ElementPart>,
+    /// Whether the one-rings have opposite vertices of quadrilaterals.
+    has_quadrilaterals: bool,
     /// Parts of the free vertices, for buffers with a position per free vertex.
     pub(crate) free: Vec<Range<u32>>,
     /// Parts of all vertices, for buffers with a position per vertex.
@@ -46,6 +48,28 @@ pub(crate) struct RingPart {
     pub(crate) entries: Range<u32>,
 }
 
+/// Elements of one kind that a kernel binds at once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ElementPart {
+    /// Range in the list of the kind.
+    pub(crate) range: Range<u32>,
+    /// Number of the first element. Quadrilaterals have the numbers after those of the triangles.
+    pub(crate) first: u32,
+    pub(crate) are_quadrilaterals: bool,
+}
+
+impl ElementPart {
+    /// Returns the number of elements.
+    pub(crate) fn count(&self) -> u32 {
+        self.range.end - self.range.start
+    }
+
+    /// Returns the form of the kernels that go over the elements, from the form of the mesh.
+    pub(crate) fn form(&self, of_mesh: MeshForm) -> MeshForm {
+        if self.are_quadrilaterals { of_mesh } else { of_mesh.of_triangles() }
+    }
+}
+
 impl Parts {
     /// Cuts a mesh into parts that fit the limits.
     ///
@@ -54,7 +78,9 @@ impl Parts {
     /// cannot be cut into parts that fit.
     pub(crate) fn new(problem: &Problem, limits: &wgpu::Limits) -> Result<Self, GpuError> {
         let triangles = problem.judged_triangles().len();
-        let size = MeshSize { vertices: problem.positions().len(), triangles };
+        let quadrilaterals = problem.judged_count() - triangles;
+        let vertices = problem.positions().len();
+        let size = MeshSize { vertices, triangles: triangles + 4 * quadrilaterals };
         size.check(limits)?;
         let maps = problem.map_kind();
         let rows = bounds::rows(problem);
@@ -63,29 +89,53 @@ impl Parts {
         // A part consists of whole rounds of the objective's invocations, so that the sums do not depend on the parts.
         // A binding may start after any round, as the bytes of 64 triangles are a multiple of the alignment, and so are
         // the bytes of 64 positions.
-        let round = objective_invocations(triangles);
+        let round = objective_invocations(problem.judged_count());
+        let (triangles, quadrilaterals) = (triangles as u32, quadrilaterals as u32);
+        let of_kind = |count, bytes, first, are_quadrilaterals| {
+            let ranges = ranges(count, bytes, round, limits).into_iter();
+            ranges.map(move |range| ElementPart {
+                first: first + range.start,
+                range,
+                are_quadrilaterals,
+            })
+        };
+        let mut elements = Vec::new();
+        if triangles > 0 || quadrilaterals == 0 {
+            elements.extend(of_kind(triangles, TRIANGLE, 0, false));
+        }
+        if quadrilaterals > 0 {
+            elements.extend(of_kind(quadrilaterals, QUADRILATERAL, triangles, true));
+        }
         Ok(Self {
             low_positions: low_positions(rows, limits),
             maps,
             is_bounded: problem.is_bounded(),
             rings: rings(problem.ring_start(), limits)?,
-            triangles: ranges(triangles as u32, TRIANGLE, round, limits),
+            elements,
+            has_quadrilaterals: problem.has_quadrilaterals(),
             free: ranges(free, POSITION, WORKGROUP, limits),
-            vertices: ranges(size.vertices as u32, POSITION, WORKGROUP, limits),
+            vertices: ranges(vertices as u32, POSITION, WORKGROUP, limits),
         })
     }
 
-    /// Returns the number of bind groups that cover all one-rings, triangles and free vertices: the largest of their
+    /// Returns the number of bind groups that cover all one-rings, elements and free vertices: the largest of their
     /// part counts.
     pub(crate) fn count(&self) -> usize {
-        self.rings.len().max(self.triangles.len()).max(self.free.len())
+        self.rings.len().max(self.elements.len()).max(self.free.len())
+    }
+
+    /// Returns whether one binding holds all one-rings, one all free vertices, and one all elements of a kind.
+    pub(crate) fn are_whole(&self) -> bool {
+        let kinds = self.elements.chunk_by(|a, b| a.are_quadrilaterals == b.are_quadrilaterals);
+        self.rings.len() == 1 && self.free.len() == 1 && kinds.count() == self.elements.len()
     }
 
     /// Returns the form of the mesh for which kernels are composed.
     pub(crate) fn form(&self) -> MeshForm {
         let in_two = self.low_positions.is_some();
         let positions = if in_two { Positions::InTwo } else { Positions::Whole };
-        MeshForm { positions, maps: self.maps, is_bounded: self.is_bounded }
+        let Self { maps, is_bounded, has_quadrilaterals, .. } = *self;
+        MeshForm { positions, maps, is_bounded, has_quadrilaterals }
     }
 }
 

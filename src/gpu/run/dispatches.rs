@@ -15,7 +15,7 @@ use crate::gpu::kernels::layouts::RunBindings;
 use crate::gpu::kernels::pipelines::Pipeline;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{Control, Params, Part, WORKGROUP, pair};
-use crate::gpu::mesh::{MeshBuffers, Parts, bounds, of_part};
+use crate::gpu::mesh::{ElementPart, MeshBuffers, Parts, bounds, of_part};
 use crate::gpu::run::slides::Slides;
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
@@ -34,7 +34,8 @@ pub(crate) struct Dispatches {
     /// Bind groups by part of the mesh; see [`Parts`].
     bind_groups: Vec<wgpu::BindGroup>,
     sweeps: Vec<(Metric, Derivatives, Pipeline)>,
-    objective: Pipeline,
+    /// The evaluation of each part of the elements.
+    objectives: Vec<Pipeline>,
     finish: Pipeline,
     keep_best: Option<Pipeline>,
     /// The visits of sliding vertices. `None` if no vertex slides.
@@ -43,14 +44,14 @@ pub(crate) struct Dispatches {
     uniforms: Uniforms,
 }
 
-/// Uniforms of all dispatches, in this order: sweeps by step, color and part; parts of the triangles; parts of the free
+/// Uniforms of all dispatches, in this order: sweeps by step, color and part; parts of the elements; parts of the free
 /// vertices.
 struct Uniforms {
     /// Distinct steps of the run.
     steps: Vec<SweepParams>,
     /// Dispatches of one sweep, ordered by color and part.
     sweep: Vec<ColorPart>,
-    triangles: Vec<Range<u32>>,
+    elements: Vec<ElementPart>,
     free: Vec<Range<u32>>,
     /// Distance between successive uniforms, in bytes.
     stride: u32,
@@ -79,8 +80,8 @@ impl Uniforms {
         }
         let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
         let stride = alignment.max(size_of::<Part>() as u32);
-        let (triangles, free) = (parts.triangles.clone(), parts.free.clone());
-        Self { steps, sweep, triangles, free, stride }
+        let (elements, free) = (parts.elements.clone(), parts.free.clone());
+        Self { steps, sweep, elements, free, stride }
     }
 
     fn bytes(&self) -> Vec<u8> {
@@ -89,10 +90,10 @@ impl Uniforms {
             let of_color = |d: &ColorPart| Part::of_step(step, &d.vertices, d.ring_base);
             parts.extend(self.sweep.iter().map(of_color));
         }
-        // The kernels of triangles and of free vertices use no parameters of sweeps.
-        let of_range = |range: &Range<u32>| Part {
-            first: range.start,
-            count: range.end - range.start,
+        // The kernels of elements and of free vertices use no parameters of sweeps.
+        let of_range = |(first, count): (u32, u32)| Part {
+            first,
+            count,
             omega: 0.0,
             sharpness: 0,
             shape_guard: 0.0,
@@ -100,7 +101,9 @@ impl Uniforms {
             max_lengthening: 0.0,
             inverse_penalty_guard: 0.0,
         };
-        parts.extend(self.triangles.iter().chain(&self.free).map(of_range));
+        let of_elements = self.elements.iter().map(|part| (part.first, part.count()));
+        let of_free = self.free.iter().map(|range| (range.start, range.end - range.start));
+        parts.extend(of_elements.chain(of_free).map(of_range));
         let mut bytes = vec![0; parts.len() * self.stride as usize];
         for (part, chunk) in parts.iter().zip(bytes.chunks_exact_mut(self.stride as usize)) {
             chunk[..size_of::<Part>()].copy_from_slice(bytemuck::bytes_of(part));
@@ -113,12 +116,12 @@ impl Uniforms {
         Some(self.steps.iter().position(|known| known == step)? * self.sweep.len())
     }
 
-    fn of_triangles(&self) -> usize {
+    fn of_elements(&self) -> usize {
         self.steps.len() * self.sweep.len()
     }
 
     fn of_free(&self) -> usize {
-        self.of_triangles() + self.triangles.len()
+        self.of_elements() + self.elements.len()
     }
 }
 
@@ -146,7 +149,7 @@ impl BoundRun<'_> {
             positions: mesh.bind_positions(),
             ring_start: mesh.ring_start.as_entire_binding(),
             ring: mesh.bind_ring(part),
-            triangles: mesh.bind_triangles(part),
+            triangles: mesh.bind_elements(part),
             partial_sums: self.partial_sums.as_entire_binding(),
             control: self.control.as_entire_binding(),
             best_positions,
@@ -208,14 +211,18 @@ impl Dispatches {
         let form = mesh.parts.form();
         let sweeps = sweep_pipelines(gpu, form, &steps).await?;
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, form);
-        let objective = pipeline(Kernel::Objective(plan.tracked()))?;
-        pause().await;
+        let kernel = Kernel::Objective(plan.tracked());
+        let mut objectives = Vec::new();
+        for part in &mesh.parts.elements {
+            objectives.push(gpu.pipelines.get(&gpu.device, &kernel, part.form(form))?);
+            pause().await;
+        }
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
         pause().await;
         let keep_best = keep_best.then(|| pipeline(Kernel::KeepBest)).transpose()?;
         pause().await;
 
-        let partials = objective_invocations(problem.judged_triangles().len());
+        let partials = objective_invocations(problem.judged_count());
         let sums = (plan.tracked().len() as u64 + 2) * u64::from(partials);
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
         let uniforms = Uniforms::new(gpu, steps.clone(), problem.colors(), &mesh.parts);
@@ -247,7 +254,7 @@ impl Dispatches {
             params,
             bind_groups,
             sweeps,
-            objective,
+            objectives,
             finish,
             keep_best,
             slides,
@@ -258,7 +265,7 @@ impl Dispatches {
 
     /// Rewrites the uniform of the run for a problem with other targets, and so another mean area.
     pub(crate) fn write_params(&self, gpu: &Gpu, problem: &Problem) -> Result<(), GpuError> {
-        let partials = objective_invocations(problem.judged_triangles().len());
+        let partials = objective_invocations(problem.judged_count());
         let params = params(problem, &self.plan, partials);
         scoped(&gpu.device, || {
             gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
@@ -295,9 +302,9 @@ impl Dispatches {
     /// Encodes an evaluation: the sums of the objectives, the stop rule, and the copy of the best positions if the run
     /// keeps them.
     pub(crate) fn encode_evaluation(&self, passes: &mut Passes<'_>) {
-        for part in 0..self.uniforms.triangles.len() {
-            passes.run(&self.objective, None, |pass| {
-                self.bind(pass, part, self.uniforms.of_triangles() + part);
+        for (part, objective) in self.objectives.iter().enumerate() {
+            passes.run(objective, None, |pass| {
+                self.bind(pass, part, self.uniforms.of_elements() + part);
                 pass.dispatch_workgroups(self.objective_groups, 1, 1);
             });
         }
@@ -324,13 +331,13 @@ impl Dispatches {
 
 /// Returns the constants of a run by a plan.
 pub(super) fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
-    let triangles = problem.judged_triangles().len() as f64;
+    let elements = problem.judged_count() as f64;
     let base = plan.scheme.base();
-    let ideal_sum = base.ideal_squared() * triangles;
-    let target = plan.stop.target.map(|f| f * triangles - ideal_sum);
+    let ideal_sum = base.ideal_squared() * elements;
+    let target = plan.stop.target.map(|f| f * elements - ideal_sum);
     Params {
         zero: 0,
-        triangles: problem.judged_triangles().len() as u32,
+        triangles: problem.judged_count() as u32,
         partials,
         newton_steps: plan.newton_steps,
         base: base as u32,

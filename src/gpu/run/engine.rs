@@ -114,7 +114,7 @@ impl<'a> GpuEngine<'a> {
     async fn prepare_steps(&mut self) -> Result<bool, GpuError> {
         let Self { gpu, problem, mesh, dispatches, truncated, .. } = self;
         // In single precision, steps on strongly stretched triangles do not end a run. The Hessian is not bound in parts.
-        if problem.has_local_maps() || mesh.parts.count() > 1 {
+        if problem.has_local_maps() || !mesh.parts.are_whole() {
             return Ok(false);
         }
         if truncated.is_none() {
@@ -205,7 +205,7 @@ impl<'a> GpuEngine<'a> {
             // A larger sum holds `NOT_FINITE` of objective.wgsl for at least one triangle. Sums of finite triangles on
             // a device are far smaller.
             let sum = if sum < MIN_NOT_FINITE { sum } else { f64::NAN };
-            let excess = sum / self.problem.judged_triangles().len() as f64;
+            let excess = sum / self.problem.judged_count() as f64;
             values.set(metric, metric.ideal_squared() + excess);
         }
         values
@@ -275,7 +275,7 @@ impl<'a> GpuEngine<'a> {
     async fn proposal(&self, totals: Copied<'_, [f32; 2]>) -> Result<Proposal, GpuError> {
         let totals = totals.values(self.waiting).await?;
         let total = |i: usize| totals.get(i).map_or(f64::NAN, |&sum| unpair(sum));
-        let triangles = self.problem.judged_triangles().len() as f64;
+        let triangles = self.problem.judged_count() as f64;
         Ok(Proposal {
             here: total(0) / triangles,
             there: (total(2) == 0.0).then(|| total(1) / triangles),

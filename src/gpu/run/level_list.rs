@@ -3,7 +3,7 @@
 use crate::error::GpuError;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{FineOp, TransferOp, WORKGROUP};
-use crate::gpu::mesh::{MeshBuffers, RingPart};
+use crate::gpu::mesh::{ElementPart, MeshBuffers, RingPart};
 use crate::gpu::run::listing::{Bound, Dispatch, Groups, Listing, Op, SUMS};
 use crate::metric::Metric;
 use crate::run::multilevel::{Hierarchy, NONE};
@@ -105,19 +105,19 @@ impl<'g> LevelList<'g> {
         Ok(list)
     }
 
-    /// Lists the evaluation of the objective along the correction, part by part of the triangles, by `partials` invocations.
+    /// Lists the evaluation of the objective along the correction, part by part of the elements, by `partials` invocations.
     pub(super) fn objective(
         &mut self,
         metric: Metric,
         partials: u32,
     ) -> Result<Vec<Dispatch>, GpuError> {
-        let parts = self.mesh.parts.triangles.iter().enumerate();
-        let step = |(part, triangles): (usize, &std::ops::Range<u32>)| {
-            let (rows, first) = (triangles.end - triangles.start, triangles.start);
+        let parts = self.mesh.parts.elements.iter().enumerate();
+        let step = |(part, elements): (usize, &ElementPart)| {
+            let (rows, first) = (elements.count(), elements.first);
             let (kernel, groups) =
                 (Kernel::ObjectiveAlongCorrection(metric), Groups::Just(partials / WORKGROUP));
             let op = Op::Fine(FineOp { rows, first, ..self.fine });
-            self.listing.step(kernel, Bound::Fine { part }, groups, op)
+            self.listing.step_on(elements, kernel, Bound::Fine { part }, groups, op)
         };
         parts.map(step).collect()
     }

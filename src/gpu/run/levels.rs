@@ -83,7 +83,7 @@ impl Levels {
             pause().await;
         }
         let free = problem.free_count() as u32;
-        let partials = objective_invocations(problem.judged_triangles().len());
+        let partials = objective_invocations(problem.judged_count());
         let listing = Listing::new(gpu, mesh.parts.form());
         let is_fitted_each_time = matches!(fitting, Fitting::EachTime);
         let mut list =

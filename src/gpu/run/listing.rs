@@ -14,7 +14,7 @@ use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     CoarseOp, FineOp, LatticeOp, SEARCH_STATE, StepOp, TransferOp,
 };
-use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::mesh::{ElementPart, MeshBuffers};
 use crate::gpu::run::pages::Pages;
 use crate::gpu::scope::scoped;
 use crate::run::multilevel::{CHEBYSHEV, Coarser, Level, NONE, Sparse};
@@ -164,7 +164,30 @@ impl<'g> Listing<'g> {
         groups: Groups,
         op: Op,
     ) -> Result<Dispatch, GpuError> {
-        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.form)?;
+        self.step_in(self.form, &kernel, bound, groups, op)
+    }
+
+    /// Lists the dispatch of a kernel that goes over a part of the elements.
+    pub(super) fn step_on(
+        &mut self,
+        elements: &ElementPart,
+        kernel: Kernel,
+        bound: Bound,
+        groups: Groups,
+        op: Op,
+    ) -> Result<Dispatch, GpuError> {
+        self.step_in(elements.form(self.form), &kernel, bound, groups, op)
+    }
+
+    fn step_in(
+        &mut self,
+        form: MeshForm,
+        kernel: &Kernel,
+        bound: Bound,
+        groups: Groups,
+        op: Op,
+    ) -> Result<Dispatch, GpuError> {
+        let pipeline = self.gpu.pipelines.get(&self.gpu.device, kernel, form)?;
         let known = self.bound.iter().position(|&known| known == bound);
         let bind_group = known.unwrap_or(self.bound.len());
         if known.is_none() {
@@ -300,7 +323,7 @@ impl<'g> Listing<'g> {
                     positions: mesh.bind_positions(),
                     ring_start: mesh.ring_start.as_entire_binding(),
                     ring: mesh.bind_ring(part),
-                    triangles: mesh.bind_triangles(part),
+                    triangles: mesh.bind_elements(part),
                     gradient: gradient.as_entire_binding(),
                     direction: direction.as_entire_binding(),
                     vectors,

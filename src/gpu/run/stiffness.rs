@@ -56,7 +56,7 @@ pub(crate) async fn roots(
                 positions: mesh.bind_positions(),
                 ring_start: mesh.ring_start.as_entire_binding(),
                 ring: mesh.bind_ring(part),
-                triangles: mesh.bind_triangles(0),
+                triangles: mesh.bind_elements(0),
                 gradient: found.as_entire_binding(),
                 direction: direction.as_entire_binding(),
                 vectors: vectors.as_entire_binding(),

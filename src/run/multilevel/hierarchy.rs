@@ -15,7 +15,7 @@ pub(crate) const SMOOTHING: f32 = 0.9;
 
 /// [`SMOOTHING`] for the vertices of a mesh with quadrilaterals: (4/3)/2, as D⁻¹A of a lattice of squares has eigenvalues up to
 /// 2, and that of a lattice of triangles up to 1.5.
-const OF_QUADRILATERALS: f32 = 0.667;
+pub(crate) const OF_QUADRILATERALS: f32 = 0.667;
 
 /// Coefficients of two steps of the Chebyshev iteration for D⁻¹A over [0.45, 1.8], the upper three quarters of the
 /// spectrum, whose end is assumed at 1.8. The first coefficient is the factor on D⁻¹r in the first step d. The other

@@ -18,8 +18,8 @@ mod sparse;
 
 pub(crate) use aggregate::{Aggregates, NONE};
 pub(crate) use dense::invert;
-#[cfg(feature = "gpu")]
-pub(crate) use hierarchy::SMOOTHING;
 pub(crate) use hierarchy::{CHEBYSHEV, Coarser, Hierarchy, Level};
+#[cfg(feature = "gpu")]
+pub(crate) use hierarchy::{OF_QUADRILATERALS, SMOOTHING};
 pub(crate) use search::{MIN_FIRST_LENGTH, Search};
 pub(crate) use sparse::Sparse;

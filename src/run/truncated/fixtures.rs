@@ -22,6 +22,21 @@ pub(crate) fn lattice(side: u32, ratio: f64) -> Mesh {
     }
 }
 
+/// The lattice of [`lattice`], widened toward the top so that no mesh of squares fits it, with quadrilaterals in place of the
+/// triangles of some cells. `is_whole` tells these cells by their numbers.
+pub(crate) fn quadrilaterals(side: u32, is_whole: impl Fn(usize) -> bool) -> Mesh {
+    let mut mesh = lattice(side, 1.0);
+    mesh.points.iter_mut().for_each(|[x, y]| *x *= 1.0 + 0.02 * *y);
+    let triangles = std::mem::take(&mut mesh.triangles);
+    for (cell, pair) in triangles.chunks_exact(2).enumerate() {
+        match is_whole(cell) {
+            true => mesh.quadrilaterals.push([pair[0][0], pair[0][1], pair[0][2], pair[1][2]]),
+            false => mesh.triangles.extend(pair),
+        }
+    }
+    mesh
+}
+
 /// A hub of `around` neighbors, with rings around it.
 pub(crate) fn hub(around: u32) -> Mesh {
     let mut points = vec![[0.1, 0.05]];

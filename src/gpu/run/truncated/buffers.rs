@@ -24,6 +24,8 @@ pub(super) enum Bound {
     Coarse,
     SlideHessian,
     SlideSolution,
+    /// [`Self::Fine`] with the quadrilaterals of a mesh that has triangles too.
+    FineOfQuadrilaterals,
 }
 
 /// The buffers of Newton steps.
@@ -68,10 +70,11 @@ impl Buffers {
             bind(gpu, form, self.solution(mesh)),
             bind(gpu, form, self.lattice()),
             bind(gpu, form, trials),
-            bind(gpu, form, self.along_solution(mesh, step)),
+            bind(gpu, form, self.along_solution(mesh, step, 0)),
             bind(gpu, form, coarse),
             bind(gpu, form, self.slide_hessian(mesh)),
             bind(gpu, form, self.slide_solution()),
+            bind(gpu, form, self.along_solution(mesh, step, 1)),
         ]
     }
 
@@ -138,8 +141,14 @@ impl Buffers {
         }
     }
 
-    /// Returns the bindings of the kernels that also serve corrections. Here the solution stands for the correction.
-    fn along_solution<'b>(&'b self, mesh: &'b MeshBuffers, step: &StepOp) -> FineBindings<'b> {
+    /// Returns the bindings of the kernels that also serve corrections, for a part of the elements. Here the solution stands for
+    /// the correction.
+    fn along_solution<'b>(
+        &'b self,
+        mesh: &'b MeshBuffers,
+        step: &StepOp,
+        part: usize,
+    ) -> FineBindings<'b> {
         let (vector, length) = (u64::from(step.vector) * PAIR, u64::from(step.movers) * PAIR);
         FineBindings {
             params: self.params.as_entire_binding(),
@@ -147,7 +156,7 @@ impl Buffers {
             positions: mesh.bind_positions(),
             ring_start: mesh.ring_start.as_entire_binding(),
             ring: mesh.bind_ring(0),
-            triangles: mesh.bind_triangles(0),
+            triangles: mesh.bind_elements(part),
             gradient: bytes(&self.fine, 0..length),
             direction: bytes(&self.fine, vector..vector + length),
             vectors: self.vectors.as_entire_binding(),

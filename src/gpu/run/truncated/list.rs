@@ -15,7 +15,7 @@ use crate::gpu::kernels::uniforms::{
     CoarseOp, FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepLine, StepOp, StepState,
     WORKGROUP,
 };
-use crate::gpu::mesh::{Curves, MeshBuffers};
+use crate::gpu::mesh::{Curves, ElementPart, MeshBuffers};
 use crate::gpu::run::dispatches::{Dispatches, params};
 use crate::gpu::run::listing::{Dispatch, Groups, Op, SUMS, TOTALS, coarse_op, uniforms};
 use crate::gpu::scope::scoped;
@@ -95,7 +95,7 @@ impl<'g> List<'g> {
         check(gpu, list.fine_bytes().max(rows).max(lists))?;
         list.list_set_up(InvariantMetric(dispatches.plan.scheme.base())).await?;
         list.list_iteration().await?;
-        list.list_trials(problem, dispatches).await?;
+        list.list_trials(problem, &mesh.parts.elements, dispatches).await?;
         Ok(list)
     }
 
@@ -264,14 +264,14 @@ impl<'g> List<'g> {
     async fn list_trials(
         &mut self,
         problem: &Problem,
+        elements: &[ElementPart],
         dispatches: &Dispatches,
     ) -> Result<(), GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
-        let triangles = problem.judged_triangles().len();
-        let partials = objective_invocations(triangles);
+        let partials = objective_invocations(problem.judged_count());
         let fine = FineOp {
-            rows: triangles as u32,
+            rows: 0,
             first: 0,
             free: self.step.movers,
             ring_base: 0,
@@ -289,11 +289,20 @@ impl<'g> List<'g> {
         let whole = Groups::Just(partials / WORKGROUP);
         let movement = FineOp { rows: self.step.vertices, ..fine };
         let begin = self.of_trials(Kernel::BeginTrials).await?;
-        let kernel = Kernel::ObjectiveAlongCorrection(metric);
-        let objective = self.dispatch(kernel, Bound::Fine, whole, Op::Fine(fine)).await?;
+        let form = self.form;
+        let mut evaluation = Vec::new();
+        // Each list of elements is one part, as a Hessian that fits one binding is larger.
+        for (part, bound) in elements.iter().zip([Bound::Fine, Bound::FineOfQuadrilaterals]) {
+            let kernel = Kernel::ObjectiveAlongCorrection(metric);
+            let op = Op::Fine(FineOp { rows: part.count(), first: part.first, ..fine });
+            self.form = part.form(form);
+            evaluation.push(self.dispatch(kernel, bound, whole, op).await?);
+            self.form = form;
+        }
         let kernel = Kernel::SumAlongCorrection;
-        let sum = self.dispatch(kernel, Bound::Coarse, Groups::Just(1), Op::Coarse(sum)).await?;
-        let judge = self.of_trials(Kernel::JudgeLength).await?;
+        evaluation
+            .push(self.dispatch(kernel, Bound::Coarse, Groups::Just(1), Op::Coarse(sum)).await?);
+        evaluation.push(self.of_trials(Kernel::JudgeLength).await?);
         let kernel = Kernel::MoveAlongCorrection;
         let op = Op::Fine(movement);
         let movement = self.dispatch(kernel, Bound::Fine, Groups::ForRows, op).await?;
@@ -301,7 +310,7 @@ impl<'g> List<'g> {
         // The host places sliding vertices before each trial.
         let trials = if self.nest.slides.is_some() { 1 } else { STEP_TRIALS };
         for _ in 0..trials {
-            self.trials.extend([&objective, &sum, &judge].map(Dispatch::clone));
+            self.trials.extend(evaluation.iter().cloned());
         }
         self.trials.push(movement);
         Ok(())
@@ -322,7 +331,7 @@ impl<'g> List<'g> {
         let structure =
             filled_with_pauses(gpu, "step structure", &[&nest.structure], Usage::STORAGE).await?;
         let (bind_groups, buffers) = scoped(&gpu.device, || {
-            let partials = objective_invocations(problem.judged_triangles().len());
+            let partials = objective_invocations(problem.judged_count());
             // The solution is in the coordinates of the plane.
             let params =
                 Params { levels_in_plane: 1, ..params(problem, &dispatches.plan, partials) };

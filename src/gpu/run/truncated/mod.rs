@@ -50,7 +50,7 @@ pub(crate) struct OnDevice<'d> {
 impl OnDevice<'_> {
     /// Returns the number of triangles by which a step is judged.
     fn count(&self) -> f64 {
-        self.problem.judged_triangles().len() as f64
+        self.problem.judged_count() as f64
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::gpu::kernels::uniforms::LatticeOp;
 use crate::layout::Problem;
 use crate::parallel::pace::pause;
+use crate::patch::Fan;
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::{Members, Pattern};
 use crate::slide::{Movers, OnCurves};
@@ -108,16 +109,16 @@ impl Nest {
 
     fn place_slides(&mut self, problem: &Problem, curves: &OnCurves) -> SlideLists {
         let free = problem.free_count();
-        let mut fans: Vec<&[[u32; 3]]> = vec![&[]; problem.positions().len() - free];
+        let mut fans = vec![None; problem.positions().len() - free];
         let mut vertices = Vec::new();
         for fan in curves.fans() {
             vertices.push(fan.own());
-            fans[fan.own() as usize - free] = fan.corners();
+            fans[fan.own() as usize - free] = Some(fan);
         }
         let mut starts = vec![0];
         let mut corners = Vec::new();
         for fan in fans {
-            corners.extend(fan.iter().flat_map(|&[_, a, b]| [a, b]));
+            corners.extend(fan.into_iter().flat_map(Fan::marked_others).flatten());
             starts.push(corners.len() as u32 / 2);
         }
         let triangles = starts[starts.len() - 1];

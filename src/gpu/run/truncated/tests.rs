@@ -14,7 +14,7 @@ use crate::metric::Metric;
 use crate::options::Options;
 use crate::parallel::pace::now;
 use crate::run::corrections::Corrections;
-use crate::run::truncated::fixtures::{hub, lattice, problem, with_targets};
+use crate::run::truncated::fixtures::{hub, lattice, problem, quadrilaterals, with_targets};
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
 use crate::run::{Engine, GoesOn, Plan, SweepParams};
 use crate::slide::{OnCurves, Periodic, Slide, Sliding};
@@ -126,6 +126,21 @@ fn steps_of_the_device_are_those_of_the_cpu() {
     compare(&gpu, &with_targets(&lattice(21, 1.0)), Metric::Tmop94);
 }
 
+#[test]
+fn steps_of_the_device_on_quadrilaterals_are_those_of_the_cpu() {
+    let gpu = Gpu::open(None).block().unwrap();
+    let squares = quadrilaterals(21, |_| true);
+    let mixed = quadrilaterals(21, |cell| cell * cell % 3 != 0);
+    // AREA does not change if all squares become equal parallelograms, so a step has no definite end.
+    let is_definite = |metric: &&Metric| metric.curved().is_some() && **metric != Metric::Area;
+    for mesh in [&squares, &mixed] {
+        for metric in Metric::ALL.iter().filter(is_definite) {
+            compare(&gpu, &problem(mesh), *metric);
+        }
+        compare(&gpu, &with_targets(mesh), Metric::Imr);
+    }
+}
+
 /// Returns a mesh as a problem, with its vertices on curves.
 fn on_curves(mesh: &Mesh, slide: &Slide, problem: &Problem) -> OnCurves {
     let topology = Topology::new(mesh).unwrap();
@@ -139,14 +154,19 @@ fn on_curves(mesh: &Mesh, slide: &Slide, problem: &Problem) -> OnCurves {
 #[test]
 fn steps_of_the_device_slide_vertices_as_the_cpu_does() {
     let gpu = Gpu::open(None).block().unwrap();
-    let mut sides = lattice(21, 1.0);
-    for (k, point) in (0_u32..).zip(&mut sides.points) {
-        let off = 0.2 * (f64::from(k / 21 + k % 21) * 1.3).sin();
-        let is_inside = |k: u32| k > 0 && k < 20;
-        for (axis, place, other) in [(0, k % 21, k / 21), (1, k / 21, k % 21)] {
-            point[axis] += if is_inside(place) && !is_inside(other) { off } else { 0.0 };
+    let moved = |mut mesh: Mesh| {
+        for (k, point) in (0_u32..).zip(&mut mesh.points) {
+            let off = 0.2 * (f64::from(k / 21 + k % 21) * 1.3).sin();
+            let is_inside = |k: u32| k > 0 && k < 20;
+            for (axis, place, other) in [(0, k % 21, k / 21), (1, k / 21, k % 21)] {
+                point[axis] += if is_inside(place) && !is_inside(other) { off } else { 0.0 };
+            }
         }
-    }
+        mesh
+    };
+    let sides = moved(lattice(21, 1.0));
+    let squares = moved(quadrilaterals(21, |_| true));
+    let mixed = moved(quadrilaterals(21, |cell| cell * cell % 3 != 0));
     let pairs = (1..20).map(|k| [21 * k, 21 * k + 20]).collect();
     let periodic = vec![Periodic { pairs, motion: None }];
     let targets = with_targets(&sides);
@@ -156,6 +176,8 @@ fn steps_of_the_device_slide_vertices_as_the_cpu_does() {
         (&sides, problem(&sides), &free, [Metric::Imr, Metric::Rms]),
         (&sides, problem(&sides), &Slide { periodic, ..Slide::default() }, [Metric::Imr; 2]),
         (&sides, targets, &free, [Metric::Imr, Metric::Tmop94]),
+        (&squares, problem(&squares), &free, [Metric::Imr, Metric::Rms]),
+        (&mixed, problem(&mixed), &free, [Metric::Imr, Metric::Tmop94]),
     ] {
         for metric in metrics {
             let curves = Some(on_curves(mesh, slide, &problem));
