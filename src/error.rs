@@ -1,6 +1,6 @@
 //! Errors of the library, an enum per kind of operation.
 
-use crate::mesh::{Element, Mesh};
+use crate::mesh::Element;
 
 /// Error of an unsuitable mesh, or of arguments that do not match the mesh. Indices are zero-based, as in
 /// [`Mesh`].
@@ -88,16 +88,6 @@ pub enum MeshError {
         /// The first element of the part.
         element: Element,
     },
-    /// The mesh has quadrilaterals, and an operation takes meshes of triangles alone.
-    #[error(
-        "{operation} takes meshes of triangles alone, and this mesh has {quadrilaterals} quadrilaterals"
-    )]
-    TrianglesAlone {
-        /// The operation.
-        operation: &'static str,
-        /// Number of quadrilaterals.
-        quadrilaterals: usize,
-    },
     /// The triangles around a free vertex overlap although none is inverted: they wind more than once around the
     /// vertex.
     #[error("the triangles around vertex {vertex} overlap: they wind {turns} times around it")]
@@ -130,12 +120,12 @@ pub enum MeshError {
         /// Description of the vertex's defect.
         problem: &'static str,
     },
-    /// A pole of the sphere is inside a triangle or on an edge, where longitude has no direction; see
+    /// A pole of the sphere is inside an element or on an edge, where longitude has no direction; see
     /// [`Chart`](crate::front_ends::Chart).
-    #[error("triangle {triangle} has a pole of the sphere inside of it or on an edge")]
+    #[error("{element} has a pole of the sphere inside of it or on an edge")]
     Pole {
-        /// The first triangle that contains a pole.
-        triangle: usize,
+        /// The first element that contains a pole.
+        element: Element,
     },
     /// A list of positions does not have exactly one entry per vertex of the mesh.
     #[error("{given} points are given for the {expected} vertices of the mesh")]
@@ -163,16 +153,6 @@ pub enum MeshError {
         /// Number of vertices of the mesh.
         vertices: usize,
     },
-}
-
-impl MeshError {
-    /// Fails with [`MeshError::TrianglesAlone`] if a mesh has quadrilaterals, which `operation` does not take.
-    pub(crate) fn check_triangles_alone(mesh: &Mesh, operation: &'static str) -> Result<(), Self> {
-        match mesh.quadrilaterals.len() {
-            0 => Ok(()),
-            quadrilaterals => Err(Self::TrianglesAlone { operation, quadrilaterals }),
-        }
-    }
 }
 
 /// A triangle that is inverted or flat.

@@ -1,7 +1,7 @@
 //! Interpolated vertex data, compared with a search through all triangles and with linear functions.
 
 use gpu_smooth::{Mesh, MeshError, Topology, interpolate::Interpolation};
-use support::{SplitMix64, lattice};
+use support::{SplitMix64, lattice, quadrilaterals};
 
 fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -157,4 +157,48 @@ fn points_that_are_missing_or_not_finite_are_refused() {
     let error = none.apply(&[0.0; 7], 2).unwrap_err();
     assert_eq!(error, MeshError::ValueCount { expected: 32, given: 7 });
     assert_eq!(error.to_string(), "7 numbers are given where the vertices of the mesh need 32");
+}
+
+#[test]
+fn values_in_quadrilaterals_are_bilinear() {
+    let mut rng = SplitMix64::new(9);
+    let meshes = [quadrilaterals::squares(9), quadrilaterals::mixed(9)];
+    for (mesh, is_product) in meshes.into_iter().zip([true, false]) {
+        for disturbed in [false, true] {
+            let mesh =
+                if disturbed { quadrilaterals::perturbed(&mesh, 0.25) } else { mesh.clone() };
+            let topology = Topology::new(&mesh).unwrap();
+            let free = topology.free();
+            let moved = |(point, free): (&[f64; 2], &bool)| match free {
+                true => point.map(|x| x + rng.range(-0.7, 0.7)),
+                false => *point,
+            };
+            let new: Vec<[f64; 2]> = mesh.points.iter().zip(free).map(moved).collect();
+            let interpolation = Interpolation::new(&topology, &mesh.points, &new).unwrap();
+            assert_eq!(interpolation.moved(), topology.free_count());
+            let linear = |[x, y]: [f64; 2]| 2.0 * x - 3.0 * y + 0.5;
+            let product = |[x, y]: [f64; 2]| x * y + x;
+            let of = |function: &dyn Fn([f64; 2]) -> f64| {
+                let values: Vec<f64> = mesh.points.iter().map(|&point| function(point)).collect();
+                let found = interpolation.apply(&values, 1).unwrap();
+                let off = found.iter().zip(&new).map(|(found, &place)| found - function(place));
+                off.map(f64::abs).fold(0.0, f64::max)
+            };
+            assert!(of(&linear) < 1e-12, "{}", of(&linear));
+            // A product of coordinates is bilinear in cells parallel to the axes.
+            assert_eq!(of(&product) < 1e-12, is_product && !disturbed, "{}", of(&product));
+        }
+    }
+}
+
+#[test]
+fn a_concave_quadrilateral_has_no_interpolation() {
+    let mesh = quadrilaterals::squares(3);
+    let mut old = mesh.points.clone();
+    old[5] = [1.7, 1.6];
+    let topology = Topology::new(&mesh).unwrap();
+    let refused = Interpolation::new(&topology, &old, &mesh.points).unwrap_err();
+    assert!(
+        matches!(refused, MeshError::Infeasible { quadrilaterals, .. } if quadrilaterals.len() == 1)
+    );
 }

@@ -198,10 +198,9 @@ fn indices(error: &MeshError) -> (Vec<usize>, Option<usize>) {
         MeshError::Infeasible { triangles, .. } => {
             (triangles.iter().map(|bad| bad.triangle).collect(), None)
         }
-        MeshError::Closed { element } | MeshError::BeyondPrecision { element, .. } => {
-            (vec![element.index()], None)
-        }
-        MeshError::Pole { triangle } => (vec![*triangle], None),
+        MeshError::Closed { element }
+        | MeshError::BeyondPrecision { element, .. }
+        | MeshError::Pole { element } => (vec![element.index()], None),
         MeshError::Target { vertex, .. } => (Vec::new(), Some(*vertex)),
         _ => (Vec::new(), None),
     }

@@ -1,5 +1,5 @@
 //! Charts of meshes in longitude and latitude. Longitudes are continued across the line where they jump by a full turn,
-//! and triangles at a pole get separate copies of the pole vertex.
+//! and elements at a pole get separate copies of the pole vertex.
 
 mod turns;
 
@@ -7,17 +7,17 @@ use std::collections::HashMap;
 
 use crate::chart::turns::{TURN, Turned, is_pole, pole_of, span, turned};
 use crate::error::MeshError;
-use crate::mesh::Mesh;
+use crate::mesh::{Element, Mesh};
 use crate::precision::Precision;
 
 /// A mesh in longitude and latitude, in degrees, whose longitudes continue across the line where they jump by a full
-/// turn. The jump is at 180, or at 0 if longitudes run from 0 to 360. In the chart, triangles across the line have the
-/// same shape in coordinates as triangles elsewhere.
+/// turn. The jump is at 180, or at 0 if longitudes run from 0 to 360. In the chart, elements across the line have the
+/// same shape in coordinates as elements elsewhere.
 ///
-/// If a part of the mesh closes around the globe, the chart cuts the part along that line. A pole at which triangles
+/// If a part of the mesh closes around the globe, the chart cuts the part along that line. A pole at which elements
 /// meet is cut too. A vertex on a cut has copies, which come after all other vertices of the chart's mesh; the vertex
 /// itself keeps its index. Cuts are part of the boundary of the chart's mesh, so vertices on cuts do not move.
-/// Triangles keep their indices.
+/// Elements keep their indices.
 ///
 /// ```
 /// use gpu_smooth::{Mesh, front_ends::Chart, options::Precision};
@@ -26,7 +26,7 @@ use crate::precision::Precision;
 /// let points = vec![[179.0, 0.0], [-179.0, 0.0], [-179.0, 2.0], [179.0, 2.0], [-179.8, 1.1]];
 /// let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
 /// let mesh = Mesh { points, triangles, ..Mesh::default() };
-/// let chart = Chart::new(&mesh, Precision::Double)?.expect("triangles are across the date line");
+/// let chart = Chart::new(&mesh, Precision::Double)?.expect("elements are across the date line");
 /// assert_eq!(chart.mesh().points[4], [180.2, 1.1]);
 /// let mut moved = chart.mesh().points.clone();
 /// moved[4] = [180.0625, 1.0];
@@ -48,45 +48,47 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Makes the chart of a mesh whose coordinates are stored with the given precision. Returns `None` if no triangle
-    /// is across the line or at a pole, so that the mesh needs no chart. Also returns `None` if a triangle has a vertex
+    /// Makes the chart of a mesh whose coordinates are stored with the given precision. Returns `None` if no element
+    /// is across the line or at a pole, so that the mesh needs no chart. Also returns `None` if an element has a vertex
     /// that does not exist or has a coordinate that is infinite or NaN.
     ///
     /// # Errors
-    /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if a pole is inside a
-    /// triangle or on an edge, [`MeshError::TrianglesAlone`] if the mesh has quadrilaterals.
+    /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if a pole is inside an
+    /// element or on an edge.
     pub fn new(mesh: &Mesh, stored: Precision) -> Result<Option<Self>, MeshError> {
-        MeshError::check_triangles_alone(mesh, "a chart of the sphere")?;
-        let Mesh { points, triangles, .. } = mesh;
+        let points = &mesh.points;
+        let used = || elements(mesh).flat_map(|(_, vertices)| vertices);
         let has_point = |&v: &u32| points.get(v as usize).is_some_and(|[x, y]| (x + y).is_finite());
-        if !triangles.as_flattened().iter().all(has_point) {
+        if !used().all(has_point) {
             return Ok(None);
         }
         let is_off = |&&v: &&u32| points[v as usize][1].abs() > 90.0;
-        if let Some(&vertex) = triangles.as_flattened().iter().find(is_off) {
+        if let Some(&vertex) = used().find(is_off) {
             let problem = "its latitude is not between -90 and 90 degrees";
             return Err(MeshError::Target { vertex: vertex as usize, problem });
         }
-        let is_across = |t: &&[u32; 3]| span(points, t) >= TURN / 2.0;
-        let across = triangles.iter().filter(is_across).count();
-        let polar = triangles.iter().filter(|t| pole_of(points, t).is_some()).count();
+        let count = |is: fn(&[[f64; 2]], &[u32]) -> bool| {
+            elements(mesh).filter(|(_, vertices)| is(points, vertices)).count()
+        };
+        let across = count(|points, element| span(points, element) >= TURN / 2.0);
+        let polar = count(|points, element| pole_of(points, element).is_some());
         if across == 0 && polar == 0 {
             return Ok(None);
         }
-        let corners = turned(points, triangles)?;
-        Ok(Some(Self::of_corners(mesh, stored, &corners, [across, polar])))
+        let turned = turned(points, elements(mesh))?;
+        Ok(Some(Self::of_turned(mesh, stored, &turned, [across, polar])))
     }
 
-    fn of_corners(
+    fn of_turned(
         given: &Mesh,
         stored: Precision,
-        corners: &[[Turned; 3]],
+        turned: &[Turned],
         [across, polar]: [usize; 2],
     ) -> Self {
         let mut mesh = given.clone();
         // The vertex itself takes the number of turns nearest to 0; each other number of turns gets a copy.
         let mut own: Vec<Option<i32>> = vec![None; given.points.len()];
-        for &(v, turns) in corners.as_flattened() {
+        for &(v, turns) in turned {
             let (Some(turns), own) = (turns, &mut own[v as usize]) else { continue };
             if own.is_none_or(|own| (turns.abs(), turns) < (own.abs(), own)) {
                 *own = Some(turns);
@@ -102,29 +104,37 @@ impl Chart {
             }
         }
         let (mut owners, mut held, mut copies) = (Vec::new(), Vec::new(), HashMap::new());
-        for (triangle, corners) in mesh.triangles.iter_mut().zip(corners) {
-            for (corner, &(v, turns)) in triangle.iter_mut().zip(corners) {
+        let mut left = turned;
+        let Mesh { points, triangles, quadrilaterals, fixed } = &mut mesh;
+        let triangles = triangles.iter_mut().map(|t| &mut t[..]);
+        for element in triangles.chain(quadrilaterals.iter_mut().map(|q| &mut q[..])) {
+            let (turned, after) = left.split_at(element.len());
+            left = after;
+            for (vertex, &(v, turns)) in element.iter_mut().zip(turned) {
                 let Some(turns) = turns else { continue };
                 if own[v as usize] == Some(turns) {
                     continue;
                 }
-                *corner = *copies.entry((v, turns)).or_insert_with(|| {
-                    let copy = mesh.points.len() as u32;
-                    mesh.points.push(place(v, turns));
+                *vertex = *copies.entry((v, turns)).or_insert_with(|| {
+                    let copy = points.len() as u32;
+                    points.push(place(v, turns));
                     owners.push(v);
                     held.extend([v, copy]);
                     copy
                 });
             }
-            if let Some(at) = corners.iter().position(|(_, turns)| turns.is_none()) {
-                let pole = triangle[at];
-                let others = [triangle[(at + 1) % 3], triangle[(at + 2) % 3]];
-                let [[a, _], [b, _]] = others.map(|other| mesh.points[other as usize]);
-                let copy = mesh.points.len() as u32;
-                mesh.points.push([stored.rounded(0.5 * (a + b)), given.points[pole as usize][1]]);
+            if let Some(at) = turned.iter().position(|(_, turns)| turns.is_none()) {
+                let (pole, count) = (element[at], element.len());
+                let beside = [element[(at + 1) % count], element[(at + count - 1) % count]];
+                let [[a, _], [b, _]] = beside.map(|other| points[other as usize]);
+                let copy = points.len() as u32;
+                points.push([stored.rounded(0.5 * (a + b)), given.points[pole as usize][1]]);
                 owners.push(pole);
-                held.extend([pole, copy].into_iter().chain(others));
-                triangle[at] = copy;
+                element[at] = copy;
+                // The vertex opposite to the pole in a quadrilateral is on no cut.
+                fixed.extend((count == 4).then(|| element[(at + 2) % 4]));
+                held.push(pole);
+                held.extend_from_slice(element);
             }
         }
         held.sort_unstable();
@@ -152,12 +162,12 @@ impl Chart {
         &self.owners
     }
 
-    /// Returns the number of triangles that reach across the line where longitudes jump by a full turn.
+    /// Returns the number of elements that reach across the line where longitudes jump by a full turn.
     pub fn across(&self) -> usize {
         self.across
     }
 
-    /// Returns the number of triangles with exactly one corner at a pole.
+    /// Returns the number of elements with exactly one vertex at a pole.
     pub fn polar(&self) -> usize {
         self.polar
     }
@@ -229,6 +239,14 @@ impl Chart {
     }
 }
 
+/// Returns the elements of a mesh with their vertices, the triangles first.
+fn elements(mesh: &Mesh) -> impl Iterator<Item = (Element, &[u32])> + Clone {
+    let triangles = mesh.triangles.iter().enumerate();
+    let triangles = triangles.map(|(index, vertices)| (Element::Triangle(index), &vertices[..]));
+    let others = mesh.quadrilaterals.iter().enumerate();
+    triangles.chain(others.map(|(index, q)| (Element::Quadrilateral(index), &q[..])))
+}
+
 /// Returns a longitude that is less than a turn outside of `range`, shifted by a turn into the range.
 fn brought_back(x: f64, range: Option<[f64; 2]>) -> f64 {
     match range {
@@ -282,7 +300,8 @@ mod tests {
         let mesh = chart.mesh();
         let topology = Topology::new(mesh).unwrap();
         assert_eq!(topology.bad_triangles(&mesh.points), Ok(vec![]));
-        assert!(mesh.triangles.iter().all(|t| span(&mesh.points, t) < 90.0));
+        assert_eq!(topology.bad_quadrilaterals(&mesh.points), Ok(vec![]));
+        assert!(elements(mesh).all(|(_, vertices)| span(&mesh.points, vertices) < 90.0));
         assert!(chart.held().iter().all(|&v| !topology.free()[v as usize]));
     }
 
@@ -325,6 +344,36 @@ mod tests {
         assert_eq!(chart.continued(&mesh.points), chart.mesh().points);
     }
 
+    /// Returns a mesh of triangles in pairs as a mesh of quadrilaterals, one for each pair.
+    fn joined(mesh: Mesh) -> Mesh {
+        let pairs = mesh.triangles.chunks_exact(2);
+        let quadrilaterals = pairs.map(|pair| [pair[0][0], pair[0][1], pair[0][2], pair[1][2]]);
+        Mesh { quadrilaterals: quadrilaterals.collect(), triangles: Vec::new(), ..mesh }
+    }
+
+    #[test]
+    fn quadrilaterals_are_continued_as_triangles_are() {
+        for (size, west, copies) in [([6, 3], 130.0, 0), ([18, 3], -170.0, 4)] {
+            let mesh = joined(grid(size, [west, -20.0], within_half));
+            let chart = Chart::new(&mesh, Precision::Double).unwrap().unwrap();
+            assert_sound(&chart);
+            assert_eq!((chart.across(), chart.owners().len()), (3, copies));
+            assert_eq!(chart.given(&chart.mesh().points), mesh.points);
+        }
+        // Nine quadrilaterals around a pole, each with two edges of the row below.
+        let mut mesh = joined(grid([18, 3], [-170.0, 50.0], within_half));
+        let pole = mesh.points.len() as u32;
+        mesh.points.push([0.0, 90.0]);
+        let top = |k: u32| pole - 18 + k % 18;
+        let around = (0..9).map(|k| [top(2 * k), top(2 * k + 1), top(2 * k + 2), pole]);
+        mesh.quadrilaterals.extend(around);
+        let chart = Chart::new(&mesh, Precision::Double).unwrap().unwrap();
+        assert_eq!((chart.across(), chart.polar()), (4, 9));
+        let topology = Topology::new(chart.mesh()).unwrap();
+        assert_eq!(topology.free_count(), 17 * 2, "those around the pole stay");
+        assert_eq!(chart.given(&chart.mesh().points), mesh.points);
+    }
+
     #[test]
     fn the_triangles_at_a_pole_stay() {
         let mut mesh = grid([18, 3], [-170.0, 50.0], within_half);
@@ -348,7 +397,7 @@ mod tests {
                 Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
             Chart::new(&mesh, Precision::Double).map(|chart| chart.is_some())
         };
-        let pole = Err(MeshError::Pole { triangle: 0 });
+        let pole = Err(MeshError::Pole { element: Element::Triangle(0) });
         assert_eq!(of([[-120.0, 80.0], [0.0, 80.0], [120.0, 80.0]]), pole);
         assert_eq!(of([[-90.0, 80.0], [90.0, 80.0], [100.0, 70.0]]), pole);
         assert!(matches!(

@@ -1,78 +1,83 @@
-//! Whole turns by which longitudes are shifted at the corners of each triangle, so that longitudes are continuous
-//! within the triangle.
+//! Whole turns by which longitudes are shifted at the vertices of each element, so that longitudes are continuous
+//! within the element.
 
 use crate::error::MeshError;
+use crate::mesh::Element;
 
 /// A full turn, in degrees.
 pub(super) const TURN: f64 = 360.0;
 
-/// A corner of a triangle in the chart: a vertex, and the turns to add to its longitude. `None` marks a vertex at a
-/// pole, whose longitude becomes the mean longitude of the other two corners.
+/// A vertex of an element in the chart, and the turns to add to its longitude. `None` marks a vertex at a pole, whose
+/// longitude becomes the mean longitude of the two vertices beside it.
 pub(super) type Turned = (u32, Option<i32>);
 
 pub(super) fn is_pole(points: &[[f64; 2]], v: u32) -> bool {
     points[v as usize][1].abs() == 90.0
 }
 
-/// Returns the corner of a triangle at a pole, `None` if no corner or several corners are at a pole.
-pub(super) fn pole_of(points: &[[f64; 2]], t: &[u32; 3]) -> Option<usize> {
-    let mut at = (0..3).filter(|&i| is_pole(points, t[i]));
+/// Returns the place of the vertex of an element at a pole, `None` if no vertex or several vertices are at a pole.
+pub(super) fn pole_of(points: &[[f64; 2]], element: &[u32]) -> Option<usize> {
+    let mut at = (0..element.len()).filter(|&i| is_pole(points, element[i]));
     at.next().filter(|_| at.next().is_none())
 }
 
-/// Returns the edges of a triangle. If exactly one corner is at a pole, only the opposite edge is returned: a pole has
-/// all longitudes, so differences along the other two edges mean nothing.
-fn edges<'t>(points: &[[f64; 2]], t: &'t [u32; 3]) -> impl Iterator<Item = [u32; 2]> + 't {
-    let pole = pole_of(points, t);
-    (0..3).filter(move |&i| pole.is_none_or(|at| at == (i + 2) % 3)).map(|i| [t[i], t[(i + 1) % 3]])
+/// Returns the edges of an element. If exactly one vertex is at a pole, its two edges are left out: a pole has all longitudes, so
+/// differences along these edges mean nothing.
+fn edges<'e>(points: &[[f64; 2]], element: &'e [u32]) -> impl Iterator<Item = [u32; 2]> + 'e {
+    let (pole, count) = (pole_of(points, element), element.len());
+    (0..count)
+        .map(move |i| [i, (i + 1) % count])
+        .filter(move |ends| pole.is_none_or(|at| !ends.contains(&at)))
+        .map(|ends| ends.map(|i| element[i]))
 }
 
-/// Returns the largest difference of longitudes along an edge of a triangle, in degrees.
-pub(super) fn span(points: &[[f64; 2]], t: &[u32; 3]) -> f64 {
+/// Returns the largest difference of longitudes along an edge of an element, in degrees.
+pub(super) fn span(points: &[[f64; 2]], element: &[u32]) -> f64 {
     let apart = |[a, b]: [u32; 2]| (points[a as usize][0] - points[b as usize][0]).abs();
-    edges(points, t).map(apart).fold(0.0, f64::max)
+    edges(points, element).map(apart).fold(0.0, f64::max)
 }
 
-/// Returns the turns of all corners, so that longitudes within a triangle differ by less than half a turn. A connected
-/// part of the mesh is continued as a whole unless it closes around the globe. If it does, only triangles across the
-/// line where longitudes jump are continued.
+/// Returns the turns of the vertices of each element, one after the other, so that longitudes along an edge differ by less than
+/// half a turn. A connected part of the mesh is continued as a whole unless it closes around the globe. If it does, only elements
+/// across the line where longitudes jump are continued.
 ///
-/// Fails with [`MeshError::Pole`] if a pole is inside a triangle or on an edge.
-pub(super) fn turned(
+/// Fails with [`MeshError::Pole`] if a pole is inside an element or on an edge.
+pub(super) fn turned<'e>(
     points: &[[f64; 2]],
-    triangles: &[[u32; 3]],
-) -> Result<Vec<[Turned; 3]>, MeshError> {
+    elements: impl Iterator<Item = (Element, &'e [u32])> + Clone,
+) -> Result<Vec<Turned>, MeshError> {
     let x = |v: u32| points[v as usize][0];
     // Turns to add to the longitude of `b` to bring it within half a turn of the longitude of `a`.
     let turns = |a: u32, b: u32| ((x(a) - x(b)) / TURN).round() as i32;
     let mut parts = Parts::new(points.len());
-    for (triangle, t) in triangles.iter().enumerate() {
+    for (element, vertices) in elements.clone() {
         let (mut around, mut count) = (0, 0);
-        for [a, b] in edges(points, t) {
+        for [a, b] in edges(points, vertices) {
             if (x(a) - x(b)).abs().rem_euclid(TURN) == TURN / 2.0 {
-                return Err(MeshError::Pole { triangle });
+                return Err(MeshError::Pole { element });
             }
             (around, count) = (around + turns(a, b), count + 1);
             parts.join(a, b, turns(a, b));
         }
-        if count == 3 && around != 0 {
-            return Err(MeshError::Pole { triangle });
+        if count == vertices.len() && around != 0 {
+            return Err(MeshError::Pole { element });
         }
     }
-    let mut corners = |t: &[u32; 3]| {
-        let pole = pole_of(points, t);
-        let others = (0..3).filter(|&i| Some(i) != pole).map(|i| t[i]);
-        let east = others.reduce(|east, v| if x(v) > x(east) { v } else { east }).unwrap_or(t[0]);
-        [0, 1, 2].map(|i| {
-            let (part, own) = parts.find(t[i]);
-            match parts.is_closed[part as usize] {
-                _ if Some(i) == pole => (t[i], None),
-                true => (t[i], Some(turns(east, t[i]))),
-                false => (t[i], Some(own)),
-            }
-        })
-    };
-    Ok(triangles.iter().map(&mut corners).collect())
+    let mut all = Vec::new();
+    for (_, vertices) in elements {
+        let pole = pole_of(points, vertices);
+        let others = (0..vertices.len()).filter(|&i| Some(i) != pole).map(|i| vertices[i]);
+        let east = others.reduce(|east, v| if x(v) > x(east) { v } else { east });
+        for (i, &v) in vertices.iter().enumerate() {
+            let (part, own) = parts.find(v);
+            all.push(match parts.is_closed[part as usize] {
+                _ if Some(i) == pole => (v, None),
+                true => (v, Some(turns(east.unwrap_or(v), v))),
+                false => (v, Some(own)),
+            });
+        }
+    }
+    Ok(all)
 }
 
 /// Union-find of vertices joined by edges, with the turns of each vertex relative to the least vertex of its part.

@@ -1,7 +1,8 @@
 //! Interpolation of vertex data of one mesh at arbitrary points.
 
-use super::interpolation::linear;
-use super::locate::{LocatedPoint, Locator};
+use super::element::{Cell, LocatedPoint};
+use super::interpolation::check_feasible;
+use super::locate::Locator;
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::parallel::map_ranges;
@@ -18,7 +19,7 @@ pub(crate) struct Background {
     seeds: Seeds,
 }
 
-/// A located point: the triangle of a background that contains the point, or the nearest point of a triangle.
+/// A located point: the element of a background that contains the point, or the nearest point of an element.
 pub(crate) struct Spot {
     found: LocatedPoint,
     /// Distance of the point from the mesh, 0 inside.
@@ -26,26 +27,22 @@ pub(crate) struct Spot {
 }
 
 impl Background {
-    /// Returns points and triangles as words, for the fingerprint of a run.
+    /// Returns points and corners as words, for the fingerprint of a run.
     pub(crate) fn words(&self) -> Vec<u64> {
         let points = self.points.as_flattened().iter().map(|x| x.to_bits());
-        let triangles = self.topology.triangles().as_flattened().iter().map(|&v| u64::from(v));
-        points.chain(triangles).collect()
+        let corners = self.topology.corners().as_flattened().iter().map(|&v| u64::from(v));
+        points.chain(corners).collect()
     }
 
     /// Makes a background; copies the mesh.
     ///
     /// # Errors
-    /// [`MeshError::Infeasible`] if triangles are inverted or flat, [`MeshError::TrianglesAlone`], or an error of
+    /// [`MeshError::Infeasible`] if triangles are inverted or flat, or if quadrilaterals are not convex, or an error of
     /// [`Topology::new`].
     pub(crate) fn new(mesh: &Mesh) -> Result<Self, MeshError> {
-        MeshError::check_triangles_alone(mesh, "interpolation")?;
         let topology = Topology::new(mesh)?.into_owned();
-        let triangles = topology.bad_triangles(&mesh.points)?;
-        if !triangles.is_empty() {
-            return Err(MeshError::Infeasible { triangles, quadrilaterals: Vec::new() });
-        }
-        let seeds = Seeds::new(topology.triangles(), &mesh.points);
+        check_feasible(&topology, &mesh.points)?;
+        let seeds = Seeds::new(topology.corners(), &mesh.points);
         Ok(Self { topology, points: mesh.points.clone(), seeds })
     }
 
@@ -63,9 +60,7 @@ impl Background {
         let found = map_ranges(places.len(), 1 << 10, |range| {
             let spot = |place: &[f64; 2]| {
                 let found = self.found(&locator, *place)?;
-                let at = [0, 1].map(|axis| {
-                    linear(found.corners.map(|v| points[v as usize][axis]), found.weights)
-                });
+                let at = [0, 1].map(|axis| found.value(|v| points[v as usize][axis]));
                 let outside = (at[0] - place[0]).hypot(at[1] - place[1]);
                 Some(Spot { found, outside })
             };
@@ -74,20 +69,22 @@ impl Background {
         Ok(found.into_iter().flatten().collect())
     }
 
-    /// Locates a point by walks from nearby vertices. If the boundary blocks every walk, searches all triangles for the
+    /// Locates a point by walks from nearby vertices. If the boundary blocks every walk, searches all elements for the
     /// nearest.
     fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<LocatedPoint> {
         let starts = self.seeds.around(place).filter_map(|v| self.topology.star(v).first());
-        if let Some(triangle) = starts.take(TRIED).find_map(|&t| locator.walk(t, place)) {
-            return Some(locator.within(triangle, place));
+        if let Some(element) = starts.take(TRIED).find_map(|&corner| locator.walk(corner, place)) {
+            return Some(locator.within(element, place));
         }
         let mut best: Option<(f64, u32, [f64; 2])> = None;
-        for (triangle, t) in (0..).zip(self.topology.triangles()) {
-            // Most triangles are skipped, as their bounding box is farther away than the best triangle.
-            let corners = t.map(|v| self.points[v as usize]);
+        for element in self.topology.corner_list().firsts() {
+            // Most elements are skipped, as their bounding box is farther away than the best element.
+            let cell = Cell::of(&self.topology, element);
             let apart = [0, 1].map(|axis| {
-                let [a, b, c] = corners.map(|corner| corner[axis]);
-                (a.min(b).min(c) - place[axis]).max(place[axis] - a.max(b).max(c)).max(0.0)
+                let along = || cell.vertices().iter().map(|&v| self.points[v as usize][axis]);
+                let (low, high) = (along().reduce(f64::min), along().reduce(f64::max));
+                let [low, high] = [low, high].map(|end| end.unwrap_or(f64::INFINITY));
+                (low - place[axis]).max(place[axis] - high).max(0.0)
             });
             let is_farther = |&(best, ..): &(f64, u32, [f64; 2])| {
                 apart[0] * apart[0] + apart[1] * apart[1] >= best
@@ -95,20 +92,20 @@ impl Background {
             if best.as_ref().is_some_and(is_farther) {
                 continue;
             }
-            let (distance, nearest) = locator.nearest(triangle, place);
+            let (distance, nearest) = locator.nearest(element, place);
             if best.is_none_or(|(least, ..)| distance < least) {
-                best = Some((distance, triangle, nearest));
+                best = Some((distance, element, nearest));
             }
             if distance == 0.0 {
                 break;
             }
         }
-        best.map(|(_, triangle, nearest)| locator.within(triangle, nearest))
+        best.map(|(_, element, nearest)| locator.within(element, nearest))
     }
 
     /// Returns the value at a spot, interpolated from the values `of` the background's vertices.
     pub(crate) fn value(&self, spot: &Spot, of: impl Fn(u32) -> f64) -> f64 {
-        linear(spot.found.corners.map(of), spot.found.weights)
+        spot.found.value(of)
     }
 
     /// Returns the least and the largest x coordinate of the background.
@@ -132,8 +129,8 @@ struct Seeds {
 }
 
 impl Seeds {
-    fn new(triangles: &[[u32; 3]], points: &[[f64; 2]]) -> Self {
-        let used = triangles.as_flattened();
+    fn new(corners: &[[u32; 3]], points: &[[f64; 2]]) -> Self {
+        let used = corners.as_flattened();
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
         for &v in used {
@@ -144,7 +141,7 @@ impl Seeds {
         }
         let size = [high[0] - low[0], high[1] - low[1]];
         // Cells are about as many as vertices, and about as high as wide.
-        let wanted = (triangles.len() as f64 / 2.0).max(1.0);
+        let wanted = (corners.len() as f64 / 2.0).max(1.0);
         let share = |a: f64, b: f64| (wanted * a / b).sqrt().clamp(1.0, wanted);
         let counts = [share(size[0], size[1]), share(size[1], size[0])].map(|n| n.ceil() as usize);
         let mut seeds = Self { low, size, counts, vertices: vec![u32::MAX; counts[0] * counts[1]] };

@@ -1,6 +1,7 @@
 //! Interpolation of vertex data after vertices have moved.
 
-use super::locate::{LocatedPoint, Locator};
+use super::element::LocatedPoint;
+use super::locate::Locator;
 use crate::error::MeshError;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
@@ -8,9 +9,9 @@ use crate::topology::Topology;
 /// Moved vertices located in the old mesh, once for any number of data.
 ///
 /// Vertex data, such as depths or a solution, no longer fit where vertices have moved. An interpolation evaluates the
-/// data of the old mesh at the new positions, linearly in each triangle. A vertex that has not moved keeps the bits of
-/// its data. Data that are linear over the mesh remain linear up to rounding. Every interpolated value is bounded by
-/// the values at the three corners of its triangle.
+/// data of the old mesh at the new positions, linearly in each triangle and bilinearly in each quadrilateral. A vertex that has
+/// not moved keeps the bits of its data. Data that are linear over the mesh remain linear up to rounding. Every interpolated value
+/// is bounded by the values at the corners of its element.
 ///
 /// ```
 /// use gpu_smooth::{interpolate::Interpolation, Mesh, Topology};
@@ -37,9 +38,9 @@ pub struct Interpolation {
 }
 
 impl Interpolation {
-    /// Locates the new positions of vertices in the old mesh, on all cores. The search starts from the triangles of the
+    /// Locates the new positions of vertices in the old mesh, on all cores. The search starts from the elements of the
     /// vertex and crosses shared edges, so it tells overlapping parts of a mesh apart. Exact predicates decide which
-    /// triangle contains a position. A position outside of the mesh is replaced by the nearest point of the triangles
+    /// element contains a position. A position outside of the mesh is replaced by the nearest point of the elements
     /// that were searched, up to 20,000.
     ///
     /// `old` and `new` have one point per vertex, in any unit.
@@ -47,17 +48,14 @@ impl Interpolation {
     /// # Errors
     /// [`MeshError::PointCount`] if `old` or `new` does not have one entry per vertex, [`MeshError::NotFinite`] if a
     /// new point has an infinite or NaN coordinate. [`MeshError::Infeasible`] if the old mesh has inverted or flat
-    /// triangles, as several triangles may then contain a position.
+    /// triangles, or quadrilaterals that are not convex, as several elements may then contain a position.
     pub fn new(
         topology: &Topology<'_>,
         old: &[[f64; 2]],
         new: &[[f64; 2]],
     ) -> Result<Interpolation, MeshError> {
-        let triangles = topology.bad_triangles(old)?;
+        check_feasible(topology, old)?;
         topology.check_count(new)?;
-        if !triangles.is_empty() {
-            return Err(MeshError::Infeasible { triangles, quadrilaterals: Vec::new() });
-        }
         if let Some(vertex) = new.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
         }
@@ -92,9 +90,7 @@ impl Interpolation {
         let taken = map_ranges(self.moved.len(), 1 << 12, |range| {
             let taken = self.moved[range].iter().flat_map(|(_, found)| {
                 let at = |vertex: u32, component| values[vertex as usize * components + component];
-                (0..components).map(move |component| {
-                    linear(found.corners.map(|vertex| at(vertex, component)), found.weights)
-                })
+                (0..components).map(move |component| found.value(|vertex| at(vertex, component)))
             });
             taken.collect::<Vec<_>>()
         });
@@ -107,12 +103,15 @@ impl Interpolation {
     }
 }
 
-/// Interpolates linearly between three values. If all three are equal, the result has their bits.
-pub(super) fn linear([a, b, c]: [f64; 3], [to_b, to_c]: [f64; 2]) -> f64 {
-    if ![a, b, c].iter().all(|value| value.is_finite()) {
-        return f64::NAN;
+/// Returns [`MeshError::Infeasible`] if triangles are inverted or flat, or if quadrilaterals are not convex.
+pub(super) fn check_feasible(
+    topology: &Topology<'_>,
+    points: &[[f64; 2]],
+) -> Result<(), MeshError> {
+    let triangles = topology.bad_triangles(points)?;
+    let quadrilaterals = topology.bad_quadrilaterals(points)?;
+    match triangles.is_empty() && quadrilaterals.is_empty() {
+        true => Ok(()),
+        false => Err(MeshError::Infeasible { triangles, quadrilaterals }),
     }
-    // The differences are halved, as the difference of two large numbers may overflow.
-    let value = a + 2.0 * (to_b * (0.5 * b - 0.5 * a) + to_c * (0.5 * c - 0.5 * a));
-    value.clamp(a.min(b).min(c), a.max(b).max(c))
 }

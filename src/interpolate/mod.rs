@@ -1,6 +1,7 @@
-//! Interpolation of vertex data of a mesh, linear within its triangles, at other points.
+//! Interpolation of vertex data of a mesh at other points: linear within triangles, bilinear within quadrilaterals.
 
 mod background;
+mod element;
 mod interpolation;
 mod locate;
 

@@ -325,11 +325,10 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             let place = file.vertex_place(vertex);
             CliError::input(format!("{place}: vertex {}: {problem}", place.id))
         }
-        MeshError::Pole { triangle } => {
-            let place = file.source.triangle_location(triangle);
+        MeshError::Pole { element } => {
+            let (name, place) = named(file, element);
             CliError::input(format!(
-                "{place}: triangle {} has a pole of the sphere inside of it or on an edge, where there is no direction east",
-                place.id
+                "{place}: {name} has a pole of the sphere inside of it or on an edge, where there is no direction east"
             ))
             .with_remedy("Smooth the mesh in a projection around that pole, or with a vertex at the pole itself")
         }
