@@ -2,7 +2,7 @@
 
 use gpu_smooth::{
     Backend, Guard, Mesh, MeshError, Method, Metric, Options, Quality, Scheme, Slide, SmoothError,
-    Smoother, Targets, Untangle,
+    Smoother, Targets, Topology, Untangle,
     options::{Derivatives, PNormExponent, Paper, Precision, Rounding, WorstBy},
     targets::Surface,
     topology,
@@ -74,8 +74,7 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
         Err(error) => panic!("{error}"),
     };
     let topology = smoother.topology();
-    let bad = topology::infeasible(&outcome.points, topology.triangles()).unwrap();
-    assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
+    check_feasible(topology, &outcome.points);
     // Without lines to slide along, `misplaced` lists fixed vertices that have moved.
     let slide = slide.unwrap_or_else(|| {
         let held = (0..mesh.points.len() as u32).collect();
@@ -88,6 +87,13 @@ fn smooth_whole(bytes: &mut Bytes<'_>, mesh: &Mesh, options: Options, backend: &
     let rises = options.improve_worst.is_some();
     assert!(rises || end <= start * (1.0 + 1e-12), "f rose from {start} to {end}");
     assert!(run().unwrap().points == outcome.points, "other points the second time");
+}
+
+fn check_feasible(topology: &Topology<'_>, points: &[[f64; 2]]) {
+    let bad = topology::infeasible(points, topology.triangles()).unwrap();
+    assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
+    let bad = topology.bad_quadrilaterals(points).unwrap();
+    assert!(bad.is_empty(), "quadrilaterals {bad:?} are not convex");
 }
 
 /// The kind of result for a mesh.
@@ -148,6 +154,8 @@ fn mesh(bytes: &mut Bytes<'_>, stored: Precision) -> Mesh {
     let size = 2f64.powi(i32::from(bytes.byte() as i8) / 4);
     let offset = [0.0, 0.0, 1.0, 1e3, 1e6, -1e9][bytes.below(6)] * size;
     let disturbed = [0.0, 0.2, 0.5, 1.0, 4.0][bytes.below(5)];
+    // No cells are quadrilaterals, or all, or a half.
+    let wholes = [0, u8::MAX, 2][bytes.below(3)];
     let mut mesh = Mesh::default();
     for row in 0..=rows {
         for column in 0..=columns {
@@ -162,6 +170,17 @@ fn mesh(bytes: &mut Bytes<'_>, stored: Precision) -> Mesh {
             let a = (row * (columns + 1) + column) as u32;
             let (b, c) = (a + 1, a + columns as u32 + 1);
             let what = bytes.byte();
+            if (what ^ what >> 4) & wholes != 0 {
+                // Omits the quadrilateral, or reverses its winding.
+                let mut quadrilateral = [a, b, c + 1, c];
+                if what >> 5 == 7 {
+                    quadrilateral.reverse();
+                }
+                if what >> 3 != 9 {
+                    mesh.quadrilaterals.push(quadrilateral);
+                }
+                continue;
+            }
             let halves = match what & 1 {
                 0 => [[a, b, c], [b, c + 1, c]],
                 _ => [[a, b, c + 1], [a, c + 1, c]],
@@ -212,8 +231,7 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
     for (vertex, (old, new)) in before.iter().zip(&after).enumerate() {
         assert!(topology.free()[vertex] || old == new, "vertex {vertex} is fixed and has moved");
     }
-    let bad = topology::infeasible(&outcome.points, topology.triangles()).unwrap();
-    assert!(bad.is_empty(), "triangles {bad:?} are inverted or flat");
+    check_feasible(topology, &outcome.points);
     let f = |points: &[[f64; 2]]| {
         Quality::of(points, smoother.topology()).unwrap().f(options.scheme.base())
     };
@@ -223,17 +241,18 @@ fn smooth(mesh: &Mesh, options: &Options, backend: &Backend) -> Became {
     Became::Smoothed
 }
 
-/// Untangles a mesh with inverted triangles. The number of bad triangles must not increase, and a mesh reported as
+/// Untangles a mesh with bad elements. The number of bad triangles and corners must not increase, and a mesh reported as
 /// untangled must be valid.
 fn untangled(mesh: &Mesh, options: &Options) -> Became {
     let untangled = Untangle::new(mesh).stored(options.stored).run();
     let Ok(untangled) = untangled else { return Became::Refused };
-    assert!(untangled.left.len() <= untangled.bad_before);
+    let left = untangled.left.len() + untangled.left_quadrilaterals.len();
+    assert!(left <= untangled.bad_before);
     let mended = Mesh { points: untangled.points, ..mesh.clone() };
     match Smoother::new(&mended) {
         Ok(smoother) => {
-            // The remaining triangles are so flat that double precision cannot judge them.
-            assert!(untangled.left.len() <= smoother.beyond_precision().len());
+            // The remaining corners are so flat that double precision cannot judge them.
+            assert!(left <= smoother.beyond_precision().len());
             for (vertex, free) in smoother.topology().free().iter().enumerate() {
                 let bits = |mesh: &Mesh| mesh.points[vertex].map(f64::to_bits);
                 assert!(*free || bits(mesh) == bits(&mended), "vertex {vertex} has moved");
@@ -241,7 +260,7 @@ fn untangled(mesh: &Mesh, options: &Options) -> Became {
             Became::Untangled
         }
         Err(MeshError::Infeasible { .. }) => {
-            assert!(!untangled.left.is_empty());
+            assert!(left > 0);
             Became::StillTangled
         }
         Err(_) => Became::Refused,
