@@ -48,7 +48,7 @@ const ROWS: &[Row] = &[
         &[Format::Gmsh1, Format::Gmsh22, Format::Gmsh22Binary],
         "version 1 as text, versions 2.0 to 2.2 in text and in either byte order",
         [
-            "points, lines, quadrilaterals",
+            "points, lines",
             "physical group and geometrical entity",
             "physical groups with their names, entities",
             "first order",
@@ -68,7 +68,7 @@ const ROWS: &[Row] = &[
         &[Format::Vtk, Format::VtkBinary],
         "versions 1.0 to 5.1; unstructured grids and polygonal data; `float` and `double`",
         [
-            "vertices, lines, quadrilaterals, polygons",
+            "vertices, lines, polygons",
             "cell data of a usual name (`gmsh:physical`, `medit:ref`, `MaterialIDs`, `CellEntityIds`, `region` and so on), the first two such arrays",
             "values of that cell data; point data of one number for `--fix-array`",
             "no strips, no structured grids",
@@ -88,7 +88,7 @@ const ROWS: &[Row] = &[
         &[Format::Su2],
         "zones, markers, any order of the lists",
         [
-            "lines of markers, quadrilaterals",
+            "lines of markers",
             "zone",
             "markers by name; zones if there are several",
             "two dimensions",
@@ -98,7 +98,7 @@ const ROWS: &[Row] = &[
         &[Format::Medit],
         "dimension 2 or 3, items anywhere on lines",
         [
-            "edges, corners, required vertices and triangles, quadrilaterals",
+            "edges, corners, required vertices and triangles",
             "reference",
             "references of vertices, edges, triangles and quadrilaterals; `Corners`, `RequiredVertices`, `RequiredTriangles`",
             "",
@@ -123,7 +123,7 @@ const ROWS: &[Row] = &[
         &[Format::Ply, Format::PlyBinary],
         "either byte order, `float` and `double`, any other elements and properties",
         [
-            "edges, quadrilaterals, polygons",
+            "edges, polygons",
             "data of faces that look like regions",
             "nothing; numbers of vertices for `--fix-array`",
             "y next to x; no strips",
@@ -133,7 +133,7 @@ const ROWS: &[Row] = &[
         &[Format::Off],
         "text, with or without normals and colors, vertices anywhere on lines",
         [
-            "quadrilaterals",
+            "–",
             "–",
             "nothing",
             "each face on a line of its own; no polygons of more than four corners",
@@ -143,7 +143,7 @@ const ROWS: &[Row] = &[
         &[Format::Adcirc],
         "text as Fortran reads it: commas between numbers, items of several lines, exponents without a letter",
         [
-            "quadrilaterals",
+            "–",
             "–",
             "boundaries: `open1`, `land1`, `island2` and so on",
             "no repeat counts (`2*0.5`)",
@@ -153,7 +153,7 @@ const ROWS: &[Row] = &[
         &[Format::Sms2dm],
         "rows in any order, with z or without, keywords in capital or small letters",
         [
-            "node strings, lines, quadrilaterals",
+            "node strings, lines",
             "material",
             "materials with the names of `MAT` rows, node strings",
             "linear elements",
@@ -162,7 +162,7 @@ const ROWS: &[Row] = &[
     row(
         &[Format::Mike],
         "text, with a first row as before 2012 or since, triangles or both kinds of elements",
-        ["quadrilaterals", "–", "codes of vertices", ""],
+        ["–", "–", "codes of vertices", ""],
     ),
     row(
         &[Format::Fvcom],
@@ -178,7 +178,7 @@ const ROWS: &[Row] = &[
         &[Format::Mfem],
         "versions 1.0 to 1.3 of conforming meshes with straight edges, items anywhere on lines; vertices or `nodes` of order 1",
         [
-            "points, segments, quadrilaterals",
+            "points, segments",
             "attribute",
             "attributes of elements and of the boundary",
             "no `nodes` of other finite element spaces than `H1_2D_P1`, as curved and periodic meshes have them; coordinates of a vertex next to each other (`Ordering: 1`)",
@@ -188,7 +188,7 @@ const ROWS: &[Row] = &[
         &[Format::Jigsaw],
         "meshes of the kind EUCLIDEAN-MESH with 2 or 3 coordinates, keys in capital or small letters",
         [
-            "edges, quadrilaterals",
+            "edges",
             "tag",
             "tags of points, edges, triangles and quadrilaterals",
             "no grids, nothing on an ellipsoid",
@@ -228,7 +228,7 @@ const ROWS: &[Row] = &[
         &[Format::Exodus],
         "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4; `float` and `double`; time steps are kept",
         [
-            "bars, quadrilaterals, spheres, sides in side sets",
+            "bars, spheres, sides in side sets",
             "block",
             "blocks, side sets and node sets, with their names",
             "blocks of TRI3, QUAD4, BAR2, SPHERE and shells; netCDF-4 as described for HDF5 below",
@@ -238,7 +238,7 @@ const ROWS: &[Row] = &[
         &[Format::Ugrid],
         "netCDF classic, with 64-bit offsets, CDF-5 and netCDF-4, by UGRID 0.9 and 1.0; nets of Delft3D FM (`NetNode`, `NetLink`), and edges without faces; `float` and `double`; numbers of nodes from 0 or 1; time steps and layers are kept",
         [
-            "quadrilaterals, polygons, edges at no face",
+            "polygons, edges at no face",
             "variables of faces that look like regions",
             "nothing; variables of nodes for `--fix-array`",
             "one mesh of faces or edges; as described below; netCDF-4 as for HDF5",
@@ -248,7 +248,7 @@ const ROWS: &[Row] = &[
         &[Format::Med],
         "versions 3 and 4, of Salome, Code_Aster, gmsh and meshio, one mesh at one time",
         [
-            "PO1, SE2, QU4",
+            "PO1, SE2",
             "family",
             "groups of elements and of nodes by name, families",
             "PO1, SE2, TR3 and QU4; fields stay as they are and are not interpolated; HDF5 as described below",
@@ -268,7 +268,7 @@ const ROWS: &[Row] = &[
         &[Format::Abaqus],
         "Abaqus and CalculiX; keywords in any case, rows and keywords of several lines; with parts, an assembly and instances if one part or instance has elements",
         [
-            "lines, quadrilaterals, sides of elements in surfaces, nodes of masses, springs, connectors and elements of a user",
+            "lines, sides of elements in surfaces, nodes of masses, springs, connectors and elements of a user",
             "`ELSET` of its `*ELEMENT`, and section; where there are neither, sets",
             "element sets, node sets and surfaces by name",
             "linear triangles of the plane, shells and membranes; no nodes or elements that keywords make (`*NGEN`), `INPUT` or `*INCLUDE` have; as described below",
@@ -278,7 +278,7 @@ const ROWS: &[Row] = &[
         &[Format::Nastran],
         "bulk data in small, large and free field, mixed, with tabs, with the other sections before them or without",
         [
-            "lines, quadrilaterals, nodes of masses, springs and rigid elements",
+            "lines, nodes of masses, springs and rigid elements",
             "property",
             "properties, by the names in comments of HyperMesh, ANSA and Femap",
             "linear triangles (CTRIA3, CTRIAR); nodes in the basic coordinate system; no `INCLUDE`; as described below",
@@ -286,10 +286,22 @@ const ROWS: &[Row] = &[
     ),
 ];
 
+/// Formats whose files have no quadrilaterals. `elements.rs` of mesh-io/tests/formats compares the table with the samples of all
+/// formats.
+const TRIANGLES_ALONE: &[Format] = &[
+    Format::Triangle,
+    Format::Fvcom,
+    Format::FreeFem,
+    Format::Selafin,
+    Format::Stl,
+    Format::StlBinary,
+];
+
 /// Makes the table of formats.
 fn formats() -> String {
-    let mut table = "| format | named by | read and written | stays fixed, besides the boundary | a region has the same | \
-                     what can be named | limits | `convert` writes it as |\n|---|---|---|---|---|---|---|---|\n"
+    let mut table = "| format | named by | read and written | elements | stays fixed, besides the boundary | \
+                     a region has the same | what can be named | limits | `convert` writes it as |\n\
+                     |---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
     for Row { formats, layouts, fixed, region, named, limits } in ROWS {
         let names: Vec<String> = formats.iter().map(ToString::to_string).collect();
@@ -303,9 +315,13 @@ fn formats() -> String {
         let targets: Vec<String> = formats.iter().filter_map(|&f| tables::name_of(f)).collect();
         let targets = if targets.is_empty() { "–".to_owned() } else { targets.join(", ") };
         let (names, endings) = (names.join(", "), endings.join(", "));
+        let elements = match formats.iter().any(|format| TRIANGLES_ALONE.contains(format)) {
+            true => "triangles",
+            false => "triangles, quadrilaterals",
+        };
         writeln!(
             table,
-            "| {names} | {endings} | {layouts} | {fixed} | {region} | {named} | {limits} | {targets} |"
+            "| {names} | {endings} | {layouts} | {elements} | {fixed} | {region} | {named} | {limits} | {targets} |"
         )
         .unwrap();
     }

@@ -10,6 +10,7 @@ mod convert;
 mod damage;
 mod data;
 mod dialects;
+mod elements;
 mod ends;
 mod errors;
 mod exodus;
