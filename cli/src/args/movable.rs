@@ -36,9 +36,9 @@ pub(crate) struct MoveArgs {
     /// Fix the vertices in this box
     #[arg(long, value_name = "X0,Y0,X1,Y1", help_heading = HEADING, value_parser = parse::corners, allow_hyphen_values = true)]
     pub(crate) fix_box: Vec<[[f64; 2]; 2]>,
-    /// Keep all vertices of quadrilaterals where they are, or let them move, as those of triangles do. No quadrilateral then loses
-    /// its convexity, and each becomes as square as it can be. Such runs are on the CPU
-    #[arg(long, value_name = "keep|move", help_heading = HEADING, default_value = "keep", hide_possible_values = true)]
+    /// Let the vertices of quadrilaterals move as those of triangles do (move), or keep all of them where they are (keep). No
+    /// quadrilateral loses its convexity, and each becomes as square as it can be
+    #[arg(long, value_name = "move|keep", help_heading = HEADING, default_value = "move", hide_possible_values = true)]
     pub(crate) quadrilaterals: Quadrilaterals,
     /// Boundary layers that stay: those found above walls (auto), none, the first N rows (rows=N), or all vertices within a
     /// distance of walls (within=DISTANCE), in the unit of the mesh. Names or tags of groups behind a comma limit the walls

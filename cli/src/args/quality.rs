@@ -33,9 +33,9 @@ pub(crate) struct QualityArgs {
     /// Number of worst elements to list; of worst edges, if the first measure is orthogonality or flow-link
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) worst: usize,
-    /// Measure the triangles of a mesh alone (keep), or its quadrilaterals too (move), as runs with the same option do.
+    /// Measure triangles and quadrilaterals (move), or the triangles alone (keep), as runs with the same option do.
     /// Quadrilaterals of a mesh without triangles are always measured
-    #[arg(long, value_name = "keep|move", default_value = "keep", hide_possible_values = true)]
+    #[arg(long, value_name = "move|keep", default_value = "move", hide_possible_values = true)]
     pub(crate) quadrilaterals: Quadrilaterals,
     /// Show the statistics of each region too: physical groups, materials, references, attributes
     #[arg(long)]

@@ -97,7 +97,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
         let of_quadrilaterals = before.source.quadrilaterals().as_flattened();
         if !before.domain.moves_quadrilaterals() && of_quadrilaterals.iter().any(is_held) {
             list.push(
-                "if they moved in a run with --quadrilaterals move, give --quadrilaterals move here too"
+                "if they moved in a run without --quadrilaterals keep, leave the option out here too"
                     .to_owned(),
             );
         }
@@ -107,6 +107,12 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
                 "if they moved in a run with --free-lines, give --free-lines here too".to_owned(),
             );
         }
+    }
+    if !proof.concave.is_empty() {
+        list.push(
+            "if the run kept the quadrilaterals by --quadrilaterals keep, give the option here too"
+                .to_owned(),
+        );
     }
     if explain::are_across(&after, bad) {
         list.push("--surface sphere continues longitudes across the meridian at which longitudes wrap, such as 180 degrees".to_owned());

@@ -35,7 +35,7 @@ fn read_source(path: &Path, request: &ReadRequest) -> Result<MeshFile, CliError>
     Ok(options.from_bytes(Path::new("standard input"), bytes)?)
 }
 
-/// Returns the error for a mesh that has quadrilaterals and no triangle, for a command that takes them on request.
+/// Returns the error for a mesh that has quadrilaterals and no triangle, for a run that keeps quadrilaterals.
 fn quadrilaterals_alone(file: &MeshFile) -> CliError {
     let (path, vertices) = (file.path().display(), file.points().len());
     let quadrilaterals = match file.quadrilaterals().len() {
@@ -43,7 +43,7 @@ fn quadrilaterals_alone(file: &MeshFile) -> CliError {
         count => format!("{count} quadrilaterals"),
     };
     CliError::input(format!("{path}: {vertices} vertices and {quadrilaterals}, but no triangle"))
-        .with_remedy("Runs move the vertices of quadrilaterals by --quadrilaterals move, and keep them otherwise")
+        .with_remedy("Let their vertices move: leave out --quadrilaterals keep")
 }
 
 /// Returns whether a path denotes standard input or output.

@@ -341,7 +341,7 @@ fn a_browser_colors_edges_between_pale_triangles() {
 #[ignore = "needs a browser: GPU_SMOOTH_BROWSER=chromium cargo test --test cli browser -- --ignored"]
 fn a_browser_draws_quadrilaterals_in_gray() {
     let folder = Folder::new(&[("in.off", super::html::MIXED)]);
-    folder.line("quality in.off --html page.html").clean();
+    folder.line("quality in.off --quadrilaterals keep --html page.html").clean();
     let picture = picture(&folder, "", LIGHT, [1000, 1000]);
     let gray = picture.count(|pixel| pixel == [196, 198, 201]);
     let good = picture.count(|[r, g, b]| r > 200 && g > 200 && b < 80);

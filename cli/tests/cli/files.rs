@@ -83,11 +83,22 @@ fn rows_moved(before: &str, after: &str, layout: Layout) -> usize {
 #[track_caller]
 fn assert_only_coordinates_change(
     folder: &Folder,
+    names: [&str; 2],
+    layout: Layout,
+    notes: &[&str],
+) {
+    assert_change_by(&[], folder, names, layout, notes);
+}
+
+/// Runs with further options, and makes the checks of [`assert_only_coordinates_change`].
+fn assert_change_by(
+    options: &[&str],
+    folder: &Folder,
     [input, output]: [&str; 2],
     layout: Layout,
     notes: &[&str],
 ) {
-    let run = folder.run([input, output, "--engine", "cpu"]);
+    let run = folder.run([&[input, output, "--engine", "cpu"], options].concat());
     assert_eq!(run.code, Some(0), "{}", run.err);
     let expected: String = notes.iter().map(|note| format!("gpu-smooth: {note}\n")).collect();
     assert_eq!(run.err, expected);
@@ -294,7 +305,7 @@ fn vertices_on_poly_segments_stay_and_the_poly_is_written_along() {
 }
 
 #[test]
-fn vertices_of_quadrilaterals_stay() {
+fn vertices_of_quadrilaterals_stay_on_request() {
     // Two triangles in the middle of the mesh that form a rhombus become one quadrilateral.
     let mut mesh = disturbed();
     let kept: Vec<_> = mesh.triangles.drain(..).collect();
@@ -318,7 +329,8 @@ fn vertices_of_quadrilaterals_stay() {
     );
     let folder = Folder::new(&[("in.msh", &text)]);
     let note = "2 quadrilaterals: their vertices stay fixed";
-    assert_only_coordinates_change(&folder, ["in.msh", "out.msh"], Layout::Gmsh22, &[note]);
+    let keep = ["--quadrilaterals", "keep"];
+    assert_change_by(&keep, &folder, ["in.msh", "out.msh"], Layout::Gmsh22, &[note]);
     let [before, after] = ["in.msh", "out.msh"].map(|name| folder.mesh(name));
     for v in quads.into_iter().flatten() {
         assert_eq!(before.points[v as usize], after.points[v as usize]);

@@ -352,10 +352,10 @@ pub(crate) const MIXED: &str = "OFF\n9 6 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n0.5 1.2 
     3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n4 1 5 6 2\n4 3 2 7 8\n";
 
 #[test]
-fn a_page_shows_quadrilaterals_beside_the_triangles() {
+fn a_page_shows_kept_quadrilaterals_beside_the_triangles() {
     let folder = Folder::new(&[("in.off", MIXED)]);
-    let (of_run, run) = page(&folder, "in.off out.off");
-    let (of_mesh, mesh) = page_of(&folder, "quality in.off");
+    let (of_run, run) = page(&folder, "in.off out.off --quadrilaterals keep");
+    let (of_mesh, mesh) = page_of(&folder, "quality in.off --quadrilaterals keep");
     for (page, data) in [(of_run, run), (of_mesh, mesh)] {
         assert_holds(
             &page,

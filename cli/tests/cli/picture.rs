@@ -460,11 +460,12 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
 #[test]
 fn quadrilaterals_are_drawn_in_gray_without_a_boundary_to_triangles() {
     let folder = Folder::new(&[("in.off", MIXED)]);
-    folder.line("quality in.off --picture p.svg --picture-size 800").clean();
+    let line = "quality in.off --quadrilaterals keep --picture-size 800";
+    folder.line(&format!("{line} --picture p.svg")).clean();
     let svg = folder.text("p.svg");
     assert_holds(&svg, &[">fixed quadrilateral</text>"]);
     assert!(!svg.contains("fixed vertex"), "{svg}");
-    folder.line("quality in.off --picture p.png --picture-size 800").clean();
+    folder.line(&format!("{line} --picture p.png")).clean();
     let image = Image::read(&folder, "p.png");
     // All colored and gray pixels above the legend.
     let mesh = |[_, row]: &[usize; 2]| *row < image.height - 90;

@@ -1,4 +1,4 @@
-//! Meshes with quadrilaterals, whose vertices stay by default, and move by `--quadrilaterals move`.
+//! Meshes with quadrilaterals, whose vertices move, and stay by `--quadrilaterals keep`.
 
 use super::{Folder, assert_holds};
 use std::fmt::Write;
@@ -36,20 +36,20 @@ fn vtk(n: usize, is_cut: impl Fn(usize) -> bool, region: impl Fn(usize) -> usize
 }
 
 #[test]
-fn quadrilaterals_alone_move_on_request_and_are_refused_otherwise() {
+fn quadrilaterals_alone_move_and_are_refused_if_all_are_kept() {
     let folder = Folder::new(&[("in.vtk", &vtk(10, |_| false, |_| 1))]);
-    let refused = folder.line("in.vtk out.vtk --engine cpu");
+    let refused = folder.line("in.vtk out.vtk --engine cpu --quadrilaterals keep");
     refused.refused(&[
         "121 vertices and 100 quadrilaterals, but no triangle",
-        "--quadrilaterals move",
+        "leave out --quadrilaterals keep",
     ]);
-    let run = folder.line("in.vtk out.vtk --engine cpu --quadrilaterals move --report r.json");
+    let run = folder.line("in.vtk out.vtk --engine cpu --report r.json");
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert_holds(&run.err, &["100 quadrilaterals, whose vertices may move"]);
     assert_holds(&run.out, &["121 vertices (81 free, 4 colors), 100 quadrilaterals", "1.00000"]);
     let report = folder.json("r.json");
     assert_eq!(report["mesh"]["quadrilaterals"], 100);
-    let compared = folder.line("compare in.vtk out.vtk --quadrilaterals move");
+    let compared = folder.line("compare in.vtk out.vtk");
     assert_eq!(compared.code, Some(0), "{}", compared.err);
     assert_holds(
         &compared.out,
@@ -58,21 +58,20 @@ fn quadrilaterals_alone_move_on_request_and_are_refused_otherwise() {
 }
 
 #[test]
-fn vertices_of_mixed_meshes_move_on_request_and_compare_knows() {
+fn vertices_of_mixed_meshes_move_or_stay_and_compare_knows() {
     let cut = |k: usize| k % 10 < 5;
     let folder = Folder::new(&[("in.vtk", &vtk(10, cut, |_| 1))]);
-    folder.line("in.vtk kept.vtk --engine cpu --quiet").clean();
-    folder.line("in.vtk moved.vtk --engine cpu --quiet --quadrilaterals move");
-    let kept = folder.line("compare in.vtk kept.vtk");
+    folder.line("in.vtk kept.vtk --engine cpu --quiet --quadrilaterals keep").clean();
+    folder.line("in.vtk moved.vtk --engine cpu --quiet").clean();
+    let kept = folder.line("compare in.vtk kept.vtk --quadrilaterals keep");
     assert_holds(&kept.out, &["36 of 121 vertices have moved", "none of 100 triangles"]);
-    let moved = folder.line("compare in.vtk moved.vtk --quadrilaterals move");
+    let moved = folder.line("compare in.vtk moved.vtk");
     assert_holds(
         &moved.out,
         &["81 of 121", "none of 100 triangles is inverted or flat, and each of 50"],
     );
-    let unlike = folder.line("compare in.vtk moved.vtk");
-    unlike
-        .refused(&["45 vertices have moved that must not", "give --quadrilaterals move here too"]);
+    let unlike = folder.line("compare in.vtk moved.vtk --quadrilaterals keep");
+    unlike.refused(&["45 vertices have moved that must not", "leave the option out here too"]);
 }
 
 #[test]
@@ -80,15 +79,13 @@ fn vertices_between_regions_of_quadrilaterals_stay() {
     let halves = |k: usize| usize::from(k % 10 < 5);
     for cut in [(|_| false) as fn(usize) -> bool, |k| k % 10 < 5, |k| k % 3 == 0] {
         let folder = Folder::new(&[("in.vtk", &vtk(10, cut, halves))]);
-        let run = folder.line("in.vtk out.vtk --engine cpu --quadrilaterals move");
+        let run = folder.line("in.vtk out.vtk --engine cpu");
         assert_holds(&run.err, &["9 vertices between regions stay fixed"]);
-        let compared = folder.line("compare in.vtk out.vtk --quadrilaterals move");
+        let compared = folder.line("compare in.vtk out.vtk");
         assert_holds(&compared.out, &["72 of 121 vertices have moved"]);
-        let freed =
-            folder.line("in.vtk free.vtk --engine cpu --quadrilaterals move --free-interfaces");
+        let freed = folder.line("in.vtk free.vtk --engine cpu --free-interfaces");
         assert_eq!(freed.code, Some(0), "{}", freed.err);
-        let compared =
-            folder.line("compare in.vtk free.vtk --quadrilaterals move --free-interfaces");
+        let compared = folder.line("compare in.vtk free.vtk --free-interfaces");
         assert_holds(&compared.out, &["81 of 121 vertices have moved"]);
     }
 }
@@ -98,7 +95,7 @@ fn a_concave_quadrilateral_is_refused_with_its_place() {
     let text = vtk(4, |_| false, |_| 1);
     let line = text.lines().nth(5 + 6).unwrap();
     let folder = Folder::new(&[("in.vtk", &text.replacen(line, "1.9 1.9 0", 1))]);
-    let run = folder.line("in.vtk out.vtk --engine cpu --quiet --quadrilaterals move");
+    let run = folder.line("in.vtk out.vtk --engine cpu --quiet");
     run.refused(&[
         "in.vtk:",
         "quadrilateral ",
@@ -106,9 +103,9 @@ fn a_concave_quadrilateral_is_refused_with_its_place() {
         "--untangle",
         "--quadrilaterals keep",
     ]);
-    let line = "in.vtk out.vtk --engine cpu --quiet --quadrilaterals move --untangle";
+    let line = "in.vtk out.vtk --engine cpu --quiet --untangle";
     assert_eq!(folder.line(line).code, Some(0));
-    let compared = folder.line("compare in.vtk out.vtk --quadrilaterals move");
+    let compared = folder.line("compare in.vtk out.vtk");
     assert_holds(&compared.out, &["each of 16 quadrilaterals is convex"]);
 }
 
@@ -126,16 +123,14 @@ fn stages_for_quadrilaterals_work_from_the_command_line() {
         "--scheme acute",
         "--scheme edge+imr",
         "--fix-box 0,0,3,3",
+        "--surface sphere",
         "--picture p.png",
         "--html p.html",
     ] {
-        let run = folder.line(&format!(
-            "in.vtk out.vtk --force --engine cpu --quiet --quadrilaterals move {options}"
-        ));
+        let run = folder.line(&format!("in.vtk out.vtk --force --engine cpu --quiet {options}"));
         assert_eq!(run.code, Some(0), "{options}: {}", run.err);
         let slide = if options == "--slide" { options } else { "" };
-        let compared =
-            folder.line(&format!("compare in.vtk out.vtk --quiet --quadrilaterals move {slide}"));
+        let compared = folder.line(&format!("compare in.vtk out.vtk --quiet {slide}"));
         assert_eq!(compared.code, Some(0), "{options}: {}", compared.err);
     }
 }
@@ -144,12 +139,12 @@ fn stages_for_quadrilaterals_work_from_the_command_line() {
 fn pictures_color_quadrilaterals_that_move() {
     let folder = Folder::new(&[("in.vtk", &vtk(8, |k| k % 8 < 4, |_| 1))]);
     let line = "in.vtk out.vtk --force --engine cpu --quiet --picture p.svg";
-    assert_eq!(folder.line(line).code, Some(0));
+    assert_eq!(folder.line(&format!("{line} --quadrilaterals keep")).code, Some(0));
     assert!(folder.text("p.svg").contains("fixed quadrilateral"));
-    assert_eq!(folder.line(&format!("{line} --quadrilaterals move")).code, Some(0));
+    assert_eq!(folder.line(line).code, Some(0));
     let text = folder.text("p.svg");
     assert!(!text.contains("quadrilateral") && text.contains("96 elements"), "{}", &text[..2000]);
-    let line = format!("{line} --quadrilaterals move --picture-measure size-ratio");
+    let line = format!("{line} --picture-measure size-ratio");
     assert_eq!(folder.line(&line).code, Some(0));
     assert_holds(&folder.text("p.svg"), &["quadrilateral", "worst elements"]);
 }
@@ -175,9 +170,9 @@ fn quality_measures_and_lists_quadrilaterals() {
     assert_holds(&run.out, &["  quadrilateral ", "med-aspect-frobenius", "inverted or concave"]);
     assert!(!run.out.contains("size-ratio"), "{}", run.out);
 
-    let run = folder.line("quality mixed.vtk --json");
+    let run = folder.line("quality mixed.vtk --json --quadrilaterals keep");
     assert_eq!(serde_json::from_str::<serde_json::Value>(&run.out).unwrap()["triangles"], 64);
-    let line = "quality mixed.vtk --quadrilaterals move --json --by-region --threshold shape<0.99";
+    let line = "quality mixed.vtk --json --by-region --threshold shape<0.99";
     let run = folder.line(line);
     assert_eq!(run.code, Some(1));
     let told: serde_json::Value = serde_json::from_str(&run.out).unwrap();
@@ -192,7 +187,7 @@ fn quality_measures_and_lists_quadrilaterals() {
     let violating = threshold["elements"].as_u64().unwrap();
     assert!((33..=96).contains(&violating), "{threshold}");
     // Both kinds are among the worst elements, each with its corners.
-    let run = folder.line("quality mixed.vtk --quadrilaterals move --json --worst 96");
+    let run = folder.line("quality mixed.vtk --json --worst 96");
     let told: serde_json::Value = serde_json::from_str(&run.out).unwrap();
     let corners = |key: &str, corners: usize| {
         let worst = told["worst"].as_array().unwrap().iter();
@@ -202,7 +197,7 @@ fn quality_measures_and_lists_quadrilaterals() {
     assert_eq!([corners("triangle", 3), corners("quadrilateral", 4)], [64, 32]);
 
     // Limits of solvers are of triangles.
-    let run = folder.line("quality mixed.vtk --quadrilaterals move --for fea --json");
+    let run = folder.line("quality mixed.vtk --for fea --json");
     let told: serde_json::Value = serde_json::from_str(&run.out).unwrap();
     for limit in told["profile"]["limits"].as_array().unwrap() {
         assert_eq!(limit["triangles"], 64, "{limit}");
@@ -213,7 +208,7 @@ fn quality_measures_and_lists_quadrilaterals() {
     // Each vertex inside of `block.vtk` is in four quadrilaterals.
     let run = folder.line("quality block.vtk --threshold neighbors>4 --threshold neighbors<4 -q");
     assert_eq!((run.code, run.out), (Some(0), String::new()));
-    let run = folder.line("quality mixed.vtk --quadrilaterals move --for few.toml");
+    let run = folder.line("quality mixed.vtk --for few.toml");
     assert_eq!(run.code, Some(0), "{}", run.err);
 
     let run = folder.line("quality concave.vtk");
