@@ -5,11 +5,14 @@
     cargo build --release -p gpu-smooth-cli && cargo build --release -p gpu-smooth-examples --example make_mesh --example live
     docs/pictures.py target/release/gpu-smooth target/release/examples chromium [MESHES]
 
-MESHES is a folder with the meshes of docs/targets.md, whose pictures are left out without the folder:
+MESHES is a folder with meshes whose pictures are left out without the folder. It has those of docs/targets.md:
 
 - corie_hgrid.gr3: examples/Exp3_CORIE_LSC2/inputs/hgrid.gr3 of github.com/wenfanwu/schism-toolbox
 - naca0012_inv.su2: cont_adj_euler/naca0012/mesh_NACA0012_inv.su2 of github.com/su2code/TestCases
 - multi-mat.mesh: libexamples/mmg2d/IsosurfDiscretization_lsOnly/multi-mat.mesh of github.com/MmgTools/mmg
+
+and with naca0012_lam_hybrid.su2 of docs/guide.md: navierstokes/naca0012/mesh_NACA0012_lam_hybrid_v1.su2 of the same repository as the other
+airfoil.
 
 Pictures have palettes of few colors, as each version of a picture stays in the repository.
 """
@@ -79,7 +82,14 @@ def main():
         sweep = ("--engine", "cpu", "--max-sweeps", "1", "--force", "--picture-size", "400", "--picture-measure", "imr")
         run(program, "lattice.node", "out.node", *sweep, "--picture", "sweep.svg")
         shutil.copy(folder / "sweep.svg", DOCS)
+        write_paved(folder / "coarse", folder / "part.off")
+        run(program, "part.off", "paved.off", "--engine", "cpu", "--force", "--picture", "paved.png", "--picture-size", "860")
+        save(folder / "paved.png", 160)
         if meshes:
+            shutil.copy(meshes / "naca0012_lam_hybrid.su2", folder / "airfoil.su2")
+            part = ("--picture", "hybrid.png", "--picture-size", "860", "--picture-box=-0.15,-0.3,0.45,0.3")
+            run(program, "airfoil.su2", "out.su2", "--engine", "cpu", "--force", *part)
+            save(folder / "hybrid.png", 160)
             for name, (mesh, part) in TARGETS.items():
                 save(by_target(run, program, folder, meshes / mesh, part), 160, name)
 
@@ -123,6 +133,41 @@ def write_lattice(stem):
     lines = [f"{k} {a} {b} {c}" for k, (a, b, c) in enumerate(triangles, 1)]
     stem.with_suffix(".node").write_text("\n".join(["16 2 0 0", *rows]) + "\n")
     stem.with_suffix(".ele").write_text("\n".join(["18 3 0", *lines]) + "\n")
+
+
+def write_paved(stem, path):
+    """Joins triangles of a Triangle mesh in pairs to quadrilaterals, the most square pairs first, and writes an OFF."""
+    words = lambda ending: [line.split() for line in stem.with_suffix(ending).read_text().splitlines()]
+    rows = [row for row in words(".node") if row and row[0] != "#"]
+    points = [tuple(map(float, row[1:3])) for row in rows[1:]]
+    first = int(rows[1][0])
+    rows = [row for row in words(".ele") if row and row[0] != "#"]
+    triangles = [tuple(int(word) - first for word in row[1:4]) for row in rows[1:]]
+    sides = {}
+    for k, t in enumerate(triangles):
+        for i in range(3):
+            sides[t[i], t[(i + 1) % 3]] = (k, t[(i + 2) % 3])
+    pairs = []
+    for (a, b), (k, c) in sides.items():
+        if a < b and (b, a) in sides:
+            other, d = sides[b, a]
+            quadrilateral = (a, d, b, c)
+            corners = [tuple(points[quadrilateral[(i + j) % 4]] for j in (0, 1, 3)) for i in range(4)]
+            edges = [((q[0] - p[0], q[1] - p[1]), (r[0] - p[0], r[1] - p[1])) for p, q, r in corners]
+            areas = [u[0] * v[1] - u[1] * v[0] for u, v in edges]
+            if min(areas) > 0:
+                worst = max((u[0] ** 2 + u[1] ** 2 + v[0] ** 2 + v[1] ** 2) / (2 * area) for (u, v), area in zip(edges, areas))
+                pairs.append((worst, k, other, quadrilateral))
+    used, faces = set(), []
+    for worst, k, other, quadrilateral in sorted(pairs):
+        if worst < 2 and k not in used and other not in used:
+            used |= {k, other}
+            faces.append(quadrilateral)
+    faces += [t for k, t in enumerate(triangles) if k not in used]
+    lines = ["OFF", f"{len(points)} {len(faces)} 0"]
+    lines += [f"{x!r} {y!r} 0" for x, y in points]
+    lines += [" ".join(map(str, (len(face), *face))) for face in faces]
+    path.write_text("\n".join(lines) + "\n")
 
 
 def by_target(run, program, folder, mesh, part):
