@@ -112,7 +112,7 @@ impl<'a> Measured<'a> {
         self.surface
     }
 
-    /// Computes the size ratios and the worst edges of all triangles if `measures` need them, before any triangle is
+    /// Computes the size ratios and the worst edges of all elements if `measures` need them, before any element is
     /// measured. Lazy computation inside a parallel loop could deadlock: the scheduler could give a thread that waits for
     /// the ratios a task that also waits.
     pub(crate) fn prepare(&self, measures: &[Measure]) {
@@ -150,7 +150,13 @@ impl<'a> Measured<'a> {
         let four = &corners.of_quadrilaterals().as_chunks::<4>().0[index];
         let points = four.map(|[own, ..]| self.points[own as usize]);
         let lengths = self.surface.lengths(points.iter().map(|[_, y]| y / 4.0).sum());
-        Quadrilateral::new(points, lengths, four.each_ref().map(of_corner))
+        let mut quadrilateral = Quadrilateral::new(points, lengths, four.each_ref().map(of_corner));
+        let element = self.topology.triangles().len() + index;
+        if let Some(ratios) = self.size_ratios.get() {
+            quadrilateral.size_ratio = ratios[element];
+        }
+        quadrilateral.worst_edges = self.worst_edges.get().map(|edges| edges[element]);
+        quadrilateral
     }
 
     /// Calls `visit` with the companion and the value of each of `measures` that the element `index` has. The companion of a
@@ -198,8 +204,8 @@ impl<'a> Measured<'a> {
         collect(self.count(), |index| self.prepared_value(measure, index))
     }
 
-    /// Returns the edges between two triangles with their measures, in the order of the triangle with the smaller index.
-    /// Where more than two triangles share an edge, each pair of them has an entry.
+    /// Returns the edges between two elements with their measures, in the order of the element with the smaller number.
+    /// Where more than two elements share an edge, each pair of them has an entry.
     pub fn edges(&self) -> Vec<InnerEdge> {
         inner_edges(self.surface, self.points, self.topology)
     }

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
+use crate::measure::edges::WorstEdges;
 use crate::measure::triangle::{
     Triangle, difference, dot, largest, length, power_of_two, scaled, unbounded,
 };
@@ -21,6 +22,10 @@ pub(crate) struct Quadrilateral {
     doubled_areas: [f64; 4],
     /// The corner triangles of the vertices, for metrics.
     corners: [Triangle; 4],
+    /// Largest ratio of areas between the quadrilateral and a neighbor. NaN if the measure is not asked for.
+    pub(crate) size_ratio: f64,
+    /// The worst values of the edges. `None` if no measure of edges is asked for.
+    pub(crate) worst_edges: Option<WorstEdges>,
     /// Smallest and largest angle in degrees. Computed on first use, as angles take longer than all other quantities.
     angles: OnceCell<[f64; 2]>,
 }
@@ -54,6 +59,8 @@ impl Quadrilateral {
             diagonals,
             doubled_areas: [0, 1, 2, 3].map(doubled_area),
             corners,
+            size_ratio: f64::NAN,
+            worst_edges: None,
             angles: OnceCell::new(),
         }
     }

@@ -2,7 +2,7 @@
 //! [`Measure::ALL`].
 
 use crate::measure::definition::{Better, Definition, QuadrilateralDefinition};
-use crate::measure::edges::EQUILATERAL;
+use crate::measure::edges::{EQUILATERAL, SQUARE, WorstEdges};
 use crate::measure::quadrilateral::Quadrilateral;
 use crate::measure::triangle::{LEAST_SKEWNESS, Triangle};
 use crate::metric::Metric;
@@ -211,9 +211,9 @@ measures! {
         source: "SCHISM, grid-generation.md, Mesh quality",
         quadrilateral: None,
     };
-    /// Jump of the area to a neighbor: the largest ratio of larger to smaller area among the triangles across the three
-    /// edges. 1 for a triangle without neighbors. Quadrilaterals lack the measure and do not count as neighbors.
-    SizeRatio = |t| t.size_ratio, no_value, Definition {
+    /// Jump of the area to a neighbor: the largest ratio of larger to smaller area among the elements across the
+    /// edges. 1 for an element without neighbors.
+    SizeRatio = |t| t.size_ratio, |q| q.size_ratio, Definition {
         name: "size-ratio",
         formula: "max over the neighbors N across an edge of max(S / S_N, S_N / S)",
         unit: "",
@@ -221,11 +221,11 @@ measures! {
         ideal: 1.0,
         better: Better::Lower,
         source: "ANSYS Fluent User's Guide, Mesh Quality: cell size change, as the larger over the smaller area",
-        quadrilateral: None,
+        quadrilateral: of_quadrilateral("as of a triangle", FROM_ONE, 1.0),
     };
-    /// The worst orthogonality of an edge of the triangle; see [`InnerEdge`](crate::measure::InnerEdge). 0 for a triangle
-    /// without neighbors. Quadrilaterals lack the measure and do not count as neighbors.
-    Orthogonality = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.orthogonality), no_value, Definition {
+    /// The worst orthogonality of an edge of the element; see [`InnerEdge`](crate::measure::InnerEdge). 0 for an element
+    /// without neighbors.
+    Orthogonality = |t| orthogonality(t.worst_edges), |q| orthogonality(q.worst_edges), Definition {
         name: "orthogonality",
         formula: "max over the neighbors of |cos| between the shared edge and the segment between both circumcenters",
         unit: "",
@@ -233,11 +233,11 @@ measures! {
         ideal: 0.0,
         better: Better::Lower,
         source: MESHKERNEL,
-        quadrilateral: None,
+        quadrilateral: of_quadrilateral("as of a triangle", [0.0, 1.0], 0.0),
     };
-    /// The shortest flow link of the triangle; see [`InnerEdge`](crate::measure::InnerEdge). 0.877 for a triangle without
-    /// neighbors. Quadrilaterals lack the measure and do not count as neighbors.
-    FlowLink = |t| t.worst_edges.map_or(f64::NAN, |worst| worst.flow_link), no_value, Definition {
+    /// The shortest flow link of the element; see [`InnerEdge`](crate::measure::InnerEdge). 0.877 for an element without
+    /// neighbors, and 1 between squares.
+    FlowLink = |t| flow_link(t.worst_edges), |q| flow_link(q.worst_edges), Definition {
         name: "flow-link",
         formula: "min over the neighbors N of the distance of both circumcenters / ((√S + √S_N) / 2)",
         unit: "",
@@ -245,8 +245,16 @@ measures! {
         ideal: EQUILATERAL,
         better: Better::Higher,
         source: MESHKERNEL,
-        quadrilateral: None,
+        quadrilateral: of_quadrilateral("as of a triangle", [0.0, f64::INFINITY], SQUARE),
     };
+}
+
+fn orthogonality(worst: Option<WorstEdges>) -> f64 {
+    worst.map_or(f64::NAN, |worst| worst.orthogonality)
+}
+
+fn flow_link(worst: Option<WorstEdges>) -> f64 {
+    worst.map_or(f64::NAN, |worst| worst.flow_link)
 }
 
 const fn of_metric(metric: Metric) -> Definition {

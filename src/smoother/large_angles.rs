@@ -53,8 +53,9 @@ impl Aim for ToAcute {
             edge.flow_link < SHORT_LINK || edge.orthogonality > FAR_FROM_ORTHOGONAL
         };
         let edges = inner_edges(movable.surface, points, topology);
-        let bad = edges.iter().filter(|edge| is_bad(edge)).flat_map(|edge| edge.triangles);
-        bad.map(|t| topology.triangles()[t as usize]).collect()
+        let bad = edges.iter().filter(|edge| is_bad(edge)).flat_map(|edge| edge.elements);
+        // Quadrilaterals have no penalties on large angles.
+        bad.filter_map(|element| topology.triangles().get(element as usize).copied()).collect()
     }
 }
 

@@ -149,7 +149,7 @@ impl ProfileReport {
         if self.quadrilaterals > 0 {
             let count = self.quadrilaterals;
             lines.push(format!(
-                "the limits are of triangles: {count} quadrilaterals have no verdict"
+                "the limits of elements are of triangles: {count} quadrilaterals have no verdict"
             ));
         }
         if !self.reasons.is_empty() {

@@ -54,7 +54,7 @@ pub(crate) fn reasons(profile: &Profile, quantities: &Quantities<'_>) -> Vec<Rea
 
 /// Returns the first reason, in the order of [`WhyLarge::ALL`], that holds for a triangle at an edge.
 fn reason(quantities: &Quantities<'_>, edge: &InnerEdge) -> Option<WhyLarge> {
-    let of_triangles = edge.triangles.map(|t| quantities.why_large(t as usize));
+    let of_triangles = edge.elements.map(|index| quantities.why_large(index as usize));
     WhyLarge::ALL.into_iter().find(|why| of_triangles.contains(&Some(*why)))
 }
 

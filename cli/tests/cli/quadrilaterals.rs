@@ -204,7 +204,7 @@ fn quality_measures_and_lists_quadrilaterals() {
         assert!(limit["worst"]["triangle"].is_u64(), "{limit}");
     }
     let run = folder.line("quality block.vtk --for fea");
-    assert_holds(&run.out, &["the limits are of triangles: 64 quadrilaterals have no verdict"]);
+    assert_holds(&run.out, &["the limits of elements are of triangles: 64 quadrilaterals have no verdict"]);
     // Each vertex inside of `block.vtk` is in four quadrilaterals.
     let run = folder.line("quality block.vtk --threshold neighbors>4 --threshold neighbors<4 -q");
     assert_eq!((run.code, run.out), (Some(0), String::new()));

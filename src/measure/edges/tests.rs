@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::Mesh;
-use crate::measure::Measured;
+use crate::measure::{Measure, Measured};
 
 fn edges_of(surface: Surface, points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<InnerEdge> {
     let mesh = Mesh { points: points.to_vec(), triangles: triangles.to_vec(), ..Mesh::default() };
@@ -20,7 +20,7 @@ fn equilateral_triangles_are_orthogonal_and_their_link_is_long() {
         let [edge] = edges_of(Surface::Plane, &points, &[[0, 1, 2], [1, 0, 3]])[..] else {
             panic!()
         };
-        assert_eq!((edge.vertices, edge.triangles), ([0, 1], [0, 1]));
+        assert_eq!((edge.vertices, edge.elements), ([0, 1], [0, 1]));
         assert!(edge.orthogonality < 1e-10, "{edge:?}");
         assert!((edge.flow_link - EQUILATERAL).abs() < 1e-9, "{edge:?}");
         assert!((edge.smoothness - 1.0).abs() < 1e-9, "{edge:?}");
@@ -104,7 +104,7 @@ fn the_worst_edges_of_triangles_are_those_of_the_list() {
     assert_eq!(edges.len(), 5);
     let worst = worst_edges(Surface::Plane, &points, &topology);
     for (t, worst) in worst.iter().enumerate() {
-        let own = edges.iter().filter(|edge| edge.triangles.contains(&(t as u32)));
+        let own = edges.iter().filter(|edge| edge.elements.contains(&(t as u32)));
         let expected = own.fold((0.0f64, f64::INFINITY), |(most, least), edge| {
             (most.max(edge.orthogonality), least.min(edge.flow_link))
         });
@@ -264,5 +264,105 @@ fn measures_are_those_of_meshkernel() {
         for (link, expected) in links.iter().zip(known.flow_links) {
             assert!((link - expected).abs() < 1e-9, "{link} for {expected}");
         }
+    }
+}
+
+/// A mesh of seven quadrilaterals and four triangles.
+fn mixed() -> Mesh {
+    let points = vec![
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [1.2, 1.1],
+        [0.1, 0.9],
+        [2.1, 0.1],
+        [2.2, 1.3],
+        [0.0, 2.0],
+        [1.1, 2.2],
+        [2.3, 2.4],
+        [-1.0, 0.1],
+        [-1.1, 1.0],
+        [-0.9, 2.1],
+        [0.1, -1.0],
+        [1.05, -1.1],
+        [2.0, -0.9],
+        [-1.0, -1.1],
+    ];
+    let triangles = vec![[2, 5, 8], [2, 8, 7], [13, 14, 4], [13, 4, 1]];
+    let quadrilaterals = vec![
+        [0, 1, 2, 3],
+        [1, 4, 5, 2],
+        [3, 2, 7, 6],
+        [9, 0, 3, 10],
+        [10, 3, 6, 11],
+        [12, 13, 1, 0],
+        [15, 12, 0, 9],
+    ];
+    Mesh { points, triangles, quadrilaterals, ..Mesh::default() }
+}
+
+/// The ends of each edge inside of [`mixed`], with orthogonality and smoothness by MeshKernel 8.3: in the plane, and with
+/// coordinates of 0.05 degrees for a unit, from 4 degrees east and 52 degrees north on.
+type OfMixed = ([u32; 2], [f64; 2], [f64; 2]);
+const MIXED: [OfMixed; 14] = [
+    ([0, 1], [0.1175552257148316, 1.0147058823529411], [0.10917446407560347, 1.0135560973488085]),
+    ([0, 3], [0.12063285144348729, 1.0454545454545452], [0.13138833690292345, 1.0454683536038893]),
+    ([0, 9], [0.03836604567538738, 1.1666666666666667], [0.06586340976658402, 1.1680025964252303]),
+    ([0, 12], [0.05600014091528692, 1.1323529411764708], [0.05370743357816793, 1.1323500603774066]),
+    ([1, 2], [0.12555566327480555, 1.1449275362318845], [0.14583094387167383, 1.144777345872967]),
+    ([1, 4], [0.1932664523858868, 1.9506172839506173], [0.22276388886343793, 1.9491170629493386]),
+    ([1, 13], [0.03166730356373981, 1.679012345679012], [0.03931911616193748, 1.6798445946647003]),
+    ([2, 3], [0.1126958412232287, 1.1884057971014494], [0.11256066483969925, 1.1869846012662095]),
+    ([2, 5], [0.2482114366148058, 2.1944444444444446], [0.2992966395406458, 2.1961696021160844]),
+    ([2, 7], [0.07551759623547445, 1.8358208955223883], [0.21311596806713498, 1.8371132162879789]),
+    ([2, 8], [0.9999999999999998, 1.2407407407407405], [0.9999999860271306, 1.2395213535920913]),
+    ([3, 6], [0.04867111493068423, 1.0603448275862064], [0.16436335760879142, 1.0602014722209057]),
+    ([3, 10], [0.04603114380303537, 1.171717171717172], [0.0681705821862861, 1.1704896374454243]),
+    ([4, 13], [1.0, 1.3064516129032264], [0.9999999705396528, 1.3052338616592023]),
+];
+
+#[test]
+fn measures_of_quadrilaterals_are_those_of_meshkernel() {
+    for (surface, by) in [(Surface::Plane, 1e-12), (Surface::Sphere, 2e-2)] {
+        let mut mesh = mixed();
+        if surface == Surface::Sphere {
+            mesh.points.iter_mut().for_each(|p| *p = [0.05 * p[0] + 4.0, 0.05 * p[1] + 52.0]);
+        }
+        let topology = Topology::new(&mesh).unwrap();
+        let measured = Measured::on(surface, &mesh.points, &topology).unwrap();
+        let edges = measured.edges();
+        assert_eq!(edges.len(), MIXED.len());
+        for (ends, in_plane, in_degrees) in MIXED {
+            let is_it = |edge: &&InnerEdge| ends.iter().all(|end| edge.vertices.contains(end));
+            let edge = edges.iter().find(is_it).unwrap();
+            let [orthogonality, smoothness] =
+                if surface == Surface::Plane { in_plane } else { in_degrees };
+            assert!((edge.orthogonality - orthogonality).abs() < by, "{edge:?}: {orthogonality}");
+            assert!((edge.smoothness - smoothness).abs() < by, "{edge:?}: {smoothness}");
+        }
+        // The measures of an element are those of its worst edges.
+        let values = measured.values(Measure::Orthogonality);
+        for (element, value) in (0..).zip(values) {
+            let own = edges.iter().filter(|edge| edge.elements.contains(&element));
+            assert_eq!(value, own.map(|edge| edge.orthogonality).fold(0.0, f64::max));
+        }
+        let ratios = measured.values(Measure::SizeRatio);
+        assert!(ratios.iter().all(|ratio| (1.0..2.5).contains(ratio)), "{ratios:?}");
+    }
+}
+
+#[test]
+fn squares_are_orthogonal_and_their_links_are_as_long_as_their_sides() {
+    let at = |k: u32| [f64::from(k % 4) * 2.0, f64::from(k / 4) * 2.0];
+    let cells = (0..12).filter(|k| k % 4 < 3).take(6);
+    let mesh = Mesh {
+        points: (0..12).map(at).collect(),
+        quadrilaterals: cells.map(|k| [k, k + 1, k + 5, k + 4]).collect(),
+        ..Mesh::default()
+    };
+    let topology = Topology::new(&mesh).unwrap();
+    let edges = Measured::new(&mesh.points, &topology).unwrap().edges();
+    assert_eq!(edges.len(), 7);
+    for edge in edges {
+        assert!(edge.orthogonality < 1e-14 && (edge.flow_link - 1.0).abs() < 1e-14, "{edge:?}");
     }
 }

@@ -102,9 +102,10 @@ fn edges(
             length: longest_edge(&points),
             values: of_edges.map(|&m| (m, of_edge(m, edge))).collect(),
             can_move: edge
-                .triangles
-                .iter()
-                .any(|&t| measured.topology().can_move(Element::Triangle(t as usize))),
+                .elements
+                .map(|index| measured.element(index as usize))
+                .into_iter()
+                .any(|element| measured.topology().can_move(element)),
         }
     };
     edges.iter().map(one).collect()

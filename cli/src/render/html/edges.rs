@@ -1,26 +1,26 @@
-//! The edges between triangles whose colors a page shows by measures of edges.
+//! The edges between elements whose colors a page shows by measures of edges.
 
 use gpu_smooth::measure::{InnerEdge, Measure, Measured};
 
 use crate::report::of_edge;
 
-/// The edges between shown triangles before and after a run, or of one mesh.
+/// The edges between shown elements before and after a run, or of one mesh.
 pub(crate) struct ShownEdges {
     /// The edges at the positions of each state, all in one order.
     states: Vec<Vec<InnerEdge>>,
 }
 
 impl ShownEdges {
-    /// Collects the edges whose two triangles are `shown`, which is ascending. Without a measure of edges in `measures`,
+    /// Collects the edges whose two elements are `shown`, which is ascending. Without a measure of edges in `measures`,
     /// there are none.
     pub(crate) fn of(states: &[&Measured<'_>], shown: &[usize], measures: &[Measure]) -> Self {
-        let is_shown = |t: &u32| shown.binary_search(&(*t as usize)).is_ok();
+        let is_shown = |index: &u32| shown.binary_search(&(*index as usize)).is_ok();
         let of_state = |state: &&Measured<'_>| {
             let mut edges = match measures.iter().any(|measure| measure.is_of_edges()) {
                 true => state.edges(),
                 false => Vec::new(),
             };
-            edges.retain(|edge| edge.triangles.iter().all(is_shown));
+            edges.retain(|edge| edge.elements.iter().all(is_shown));
             edges
         };
         Self { states: states.iter().map(of_state).collect() }

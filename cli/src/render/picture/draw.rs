@@ -178,7 +178,7 @@ fn panel<'a>(
     let worst = drawn.into_iter().map(spot).collect();
     let colored = |(edge, &value): (&InnerEdge, &f64)| ColoredEdge {
         ends: edge.vertices,
-        triangles: edge.triangles,
+        elements: edge.elements,
         goodness: colors.goodness(value),
     };
     let edges = edges.iter().zip(&values).map(colored).collect();

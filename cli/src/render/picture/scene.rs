@@ -24,17 +24,17 @@ pub(crate) struct Panel<'a> {
     pub(crate) points: &'a [[f64; 2]],
     /// Goodness of each triangle from 0 to 1, negative if inverted or flat.
     pub(crate) goodness: Vec<f32>,
-    /// The edges between triangles that colors show; empty if colors show triangles.
+    /// The edges between elements that colors show; empty if colors show elements.
     pub(crate) edges: Vec<ColoredEdge>,
     /// The worst triangles or edges, worst first.
     pub(crate) worst: Vec<Spot>,
 }
 
-/// An edge between two triangles, with the goodness shown by its color.
+/// An edge between two elements, with the goodness shown by its color.
 pub(crate) struct ColoredEdge {
     pub(crate) ends: [u32; 2],
-    /// The indices of the two triangles.
-    pub(crate) triangles: [u32; 2],
+    /// The numbers of the two elements, triangles first.
+    pub(crate) elements: [u32; 2],
     /// Goodness from 0 to 1.
     pub(crate) goodness: f32,
 }
@@ -277,7 +277,7 @@ impl Scene<'_> {
         places.filter(|&at| taken.insert(square(at))).for_each(|at| slid(at, text, canvas));
     }
 
-    /// Draws the colored edges of triangles that are high enough, bad edges above good ones.
+    /// Draws the colored edges of quadrilaterals and of triangles that are high enough, bad edges above good ones.
     fn draw_colored_edges(
         &self,
         panel: &Panel<'_>,
@@ -286,11 +286,14 @@ impl Scene<'_> {
         canvas: &mut dyn Canvas,
     ) {
         let place = |v: u32| frame.place(panel.points[v as usize]);
-        let is_high = |t: u32| least_height(self.triangles[t as usize].map(place)) >= LEAST_HEIGHT;
+        let is_high = |element: u32| {
+            let triangle = self.triangles.get(element as usize);
+            triangle.is_none_or(|t| least_height(t.map(place)) >= LEAST_HEIGHT)
+        };
         let mut classes = vec![Vec::new(); usize::from(EDGE_COLORS) + 1];
-        for ColoredEdge { ends, triangles, goodness } in &panel.edges {
+        for ColoredEdge { ends, elements, goodness } in &panel.edges {
             let edge = ends.map(place);
-            if is_shown(&edge, frame.corners, text) && triangles.iter().any(|&t| is_high(t)) {
+            if is_shown(&edge, frame.corners, text) && elements.iter().any(|&t| is_high(t)) {
                 classes[(goodness * f32::from(EDGE_COLORS)).round() as usize].push(edge);
             }
         }
