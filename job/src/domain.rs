@@ -7,7 +7,9 @@ use gpu_smooth::layers::{Elements, KeepLayers, Layers};
 use gpu_smooth::options::Precision;
 use gpu_smooth::slide::Periodic;
 use gpu_smooth::{Mesh, MeshError, Slide, Topology};
-use mesh_io::{Affine, Constraints, MeshFile, edges_between_regions, interface_vertices};
+use mesh_io::{
+    Affine, Constraints, MeshFile, edges_between_regions, interface_vertices, interfaces,
+};
 
 /// A mesh with the vertices that stay, the lines along which vertices slide, and the surface of its coordinates, from the
 /// facts of a file or of an application. Options of a run then fix further vertices.
@@ -89,7 +91,8 @@ pub struct NearBad {
 }
 
 impl Domain {
-    /// Makes the domain of a file. Vertices that the file constrains and vertices between regions are fixed.
+    /// Makes the domain of the triangles of a file. Vertices that the file constrains and vertices between regions are fixed, and
+    /// so are all vertices of quadrilaterals.
     pub fn of_file(file: &MeshFile) -> Self {
         let Constraints {
             vertices,
@@ -139,6 +142,29 @@ impl Domain {
         }
     }
 
+    /// Fixes all vertices of quadrilaterals of the domain that [`of_elements`](Self::of_elements) made of `file`, so that the
+    /// mesh has triangles alone, as by [`of_file`](Self::of_file). Vertices that were fixed or freed stay so.
+    pub fn keep_quadrilaterals(&mut self, file: &MeshFile) {
+        if !self.moves_quadrilaterals {
+            return;
+        }
+        let of_elements = std::mem::replace(self, Self::of_file(file));
+        if of_elements.has_free_lines {
+            self.free_lines();
+        }
+        if of_elements.has_free_interfaces {
+            self.free_interfaces();
+        }
+        // All vertices that the file anchors beside quadrilaterals are anchored here too.
+        let mut held = vec![false; self.mesh.points.len()];
+        of_elements.anchored.iter().for_each(|&vertex| held[vertex as usize] = true);
+        self.hold(held);
+        self.mesh.points = of_elements.mesh.points;
+        self.periodic = of_elements.periodic;
+        self.plane = of_elements.plane;
+        self.keeps_all = of_elements.keeps_all;
+    }
+
     /// Returns whether vertices of quadrilaterals move.
     pub fn moves_quadrilaterals(&self) -> bool {
         self.moves_quadrilaterals
@@ -150,21 +176,36 @@ impl Domain {
         &self.between_regions
     }
 
-    /// Makes the domain of points and triangles. The vertices of `lines` and inner vertices between different `regions` of the
-    /// triangles are fixed, and may slide along these edges, as in [`Self::of_file`]. Without regions, `regions` is empty.
+    /// Makes the domain of a mesh. The vertices of `lines` and inner vertices between different `regions` of the elements are
+    /// fixed, and may slide along these edges, as in [`Self::of_elements`]. `regions` are those of the triangles, then those of the
+    /// quadrilaterals; without regions, the list is empty. The fixed vertices of the mesh neither move nor slide.
     ///
     /// # Panics
-    /// Panics if a triangle has a vertex that does not exist, and if there are regions.
-    pub fn of_mesh(
-        points: Vec<[f64; 2]>,
-        triangles: Vec<[u32; 3]>,
-        lines: Vec<[u32; 2]>,
-        regions: &[i64],
-    ) -> Self {
-        let interface_edges = edges_between_regions(regions, &triangles, points.len());
-        let interfaces = interface_vertices(regions, &triangles, points.len());
+    /// Panics if an element has a vertex that does not exist, and if there are regions, or if a fixed vertex does not exist.
+    pub fn of_mesh(mesh: Mesh, lines: Vec<[u32; 2]>, regions: &[i64]) -> Self {
+        let Mesh { points, triangles, quadrilaterals, fixed: held } = mesh;
+        let (between, interface_edges) = match quadrilaterals.is_empty() {
+            true => (
+                interface_vertices(regions, &triangles, points.len()),
+                edges_between_regions(regions, &triangles, points.len()),
+            ),
+            false => {
+                let of_triangles = triangles.iter().map(|corners| &corners[..]);
+                let all = of_triangles.chain(quadrilaterals.iter().map(|corners| &corners[..]));
+                interfaces(all.zip(regions.iter().copied()), points.len())
+            }
+        };
         let fixed = lines.as_flattened().to_vec();
-        Self { lines, interface_edges, ..Self::with(points, triangles, fixed, interfaces) }
+        let mut domain = Self::with(points, triangles, fixed, between);
+        domain.moves_quadrilaterals = !quadrilaterals.is_empty();
+        domain.mesh.quadrilaterals = quadrilaterals;
+        (domain.lines, domain.interface_edges) = (lines, interface_edges);
+        if !held.is_empty() {
+            let mut is_held = vec![false; domain.mesh.points.len()];
+            held.iter().for_each(|&vertex| is_held[vertex as usize] = true);
+            domain.hold(is_held);
+        }
+        domain
     }
 
     fn with(
@@ -457,7 +498,8 @@ mod tests {
     fn square() -> Domain {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]];
         let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        Domain::of_mesh(points, triangles, vec![[1, 2]], &[1, 1, 2, 2])
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
+        Domain::of_mesh(mesh, vec![[1, 2]], &[1, 1, 2, 2])
     }
 
     #[test]
@@ -493,9 +535,8 @@ mod tests {
     #[test]
     fn freed_lines_leave_vertices_fixed_that_are_fixed_for_another_reason() {
         // The line from 1 to 2 is on the boundary, that from 4 to 2 also between the regions.
-        let points = square().mesh().points.clone();
-        let triangles = square().mesh().triangles.clone();
-        let domain = Domain::of_mesh(points, triangles, vec![[1, 2], [4, 2]], &[1, 1, 2, 2]);
+        let mesh = Mesh { fixed: Vec::new(), ..square().mesh().clone() };
+        let domain = Domain::of_mesh(mesh, vec![[1, 2], [4, 2]], &[1, 1, 2, 2]);
         assert!(domain.interface_vertices().is_empty() && domain.holds_lines());
         for interfaces_first in [false, true] {
             let mut domain = domain.clone();
@@ -511,6 +552,22 @@ mod tests {
             assert_eq!(domain.mesh().fixed, [2]);
             assert!(domain.lines().is_empty() && !domain.holds_lines());
         }
+    }
+
+    #[test]
+    fn vertices_between_regions_of_quadrilaterals_and_triangles_are_fixed() {
+        // Three quadrilaterals and two triangles around vertex 4, in rows of three vertices.
+        let points = (0..9).map(|v| [f64::from(v % 3), f64::from(v / 3)]).collect();
+        let quadrilaterals = vec![[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6]];
+        let mesh =
+            Mesh { points, triangles: vec![[4, 5, 8], [4, 8, 7]], quadrilaterals, fixed: vec![0] };
+        let domain = |regions: &[i64]| Domain::of_mesh(mesh.clone(), Vec::new(), regions);
+        assert_eq!(domain(&[]).mesh().fixed, [0]);
+        assert_eq!(domain(&[]).anchored(), [0]);
+        let upper = domain(&[2, 2, 1, 1, 2]);
+        assert_eq!((upper.interface_vertices(), &upper.mesh().fixed[..]), (&[4][..], &[0, 4][..]));
+        assert_eq!(upper.lines(), [[3, 4], [4, 5]]);
+        assert_eq!(upper.mesh().quadrilaterals, mesh.quadrilaterals);
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use gpu_smooth::{SmoothError, topology::BadTriangle};
+use gpu_smooth::SmoothError;
+use gpu_smooth::topology::{BadQuadrilateral, BadTriangle};
 use mesh_io::{FieldError, ReadError, SourceLocation, WriteError};
 
 /// Error of the plane of a file.
@@ -49,15 +50,17 @@ pub enum JobError {
     },
     /// The mesh cannot be untangled.
     #[error(
-        "{}: the mesh cannot be untangled: {} triangles stay inverted or flat{}. Perhaps fixed vertices leave no room",
-        path.display(), left.len(),
-        if left.is_empty() { ", and triangles wind more than once around a vertex" } else { "" }
+        "{}: the mesh cannot be untangled: {}. Perhaps fixed vertices leave no room",
+        path.display(), still_bad(left, left_quadrilaterals)
     )]
     Tangled {
         /// The file of the mesh.
         path: PathBuf,
-        /// The triangles that stay inverted or flat. Empty if triangles wind more than once around a vertex.
+        /// The triangles that stay inverted or flat.
         left: Vec<BadTriangle>,
+        /// The corners of quadrilaterals that stay concave or flat. Both lists are empty if elements wind more than once around
+        /// a vertex.
+        left_quadrilaterals: Vec<BadQuadrilateral>,
     },
     /// The groups of the file cannot be read.
     #[error(transparent)]
@@ -65,4 +68,16 @@ pub enum JobError {
     /// The smoothed mesh cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+}
+
+/// Describes the elements that untangling leaves bad.
+fn still_bad(triangles: &[BadTriangle], corners: &[BadQuadrilateral]) -> String {
+    let of_triangles = format!("{} triangles stay inverted or flat", triangles.len());
+    let of_corners = format!("{} corners of quadrilaterals stay concave or flat", corners.len());
+    match (triangles.is_empty(), corners.is_empty()) {
+        (true, true) => "elements wind more than once around a vertex".to_owned(),
+        (false, true) => of_triangles,
+        (true, false) => of_corners,
+        (false, false) => format!("{of_triangles}, and {of_corners}"),
+    }
 }

@@ -21,7 +21,10 @@ use crate::target::TargetRequest;
 
 /// A mesh file that is prepared for smoothing. Vertices that the file constrains and vertices between regions are fixed,
 /// boundary layers stay ([`Job::keep_layers`]), a mesh in another plane than that of x and y is laid out in its plane, and no
-/// triangle is inverted by the digits that the file has for a coordinate. The command line does the same with its options.
+/// triangle or quadrilateral is inverted by the digits that the file has for a coordinate. Vertices of quadrilaterals move
+/// ([`Job::keep_quadrilaterals`]), also in files without triangles, which
+/// [`allow_quadrilaterals_alone`](mesh_io::ReadOptions::allow_quadrilaterals_alone) reads. The command line does the same with
+/// its options.
 pub struct Job<'f> {
     file: &'f MeshFile,
     domain: Domain,
@@ -37,21 +40,27 @@ impl<'f> Job<'f> {
     /// # Errors
     /// [`JobError::Plane`] if the vertices have third coordinates and do not lie in one plane.
     pub fn of_file(file: &'f MeshFile) -> Result<Self, JobError> {
-        let mut domain = Domain::of_file(file);
+        let mut domain = Domain::of_elements(file);
         domain.set_plane(plane_of_file(file)?);
         Ok(Self::with(file, domain))
     }
 
     /// Prepares the mesh of a file whose x and y are longitude and latitude in degrees. Runs move vertices on the sphere, with
-    /// lengths in kilometers on a sphere of the size of the earth. Third coordinates are data.
+    /// lengths in kilometers on a sphere of the size of the earth. Third coordinates are data. In a mesh that reaches across the
+    /// date line or has a pole, the vertices of quadrilaterals stay, unless the mesh has quadrilaterals alone, which is an error.
     ///
     /// # Errors
     /// [`JobError::Smooth`] if a latitude is not from -90 to 90, or if a pole is inside a triangle or on an edge.
     pub fn on_sphere(file: &'f MeshFile) -> Result<Self, JobError> {
-        let mut job = Self::with(file, Domain::of_file(file));
+        let mut job = Self::with(file, Domain::of_elements(file));
         job.target.surface = Surface::Sphere;
         let stored = smoother_precision(file.precision());
-        let laid_out = job.domain.lay_out_on_sphere(stored);
+        let mut laid_out = job.domain.lay_out_on_sphere(stored);
+        if matches!(laid_out, Err(MeshError::TrianglesAlone { .. })) && !file.triangles().is_empty()
+        {
+            job.domain.keep_quadrilaterals(file);
+            laid_out = job.domain.lay_out_on_sphere(stored);
+        }
         laid_out.map_err(|error| job.error(error))?;
         Ok(job)
     }
@@ -107,6 +116,12 @@ impl<'f> Job<'f> {
     /// Untangles the mesh before the run, if triangles are inverted or flat; see [`Untangle`].
     pub fn untangle(self) -> Self {
         Self { untangles: true, ..self }
+    }
+
+    /// Keeps all vertices of quadrilaterals where they are. Only triangles then move.
+    pub fn keep_quadrilaterals(mut self) -> Self {
+        self.domain.keep_quadrilaterals(self.file);
+        self
     }
 
     /// Lets vertices between regions move, unless they are fixed for another reason.
@@ -237,12 +252,13 @@ impl<'f> Job<'f> {
             return Ok(());
         }
         let done = Untangle::new(self.mesh()).stored(self.stored()).run();
-        let Untangled { points, left, overlapping, .. } =
-            done.map_err(|error| self.error(error))?;
-        if !left.is_empty() || overlapping.is_some() {
-            return Err(JobError::Tangled { path: self.file.path().to_path_buf(), left });
+        let done = done.map_err(|error| self.error(error))?;
+        if !done.is_feasible() {
+            let path = self.file.path().to_path_buf();
+            let Untangled { left, left_quadrilaterals, .. } = done;
+            return Err(JobError::Tangled { path, left, left_quadrilaterals });
         }
-        self.domain.replace_points(points);
+        self.domain.replace_points(done.points);
         Ok(())
     }
 

@@ -9,8 +9,10 @@ use crate::options::Settings;
 
 /// Returns the first vertex that has moved in `points` although a run keeps it: a vertex on the boundary, on a line, between
 /// regions, or anchored by the file. If vertices slide by `settings`, those on the boundary, on lines and between regions may have
-/// moved, apart from the ends of groups. If lines are free by `settings`, their vertices may have moved. `stored` is the precision to which `points` are rounded. Boundary vertices of a mesh without a
-/// [`Topology`] are not compared. `None` if no such vertex has moved, or if `points` does not have one entry per vertex.
+/// moved, apart from the ends of groups. If lines are free by `settings`, their vertices may have moved. Vertices of
+/// quadrilaterals may have moved as those of triangles. `stored` is the precision to which `points` are rounded. Boundary
+/// vertices of a mesh without a [`Topology`] are not compared. `None` if no such vertex has moved, or if `points` does not have
+/// one entry per vertex.
 ///
 /// # Errors
 /// [`ReadError`] if vertices slide and the groups of the file cannot be read.
@@ -25,7 +27,7 @@ pub fn moved_fixed_vertex(
     if points.len() != before.len() || !(0..before.len()).any(has_moved) {
         return Ok(None);
     }
-    let mut domain = Domain::of_file(file);
+    let mut domain = Domain::of_elements(file);
     if settings.frees_lines {
         domain.free_lines();
     }

@@ -4,6 +4,8 @@ use gpu_smooth::front_ends::Chart;
 use gpu_smooth::targets::{OutsideReport, Surface};
 use gpu_smooth::{Mesh, MeshError, Metric, Smoother, TargetField, Targets};
 
+use crate::halves::halves_of_quadrilaterals;
+
 /// The desired shape and size of elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -178,12 +180,15 @@ impl TargetRequest {
         let size_weight = has_weight.then(|| targets.size_weight());
         let (points, triangles) = (&smoother.mesh().points, smoother.topology().triangles());
         if is_of_places {
-            let (points, triangles) = (points.clone(), triangles.to_vec());
+            // A field is linear in triangles.
+            let others = smoother.topology().quadrilaterals();
+            let halves = halves_of_quadrilaterals(points, others);
+            let (points, triangles) = (points.clone(), [triangles, &halves].concat());
             let mesh = Mesh { points, triangles, ..Mesh::default() };
             let field = TargetField::new(&mesh, &targets)?.seen_on(surface);
             smoother.set_target_field(field)?;
         } else {
-            let targets = targets.seen_on(surface, points, triangles)?;
+            let targets = targets.seen_on(surface, points, smoother.topology().corners())?;
             smoother.set_targets(&targets)?;
         }
         Ok(TargetFacts { outside: None, size_weight })

@@ -39,7 +39,7 @@ mod xml;
 
 pub use crate::content::constraints::{Affine, Constraints, PeriodicPairs, edges_between_regions};
 pub use crate::content::group::{Group, Groups};
-pub use crate::content::regions::interface_vertices;
+pub use crate::content::regions::{interface_vertices, interfaces};
 pub use crate::content::remark::Remark;
 pub use crate::convert::{Conversion, Encoding};
 pub use crate::disk::source::ReadOptions;

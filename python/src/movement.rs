@@ -9,8 +9,7 @@ use crate::remarks::Remarks;
 
 /// Returns the domain of a mesh with the lines, regions, fixed vertices and pairs of its options.
 pub(crate) fn domain(mesh: Mesh, options: &MeshOptions) -> Result<Domain, MeshError> {
-    let Mesh { points, triangles, .. } = mesh;
-    let mut domain = Domain::of_mesh(points, triangles, options.lines.clone(), &options.regions);
+    let mut domain = Domain::of_mesh(mesh, options.lines.clone(), &options.regions);
     if options.settings().frees_lines {
         domain.free_lines();
     }

@@ -4,7 +4,7 @@ use gpu_smooth::layers::KeepLayers;
 use gpu_smooth::{Backend, Options};
 use gpu_smooth_job::options::{GivenOptions, Kind, OPTIONS, OptionRow};
 use gpu_smooth_job::{Job, RunRequest, TargetKind, TargetRequest};
-use mesh_io::MeshFile;
+use mesh_io::{MeshFile, ReadOptions};
 
 use super::free_lines::msh;
 use super::regions::{folder, halves};
@@ -67,7 +67,9 @@ fn compare(folder: &Folder, input: &str, words: &str, request: &RunRequest, job:
     smoothed.write(&folder.path(&own)).unwrap();
     let [by_line, by_job] = [output, own].map(|name| std::fs::read(folder.path(&name)).unwrap());
     assert!(by_line == by_job, "{input} {words}: the files differ");
-    let [before, after] = [input, &input.replace("in", "out")].map(|name| folder.mesh(name).points);
+    let options = ReadOptions::new().allow_quadrilaterals_alone(true);
+    let points = |name: &str| options.read(&folder.path(name)).unwrap().points().to_vec();
+    let [before, after] = [input, &input.replace("in", "out")].map(points);
     assert_ne!(before, after, "{input} {words}: no vertex has moved");
 }
 
@@ -97,6 +99,68 @@ fn a_job_and_the_command_line_write_equal_files_by_each_option_of_the_table() {
         }
         let job = job.settings(given.settings()).unwrap();
         compare(&folder, input, &line, &given.settings().run, job);
+    }
+}
+
+#[test]
+fn a_job_and_the_command_line_move_and_keep_vertices_of_quadrilaterals() {
+    let mut cells = Vec::new();
+    let mut points = String::new();
+    for v in 0..49_u32 {
+        let [x, y] = [f64::from(v % 7), f64::from(v / 7)];
+        let is_inner = (1..6).contains(&(v % 7)) && (1..6).contains(&(v / 7));
+        let by = if is_inner { 0.2 * f64::from(v * v % 5) - 0.4 } else { 0.0 };
+        points += &format!("{} {} 0\n", x + by, y - by / 2.0);
+    }
+    for corner in (0..42_u32).filter(|corner| corner % 7 < 6) {
+        let [a, b, c, d] = [corner, corner + 1, corner + 8, corner + 7];
+        match corner % 7 < 3 {
+            true => cells.extend([vec![a, b, c], vec![a, c, d]]),
+            false => cells.push(vec![a, b, c, d]),
+        }
+    }
+    let text = |cells: &[Vec<u32>]| {
+        let rows = cells.iter().map(|cell| {
+            let corners = cell.iter().map(u32::to_string).collect::<Vec<_>>();
+            format!("{} {}\n", cell.len(), corners.join(" "))
+        });
+        let kinds = cells.iter().map(|cell| if cell.len() == 3 { "5\n" } else { "9\n" });
+        let size: usize = cells.iter().map(|cell| cell.len() + 1).sum();
+        format!(
+            "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 49 double\n{points}\
+             CELLS {} {size}\n{}CELL_TYPES {}\n{}",
+            cells.len(),
+            rows.collect::<String>(),
+            cells.len(),
+            kinds.collect::<String>()
+        )
+    };
+    let alone: Vec<Vec<u32>> = cells.iter().filter(|cell| cell.len() == 4).cloned().collect();
+    for (cells, is_mixed) in [(&cells, true), (&alone, false)] {
+        let folder = Folder::new(&[]);
+        std::fs::write(folder.path("in.vtk"), text(cells)).unwrap();
+        let options = ReadOptions::new().allow_quadrilaterals_alone(true);
+        let file = options.read(&folder.path("in.vtk")).unwrap();
+        let request = RunRequest::default();
+        let job = || Job::of_file(&file).unwrap();
+        assert!(!job().mesh().quadrilaterals.is_empty());
+        compare(&folder, "in.vtk", "--quadrilaterals move", &request, job());
+        let given = GivenOptions::of(&[("slide", "true")]).unwrap();
+        let sliding = || job().settings(given.settings()).unwrap();
+        let run = &given.settings().run;
+        compare(&folder, "in.vtk", "--quadrilaterals move --slide", run, sliding());
+        let on_sphere = Job::on_sphere(&file).unwrap();
+        compare(&folder, "in.vtk", "--quadrilaterals move --surface sphere", &request, on_sphere);
+        if is_mixed {
+            let kept = job().keep_quadrilaterals();
+            assert!(kept.mesh().quadrilaterals.is_empty());
+            compare(&folder, "in.vtk", "--quadrilaterals keep", &request, kept);
+            // Vertices that were fixed before stay, and the options of the mesh hold.
+            std::fs::write(folder.path("held.txt"), "16\n").unwrap();
+            let kept = sliding().fix(&[15]).unwrap().keep_quadrilaterals();
+            let words = "--quadrilaterals keep --slide --fix-vertices held.txt";
+            compare(&folder, "in.vtk", words, run, kept);
+        }
     }
 }
 

@@ -85,8 +85,11 @@ impl TriangleRegions {
 /// Returns the interior vertices at which elements of different regions meet, and the edges between such elements, both
 /// ascending. `elements` are lists of vertices in order around an element, each below `vertices`, with the region of the
 /// element. Boundary vertices are left out.
-pub(crate) fn interfaces<'e>(
-    elements: impl Iterator<Item = (&'e [u32], u32)> + Clone,
+///
+/// # Panics
+/// Panics if an element has a vertex that is not below `vertices`.
+pub fn interfaces<'e, R: Copy + Ord>(
+    elements: impl Iterator<Item = (&'e [u32], R)> + Clone,
     vertices: usize,
 ) -> (Vec<u32>, Vec<[u32; 2]>) {
     let mut region = vec![None; vertices];
