@@ -1,4 +1,4 @@
-"""Moves the interior vertices of 2D triangle meshes so that their triangles get better shapes.
+"""Moves the interior vertices of 2D meshes so that their triangles and quadrilaterals get better shapes.
 
 >>> import gpu_smooth
 >>> points = [[0, 0], [2, 0], [2, 2], [0, 2], [1.5, 1.2]]

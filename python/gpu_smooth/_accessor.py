@@ -28,7 +28,7 @@ class Accessor:
     def quality(
         self, measure: str = "imr", *, surface: Surface = "plane", z: ThirdCoordinate = "coordinate"
     ) -> Doubles:
-        """Return the quality of each triangle, of shape (m,); see `gpu_smooth.quality`."""
+        """Return the quality of each triangle and quadrilateral, of shape (m + k,); see `gpu_smooth.quality`."""
         return quality(self._mesh, measure=measure, surface=surface, z=z)
 
 

@@ -19,10 +19,11 @@ def quality(
     triangles: Array | None = None,
     measure: str = "imr",
     *,
+    quadrilaterals: Array | None = None,
     surface: Surface | None = None,
     z: ThirdCoordinate = "coordinate",
 ) -> Doubles:
-    """Return the quality of each triangle by a measure.
+    """Return the quality of each triangle and quadrilateral by a measure.
 
     Parameters
     ----------
@@ -30,6 +31,8 @@ def quality(
         Positions of the vertices. In place of both arrays, a mesh that `smooth` takes may be passed.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0.
+    quadrilaterals : array_like of int, shape (k, 4), optional
+        Vertices of each quadrilateral, around it in either direction. A mesh in place of both arrays has its own.
     measure : str, default "imr"
         Name of a measure or metric, such as `"min-angle"`; `measures` lists them with their sources.
     surface : {"plane", "sphere"}, optional
@@ -40,8 +43,9 @@ def quality(
 
     Returns
     -------
-    numpy.ndarray of float64, shape (m,)
-        Angles in degrees, other measures without a unit. Infinite for a flat triangle if the measure is unbounded.
+    numpy.ndarray of float64, shape (m + k,)
+        Values of the triangles, then of the quadrilaterals. Angles in degrees, other measures without a unit. Infinite for a
+        flat triangle if the measure is unbounded. NaN for quadrilaterals if only triangles have the measure.
 
     Raises
     ------
@@ -63,24 +67,27 @@ def quality(
     if triangles is None:
         from gpu_smooth import _meshes
 
+        if quadrilaterals is not None:
+            raise MeshError("quadrilaterals: a mesh in place of the arrays has its own. Drop them, or pass arrays")
         points, cells = _meshes.points_and_cells(points)
-        triangles, surface = cells.triangles, surface or cells.surface
-    return _native.quality(points, triangles, measure, surface or "plane", z)
+        triangles, quadrilaterals, surface = cells.triangles, cells.quadrilaterals, surface or cells.surface
+    return _native.quality(points, (triangles, quadrilaterals), measure, surface or "plane", z)
 
 
 def untangle(
     points: Array,
     triangles: Array,
     *,
+    quadrilaterals: Array | None = None,
     fixed: Array | None = None,
     z: ThirdCoordinate = "coordinate",
     keep_going: bool = False,
     time_limit: float | None = None,
     on_sweep: Callable[[Progress], object] | None = None,
 ) -> Floats:
-    """Move free vertices until no triangle is inverted or flat, and return the new points.
+    """Move free vertices until no triangle is inverted or flat and all quadrilaterals are convex, and return the new points.
 
-    The boundary stays. If moves near the bad triangles suffice, all other vertices keep their points.
+    The boundary stays. If moves near the bad elements suffice, all other vertices keep their points.
 
     Parameters
     ----------
@@ -88,16 +95,19 @@ def untangle(
         Positions of the vertices.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0. Windings are made consistent first.
+    quadrilaterals : array_like of int, shape (k, 4), optional
+        Vertices of each quadrilateral, around it in either direction.
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
         Vertices that stay.
     z : {"coordinate", "data"}, default "coordinate"
         Meaning of third coordinates, as in `smooth`.
     keep_going : bool, default False
-        Return the best points found if triangles stay inverted, in place of an exception.
+        Return the best points found if elements stay inverted, in place of an exception.
     time_limit : float, optional
         Seconds after which untangling ends.
     on_sweep : callable, optional
-        Called with a `Progress` after each sweep, whose `value` is the number of bad triangles. A true result ends
+        Called with a `Progress` after each sweep, whose `value` is the number of bad triangles and corners of
+        quadrilaterals. A true result ends
         untangling.
 
     Returns
@@ -108,7 +118,8 @@ def untangle(
     Raises
     ------
     MeshError
-        The arrays are no mesh, or triangles stay inverted or flat; the attribute `triangles` lists them.
+        The arrays are no mesh, or elements stay inverted, flat or concave; the attributes `triangles` and `quadrilaterals` list
+        them.
 
     Notes
     -----
@@ -124,7 +135,7 @@ def untangle(
     >>> bool((gpu_smooth.quality(points, triangles, "scaled-jacobian") > 0).all())
     True
     """
-    return _native.untangle(points, triangles, fixed, z, keep_going, time_limit, on_sweep)
+    return _native.untangle(points, (triangles, quadrilaterals), fixed, z, keep_going, time_limit, on_sweep)
 
 
 def interpolate(
@@ -133,12 +144,14 @@ def interpolate(
     moved: Array,
     values: Array,
     *,
+    quadrilaterals: Array | None = None,
     surface: Surface = "plane",
     z: ThirdCoordinate = "coordinate",
 ) -> Doubles:
     """Return data of vertices at new positions of the vertices.
 
-    The data are linear in each triangle of the mesh before the move. A vertex that has not moved keeps the bits of its
+    The data are linear in each triangle of the mesh before the move, and in the two triangles into which the shorter diagonal
+    cuts a quadrilateral. A vertex that has not moved keeps the bits of its
     data.
 
     Parameters
@@ -151,6 +164,8 @@ def interpolate(
         New positions of the vertices.
     values : array_like of float, shape (n,) or (n, k)
         Data of the vertices, such as depths.
+    quadrilaterals : array_like of int, shape (k, 4), optional
+        Vertices of each quadrilateral, around it in either direction.
     surface : {"plane", "sphere"}, default "plane"
         Meaning of the coordinates, as in `smooth`.
     z : {"coordinate", "data"}, default "coordinate"
@@ -164,7 +179,7 @@ def interpolate(
     Raises
     ------
     MeshError
-        The arrays have a wrong shape or type, or triangles before the move are inverted or flat.
+        The arrays have a wrong shape or type, or elements before the move are inverted, flat or concave.
 
     Examples
     --------
@@ -175,7 +190,7 @@ def interpolate(
     >>> gpu_smooth.interpolate(points, triangles, moved, [0, 2, 2, 0, 1.5]).tolist()
     [0.0, 2.0, 2.0, 0.0, 1.0]
     """
-    return _native.interpolate(points, triangles, moved, values, surface, z)
+    return _native.interpolate(points, (triangles, quadrilaterals), moved, values, surface, z)
 
 
 class Spread(NamedTuple):
@@ -199,7 +214,7 @@ class Comparison(NamedTuple):
     size_change: Spread
     """Factor by which the size of the elements around a vertex grew or shrank, 1 or more."""
     least_altitude: tuple[float, float]
-    """Least altitude of a triangle before and after, in the unit of the points."""
+    """Least altitude of a triangle or of a corner of a quadrilateral before and after, in the unit of the points."""
     quality_before: Quality
     quality_after: Quality
 
@@ -209,6 +224,7 @@ def compare(
     after: Array,
     triangles: Array,
     *,
+    quadrilaterals: Array | None = None,
     surface: Surface = "plane",
     z: ThirdCoordinate = "coordinate",
 ) -> Comparison:
@@ -220,6 +236,8 @@ def compare(
         Positions of the vertices in the two states.
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0.
+    quadrilaterals : array_like of int, shape (k, 4), optional
+        Vertices of each quadrilateral, around it in either direction.
     surface : {"plane", "sphere"}, default "plane"
         Meaning of the coordinates.
     z : {"coordinate", "data"}, default "coordinate"
@@ -234,13 +252,13 @@ def compare(
     MeshError
         The arrays have a wrong shape or type, or are no mesh.
     """
-    found = _native.compare(before, after, triangles, surface, z)
+    found = _native.compare(before, after, (triangles, quadrilaterals), surface, z)
     spreads = {name: Spread(*found[name]) for name in ("moved", "size_change")}
     return Comparison(**(found | spreads))
 
 
 class Metric(NamedTuple):
-    """A metric q. Smoothing minimizes f, the mean of q² over all triangles."""
+    """A metric q. Smoothing minimizes f, the mean of q² over all triangles and quadrilaterals."""
 
     name: str
     formula: str

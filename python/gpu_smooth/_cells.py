@@ -1,22 +1,23 @@
-"""Cells of the meshes of other packages: which are triangles, and which keep their vertices."""
+"""Cells of the meshes of other packages: which are triangles and quadrilaterals, and which keep their vertices."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gpu_smooth import _native
 from gpu_smooth._ends import between_regions, boundary_of
-from gpu_smooth._errors import MeshError
+from gpu_smooth._errors import MeshError, MeshWarning, OptionError
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from gpu_smooth._options import Integers, Surface
 
-# Names of cell data that number the regions of triangles, the first that a mesh has: of gmsh, Medit, Salome and VTK.
+# Names of cell data that number the regions of elements, the first that a mesh has: of gmsh, Medit, Salome and VTK.
 REGIONS = ("gmsh:physical", "medit:ref", "gmsh:geometrical", "cell_tags", "region", "material", "MaterialIds")
 
 
@@ -30,7 +31,9 @@ class Cells(NamedTuple):
     anchored: Integers
     """Vertices of all other cells, of shape (k,)."""
     regions: npt.NDArray[Any] | None
-    """Region of each triangle, of shape (m,); None without regions."""
+    """Region of each triangle, then of each quadrilateral, of shape (m + k,); None without regions."""
+    quadrilaterals: Integers = np.empty((0, 4), np.int64)
+    """Vertices of each quadrilateral, of shape (k, 4)."""
     ends: Integers = np.empty(0, np.int64)
     """Vertices at which groups of lines or vertices end, of shape (k,). They stay where others slide."""
     periodic: Integers = np.empty((0, 2), np.int64)
@@ -44,8 +47,11 @@ class Cells(NamedTuple):
 
     def options(self, given: dict[str, Any], vertices: int) -> dict[str, Any]:
         """Return options with the constraints of the cells, beside those that were given."""
-        if not len(self.triangles):
-            raise MeshError("mesh: there are no triangles with three vertices. Pass a mesh of linear triangles")
+        if not len(self.triangles) and not len(self.quadrilaterals):
+            raise MeshError(
+                "mesh: there are no triangles of three vertices, and no quadrilaterals of four that move. Pass a mesh of linear "
+                "elements"
+            )
         # None is the default of each option.
         given = {name: value for name, value in given.items() if value is not None}
         unknown = self.anchored[(self.anchored < 0) | (self.anchored >= vertices)]
@@ -69,23 +75,85 @@ class Cells(NamedTuple):
             found["regions"] = self.regions
         if given.get("slide") and len(self.periodic):
             found["periodic"] = self.periodic
+        if len(self.quadrilaterals):
+            found["quadrilaterals"] = self.quadrilaterals
         if self.surface is not None:
             found["surface"] = self.surface
         return {**found, **{name: value for name, value in given.items() if name not in ("fixed", "lines")}}
 
     def _ends_that_slide(self, vertices: int) -> Integers:
         """Return the ends of groups along which vertices slide if lines are free: on the boundary and between regions."""
-        curves = boundary_of(self.triangles).ravel()
+        curves = self.boundary().ravel()
         if self.regions is not None:
-            curves = np.union1d(curves, between_regions(self.regions, self.triangles, vertices))
+            curves = np.union1d(curves, between_regions(self.regions, self.triangles, self.quadrilaterals, vertices))
         return np.intersect1d(self.ends, curves)
+
+    def boundary(self) -> Integers:
+        """Return the edges of exactly one triangle or quadrilateral, of shape (k, 2)."""
+        return boundary_of(self.triangles, self.quadrilaterals)
+
+    def proper(self) -> Cells:
+        """Return the cells without quadrilaterals that list a vertex twice, whose vertices stay."""
+        corners = np.sort(self.quadrilaterals, axis=1)
+        is_proper = (corners[:, 1:] != corners[:, :-1]).all(axis=1)
+        if is_proper.all():
+            return self
+        is_kept = np.concatenate([np.ones(len(self.triangles), bool), is_proper])
+        return self._replace(
+            quadrilaterals=self.quadrilaterals[is_proper],
+            anchored=np.concatenate([self.anchored, self.quadrilaterals[~is_proper].ravel()]),
+            regions=None if self.regions is None else self.regions[is_kept],
+        )
+
+    def choosing(self, word: Any, points: Any, surface: Any) -> Cells:
+        """Return the cells with quadrilaterals that move or stay, as the option `quadrilaterals` says.
+
+        By default, those of a mesh stay that needs a chart of the sphere, which has triangles alone.
+        """
+        if not isinstance(word, (str, type(None))) or word not in ("keep", "move", None):
+            raise OptionError(
+                f"quadrilaterals: the value is {word!r:.40}, and must be \"keep\" or \"move\" for a mesh, which has its own. Pass arrays to "
+                "pass others"
+            )
+        if word == "keep":
+            return self.kept()
+        if word is None and surface == "sphere" and len(self.triangles) and self._needs_chart(points):
+            warnings.warn(
+                "quadrilaterals: their vertices stay, as the mesh is across the date line or has a pole. Pass "
+                "quadrilaterals=\"keep\" if this is wanted",
+                MeshWarning,
+                stacklevel=5,
+            )
+            return self.kept()
+        return self
+
+    def kept(self) -> Cells:
+        """Return the cells with triangles alone. The vertices of quadrilaterals stay."""
+        return self._replace(
+            quadrilaterals=self.quadrilaterals[:0],
+            anchored=np.concatenate([self.anchored, self.quadrilaterals.ravel()]),
+            regions=None if self.regions is None else self.regions[: len(self.triangles)],
+        )
+
+    def _needs_chart(self, points: Any) -> bool:
+        """Return whether there are quadrilaterals, and an element is across the date line or has a pole."""
+        xy = np.asarray(points)[:, :2]
+        for corners in (self.triangles, self.quadrilaterals):
+            # Wrong vertices are reported later.
+            if len(self.quadrilaterals) and len(corners) and 0 <= corners.min() and corners.max() < len(xy):
+                longitudes, latitudes = xy[corners, 0], xy[corners, 1]
+                if (np.ptp(longitudes, axis=1) >= 180.0).any() or (np.abs(latitudes) == 90.0).any():
+                    return True
+        return False
 
 
 def of_faces(faces: Integers, surface: Surface | None = None) -> Cells:
     """Return the cells of a mesh of faces, each a row of vertices with -1 beyond the last; of shape (m, k)."""
-    is_triangle = np.count_nonzero(faces >= 0, axis=1) == 3
-    triangles, others = faces[is_triangle, :3].reshape(-1, 3), faces[~is_triangle]
-    return Cells(triangles, np.empty((0, 2), np.int64), others[others >= 0], None, surface=surface)
+    sizes = np.count_nonzero(faces >= 0, axis=1)
+    triangles, quadrilaterals = (faces[sizes == size, :size].reshape(-1, size) for size in (3, 4))
+    others = faces[(sizes != 3) & (sizes != 4)]
+    lines = np.empty((0, 2), np.int64)
+    return Cells(triangles, lines, others[others >= 0], None, quadrilaterals, surface=surface)
 
 
 def with_groups(options: dict[str, Any], groups: Callable[[], dict[str, Callable[[], Any]]]) -> dict[str, Any]:

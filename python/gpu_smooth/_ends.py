@@ -42,25 +42,35 @@ def ends_of_lines(lines: Integers) -> Integers:
     return ends
 
 
-def ends_of_vertices(vertices: Integers, triangles: Integers, lines: Integers) -> Integers:
-    """Return those of the vertices from which an edge of the boundary or of a line leads to another vertex."""
-    curves = np.concatenate([boundary_of(triangles), lines])
+def ends_of_vertices(vertices: Integers, boundary: Integers, lines: Integers) -> Integers:
+    """Return those of the vertices from which an edge of the boundary or of a line leads to another vertex.
+
+    `boundary` and `lines` have shape (k, 2).
+    """
+    curves = np.concatenate([boundary, lines])
     first, second = np.isin(curves, vertices).T
     return np.unique(np.concatenate([curves[first & ~second, 0], curves[second & ~first, 1]]))
 
 
-def between_regions(regions: npt.NDArray[Any], triangles: Integers, vertices: int) -> Integers:
-    """Return the vertices of triangles of several regions. `regions` has shape (m,), `triangles` (m, 3)."""
+def between_regions(
+    regions: npt.NDArray[Any], triangles: Integers, quadrilaterals: Integers, vertices: int
+) -> Integers:
+    """Return the vertices of elements of several regions.
+
+    `triangles` has shape (m, 3), `quadrilaterals` (k, 4), and `regions` (m + k,).
+    """
     number = np.unique(regions, return_inverse=True)[1].ravel()
     low, high = np.full(vertices, number.max(initial=0)), np.zeros(vertices, np.int64)
-    np.minimum.at(low, triangles.ravel(), np.repeat(number, 3))
-    np.maximum.at(high, triangles.ravel(), np.repeat(number, 3))
+    of_triangles, of_others = np.split(number, [len(triangles)])
+    for corners, own in ((triangles, of_triangles), (quadrilaterals, of_others)):
+        np.minimum.at(low, corners.ravel(), np.repeat(own, corners.shape[1]))
+        np.maximum.at(high, corners.ravel(), np.repeat(own, corners.shape[1]))
     return np.flatnonzero(low < high)
 
 
-def boundary_of(triangles: Integers) -> Integers:
-    """Return the edges of exactly one triangle, of shape (k, 2)."""
-    sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges, counts = np.unique(sides, axis=0, return_counts=True)
+def boundary_of(triangles: Integers, quadrilaterals: Integers) -> Integers:
+    """Return the edges of exactly one element, of shape (k, 2)."""
+    sides = [triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), quadrilaterals[:, [0, 1, 1, 2, 2, 3, 3, 0]].reshape(-1, 2)]
+    edges, counts = np.unique(np.sort(np.concatenate(sides), axis=1), axis=0, return_counts=True)
     boundary: Integers = edges[counts == 1]
     return boundary

@@ -14,11 +14,14 @@ class MeshError(GpuSmoothError, ValueError):
     ----------
     triangles : tuple of int
         Triangles that the message names, such as all inverted ones; numbered from 0.
+    quadrilaterals : tuple of int
+        Quadrilaterals that the message names; numbered from 0.
     vertex : int or None
         Vertex that the message names; numbered from 0.
     """
 
     triangles: tuple[int, ...] = ()
+    quadrilaterals: tuple[int, ...] = ()
     vertex: int | None = None
 
 

@@ -44,12 +44,12 @@ class MeshFile:
     allow_outside : bool, default False
         Let the file name files outside of its directory.
     regions : str, optional
-        Name of the cell data that number the regions of triangles.
+        Name of the cell data that number the regions of elements.
 
     Raises
     ------
     FileError
-        The file is missing, damaged or of an unknown format, or has no plane mesh of triangles. An `OSError`.
+        The file is missing, damaged or of an unknown format, or has no plane mesh of triangles or quadrilaterals. An `OSError`.
     """
 
     def __init__(
@@ -83,8 +83,19 @@ class MeshFile:
         return self._native.triangles
 
     @property
+    def quadrilaterals(self) -> Integers:
+        """Vertices of each quadrilateral, numbered from 0 in the order of the file, of shape (k, 4).
+
+        Without those that list a vertex twice, whose vertices are among `anchored`.
+        """
+        return self._native.quadrilaterals
+
+    @property
     def regions(self) -> Integers | None:
-        """Region of each triangle, of shape (m,); None without regions. The numbers are not those of the file."""
+        """Region of each triangle, then of each quadrilateral, of shape (m + k,); None without regions.
+
+        The numbers are not those of the file.
+        """
         return self._native.regions
 
     @property
@@ -94,7 +105,7 @@ class MeshFile:
 
     @property
     def anchored(self) -> Integers:
-        """Vertices of points and of elements other than triangles and lines, and ends of groups of lines or vertices.
+        """Vertices of points and of elements other than triangles, quadrilaterals and lines, and ends of groups of lines or vertices.
 
         With the option `fixed`, these vertices stay where others slide, so that each group keeps its extent.
         """
@@ -193,6 +204,8 @@ class MeshFile:
 
     def __repr__(self) -> str:
         sizes = f"{len(self.points)} vertices, {len(self.triangles)} triangles"
+        if len(self.quadrilaterals):
+            sizes += f", {len(self.quadrilaterals)} quadrilaterals"
         return f"MeshFile({str(self.path)!r}, {self.format}, {sizes})"
 
 

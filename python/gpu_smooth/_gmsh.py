@@ -19,14 +19,15 @@ if TYPE_CHECKING:
     from gpu_smooth._result import Result
 
 # gmsh's types of elements.
-LINE, TRIANGLE = 1, 2
+LINE, TRIANGLE, QUADRILATERAL = 1, 2, 3
 
 
 def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     """Smooth the mesh of the running gmsh session in place.
 
     Nodes on points and curves of the model stay, also on those embedded in a surface. With `slide=True`, nodes on curves
-    slide along them, and the nodes of periodic curves slide in pairs. Nodes of other elements than triangles stay. The
+    slide along them, and the nodes of periodic curves slide in pairs. Nodes of elements other than
+    triangles and quadrilaterals stay. The
     parameters of moved nodes on their curves and surfaces are set too.
 
     Parameters
@@ -45,7 +46,7 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     GpuSmoothError
         No gmsh session is running.
     MeshError
-        The mesh has no triangles of three nodes, has volume elements, or does not lie in a plane.
+        The mesh has no triangles of three nodes and no quadrilaterals of four, has volume elements, or does not lie in a plane.
     OptionError, DeviceError
         As `smooth` does.
     ImportError
@@ -64,11 +65,11 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     points = np.asarray(coordinates, dtype=float).reshape(-1, 3)
     rows = np.full(int(tags.max(initial=0)) + 1, -1)
     rows[tags] = np.arange(len(tags))
-    cells = _cells(gmsh, rows)
     given = with_groups(dict(options), lambda: _groups(gmsh, rows))
+    cells = _cells(gmsh, rows).proper().choosing(given.pop("quadrilaterals", None), points, given.get("surface"))
     given = cells.options(given, len(points))
-    if np.ptp(points[cells.triangles, 2]) == 0.0:
-        # Nodes that no triangle has, such as centers of arcs, may have another z.
+    if np.ptp(points[np.union1d(cells.triangles, cells.quadrilaterals), 2]) == 0.0:
+        # Nodes that no element has, such as centers of arcs, may have another z.
         given["z"] = "data"
     if given.get("slide") and given.get("periodic") is None:
         given["periodic"] = _periodic(gmsh, rows)
@@ -82,7 +83,8 @@ def _cells(gmsh: Any, rows: Integers) -> Cells:
     """Return the cells of the model. `rows` are the rows of nodes by their tags."""
     if len(gmsh.model.mesh.getElementTypes(3)):
         raise MeshError("mesh: there are volume elements, whose nodes must not move. Mesh the surfaces alone")
-    triangles, regions = [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)]
+    triangles, quadrilaterals = [np.empty((0, 3), np.int64)], [np.empty((0, 4), np.int64)]
+    of_triangles, of_others = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
     lines, anchored = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)]
     for dimension, entity in gmsh.model.getEntities():
         # Nodes on points, and nodes on curves that no line has.
@@ -104,11 +106,15 @@ def _cells(gmsh: Any, rows: Integers) -> Cells:
             corners = rows[np.asarray(connectivity, np.int64)]
             if kind == TRIANGLE:
                 triangles.append(corners.reshape(-1, 3))
-                regions.append(np.full(len(corners) // 3, entity))
+                of_triangles.append(np.full(len(corners) // 3, entity))
+            elif kind == QUADRILATERAL:
+                quadrilaterals.append(corners.reshape(-1, 4))
+                of_others.append(np.full(len(corners) // 4, entity))
             else:
                 anchored.append(corners)
     return Cells(
-        np.concatenate(triangles), np.concatenate(lines), np.concatenate(anchored), np.concatenate(regions)
+        np.concatenate(triangles), np.concatenate(lines), np.concatenate(anchored),
+        np.concatenate([*of_triangles, *of_others]), np.concatenate(quadrilaterals),
     )
 
 

@@ -22,13 +22,13 @@ def points_of(file: MeshFile) -> Any:
 
 def cells_of(file: MeshFile) -> Cells:
     """Return the cells of a file. Vertices that the file constrains stay, apart from those that may slide along lines."""
-    triangles, lines, regions = file.triangles, file.lines, file.regions
-    on_curves = np.union1d(boundary_of(triangles), lines)
+    triangles, quadrilaterals, lines, regions = file.triangles, file.quadrilaterals, file.lines, file.regions
+    on_curves = np.union1d(boundary_of(triangles, quadrilaterals), lines)
     if regions is not None:
-        on_curves = np.union1d(on_curves, between_regions(regions, triangles, len(file.points)))
+        on_curves = np.union1d(on_curves, between_regions(regions, triangles, quadrilaterals, len(file.points)))
     anchored = file._native.anchored_alone
     of_model = np.setdiff1d(np.setdiff1d(file._native.constrained, on_curves), anchored)
-    return Cells(triangles, lines, anchored, regions, periodic=file.periodic, of_model=of_model)
+    return Cells(triangles, lines, anchored, regions, quadrilaterals, periodic=file.periodic, of_model=of_model)
 
 
 def groups_of(file: MeshFile) -> dict[str, Callable[[], Any]]:

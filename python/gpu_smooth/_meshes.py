@@ -26,7 +26,7 @@ class MeshArrays(NamedTuple):
     triangles: Integers
     """Vertices of each triangle, of shape (m, 3)."""
     options: dict[str, Any]
-    """Options with the fixed vertices, lines and regions of the mesh."""
+    """Options with the quadrilaterals, fixed vertices, lines and regions of the mesh."""
     with_points: Callable[[Any], Any] | None
     """Function that returns the mesh with other points; None for a `MeshFile`, which does not change."""
 
@@ -35,10 +35,12 @@ def arrays_of(mesh: Any, options: dict[str, Any]) -> MeshArrays:
     """Return a mesh as arguments of `smooth`, with the constraints of its cells beside the given options."""
     package = _package_of(mesh)
     options = with_groups(options, lambda: package.groups_of(mesh))
-    cells = package.cells_of(mesh)
+    points = package.points_of(mesh)
+    cells = package.cells_of(mesh).proper()
+    word = options.pop("quadrilaterals", None)
+    cells = cells.choosing(word, points, options.get("surface") or cells.surface)
     if options.get("slide"):
         cells = cells._replace(ends=package.ends_of(mesh, cells))
-    points = package.points_of(mesh)
     options = cells.options(options, len(points))
     if cells.interpolated and options.get("untangle"):
         _check_data(cells, points, options.get("surface", "plane"))
@@ -51,16 +53,21 @@ def arrays_of(mesh: Any, options: dict[str, Any]) -> MeshArrays:
 def _check_data(cells: Cells, points: Any, surface: str) -> None:
     """Raise an error if data of vertices cannot be interpolated, as triangles of the mesh are inverted or flat."""
     try:
-        _native.interpolate(points, cells.triangles, points, np.zeros(len(points)), surface, "coordinate")
+        elements = (cells.triangles, cells.quadrilaterals)
+        _native.interpolate(points, elements, points, np.zeros(len(points)), surface, "coordinate")
     except MeshError as error:
-        if not error.triangles:
+        if error.triangles:
+            bad = f"{len(error.triangles)} triangles are inverted or flat, the first is triangle {error.triangles[0]}"
+        elif error.quadrilaterals:
+            count = len(error.quadrilaterals)
+            bad = f"{count} quadrilaterals are not convex, the first is quadrilateral {error.quadrilaterals[0]}"
+        else:
             raise
         refused = MeshError(
-            f"mesh: data of nodes ({', '.join(cells.interpolated)}) cannot be interpolated, as {len(error.triangles)} triangles "
-            f"are inverted or flat, the first is triangle {error.triangles[0]}. Pass the grid alone, and take the data at its new "
-            "nodes from their source"
+            f"mesh: data of nodes ({', '.join(cells.interpolated)}) cannot be interpolated, as {bad}. Pass the grid alone, and "
+            "take the data at its new nodes from their source"
         )
-        refused.triangles = error.triangles
+        refused.triangles, refused.quadrilaterals = error.triangles, error.quadrilaterals
         raise refused from error
 
 
@@ -74,7 +81,8 @@ def smooth(mesh: Any, options: dict[str, Any]) -> Any:
 def points_and_cells(mesh: Any) -> tuple[Any, Cells]:
     """Return the points and the cells of a mesh."""
     package = _package_of(mesh)
-    return package.points_of(mesh), package.cells_of(mesh)
+    cells: Cells = package.cells_of(mesh).proper()
+    return package.points_of(mesh), cells
 
 
 def _package_of(mesh: Any) -> Any:

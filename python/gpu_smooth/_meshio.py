@@ -16,14 +16,13 @@ from gpu_smooth._errors import MeshError
 
 def cells_of(mesh: Any) -> Cells:
     """Return the cells of a `meshio.Mesh`."""
-    of_triangles = [block.type == "triangle" for block in mesh.cells]
-    triangles = [_vertices(block) for block, is_one in zip(mesh.cells, of_triangles) if is_one]
-    lines = [_vertices(block) for block in mesh.cells if block.type == "line"]
-    others = [_vertices(block).ravel() for block in mesh.cells if block.type not in ("triangle", "line")]
+    of_kind = {kind: [k for k, block in enumerate(mesh.cells) if block.type == kind] for kind in ("triangle", "quad", "line")}
+    triangles, quadrilaterals, lines = ([_vertices(mesh.cells[k]) for k in own] for own in of_kind.values())
+    others = [_vertices(block).ravel() for block in mesh.cells if block.type not in of_kind]
     regions = None
     for name in REGIONS:
         if name in mesh.cell_data:
-            own = [np.asarray(d) for d, is_one in zip(mesh.cell_data[name], of_triangles) if is_one]
+            own = [np.asarray(mesh.cell_data[name][k]) for k in (*of_kind["triangle"], *of_kind["quad"])]
             regions = whole(np.concatenate(own)) if own else None
             break
     return Cells(
@@ -31,6 +30,7 @@ def cells_of(mesh: Any) -> Cells:
         np.concatenate([np.empty((0, 2), np.int64), *lines]),
         np.concatenate([np.empty(0, np.int64), *others]),
         regions,
+        np.concatenate([np.empty((0, 4), np.int64), *quadrilaterals]),
     )
 
 
@@ -93,7 +93,7 @@ def ends_of(mesh: Any, cells: Cells) -> Any:
         own = [lines[np.asarray(chosen[k], np.int64)] for k, lines in blocks if chosen[k] is not None]
         found.append(ends_of_lines(np.concatenate([np.empty((0, 2), np.int64), *own])))
     for points in mesh.point_sets.values():
-        found.append(ends_of_vertices(np.asarray(points, np.int64), cells.triangles, cells.lines))
+        found.append(ends_of_vertices(np.asarray(points, np.int64), cells.boundary(), cells.lines))
     return np.concatenate(found)
 
 

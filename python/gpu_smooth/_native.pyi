@@ -1,12 +1,15 @@
 import pathlib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from gpu_smooth._options import Array, Doubles, Floats, Integers, Path
 from gpu_smooth._progress import Progress
+
+# Vertices of triangles, of shape (m, 3), and of quadrilaterals, of shape (k, 4).
+Cells: TypeAlias = tuple[Array, Array | None]
 
 __version__: str
 
@@ -22,43 +25,47 @@ def metrics() -> list[dict[str, Any]]: ...
 def measures() -> list[dict[str, Any]]: ...
 def color_scale(measure: str, picture_range: tuple[float, float] | None) -> dict[str, Any]: ...
 def adapters() -> list[dict[str, Any]]: ...
-def smooth(points: Array, triangles: Array, **options: Any) -> Floats: ...
-def quality(points: Array, triangles: Array, measure: str, on: str, z: str) -> Doubles: ...
+def smooth(points: Array, triangles: Array, *, quadrilaterals: Array | None = None, **options: Any) -> Floats: ...
+def quality(points: Array, cells: Cells, measure: str, on: str, z: str) -> Doubles: ...
 def untangle(
     points: Array,
-    triangles: Array,
+    cells: Cells,
     fixed: Array | None,
     z: str,
     keep_going: bool,
     time_limit: float | None,
     on_sweep: Callable[[Progress], object] | None,
 ) -> Floats: ...
-def interpolate(points: Array, triangles: Array, moved: Array, values: Array, on: str, z: str) -> Doubles: ...
-def compare(before: Array, after: Array, triangles: Array, on: str, z: str) -> dict[str, Any]: ...
+def interpolate(points: Array, cells: Cells, moved: Array, values: Array, on: str, z: str) -> Doubles: ...
+def compare(before: Array, after: Array, cells: Cells, on: str, z: str) -> dict[str, Any]: ...
 
 class Quality:
-    """Statistics of the triangles of a mesh. An inverted triangle counts as its mirror image in angles."""
+    """Statistics of the triangles and quadrilaterals of a mesh.
+
+    An inverted triangle or corner counts as its mirror image in angles.
+    """
 
     def f(self, metric: str = "imr") -> float:
-        """Return the objective f, the mean of q² over all triangles, by a metric."""
+        """Return the objective f, the mean of q² over all triangles and quadrilaterals, by a metric."""
     @property
     def min_angle(self) -> float:
-        """Smallest angle of any triangle, in degrees."""
+        """Smallest angle of any triangle or quadrilateral, in degrees."""
     @property
     def max_angle(self) -> float:
-        """Largest angle of any triangle, in degrees."""
+        """Largest angle of any triangle or quadrilateral, in degrees."""
     @property
     def worst_imr(self) -> float:
-        """Largest inverse mean ratio: 1 at best, infinite if a triangle is inverted or flat."""
+        """Largest inverse mean ratio of a triangle or of a corner of a quadrilateral: 1 at best, infinite if one is inverted or flat."""
     @property
-    def worst_triangle(self) -> int:
-        """Index of the triangle with the largest inverse mean ratio."""
+    def worst_element(self) -> tuple[Literal["triangle", "quadrilateral"], int]:
+        """Kind and index of the triangle or quadrilateral with the largest inverse mean ratio."""
     @property
     def inverted(self) -> int:
-        """Number of inverted or flat triangles."""
+        """Number of inverted or flat triangles, and of quadrilaterals that are not convex."""
 
 class Outcome:
     def triangles(self) -> Integers: ...
+    def quadrilaterals(self) -> Integers: ...
     def points(self) -> Floats: ...
     def points_before(self) -> Floats: ...
     def flat_points(self) -> Doubles: ...
@@ -110,12 +117,16 @@ class Outcome:
     def seconds(self) -> float: ...
 
 class Smoother:
-    def __new__(cls, points: Array, triangles: Array, **options: Any) -> Smoother: ...
+    def __new__(
+        cls, points: Array, triangles: Array, *, quadrilaterals: Array | None = None, **options: Any
+    ) -> Smoother: ...
     def run(self, points: Array | None = None, **options: Any) -> Outcome: ...
     @property
     def free(self) -> npt.NDArray[np.bool_]: ...
     @property
     def triangles(self) -> Integers: ...
+    @property
+    def quadrilaterals(self) -> Integers: ...
 
 class MeshFile:
     def __new__(
@@ -129,6 +140,8 @@ class MeshFile:
     def points(self) -> Doubles: ...
     @property
     def triangles(self) -> Integers: ...
+    @property
+    def quadrilaterals(self) -> Integers: ...
     @property
     def regions(self) -> Integers | None: ...
     @property

@@ -34,6 +34,7 @@ Target: TypeAlias = Union[
 class MeshOptions(TypedDict, total=False):
     """Options that belong to a mesh; `smooth` describes each."""
 
+    quadrilaterals: Array | Literal["keep", "move"] | None
     fixed: Array | None
     lines: Array | None
     regions: Array | None

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from gpu_smooth._options import Doubles, Integers
 
-# Largest number of triangles of which a notebook gets a picture. A picture of more takes megabytes.
-MOST_TRIANGLES = 20_000
+# Largest number of elements of which a notebook gets a picture. A picture of more takes megabytes.
+MOST_ELEMENTS = 20_000
 # Width of the picture of a mesh, in pixels.
 WIDTH = 360.0
 
@@ -26,6 +26,7 @@ class Subject(NamedTuple):
     states: dict[str, Doubles]
     """Points `"before"` and `"after"` the run, of shape (n, 2), in the plane in which they were moved."""
     triangles: Integers
+    quadrilaterals: Integers
     axes: tuple[str, str]
     """Names of the two coordinates."""
 
@@ -47,9 +48,12 @@ def plot(
     if which not in ("before", "after", "both"):
         raise _which_error(which)
     names = list(states) if which == "both" else [which]
-    # matplotlib makes room for all points, and some vertices may belong to no triangle.
-    used, triangles = np.unique(subject.triangles, return_inverse=True)
-    triangles = triangles.reshape(-1, 3)
+    # matplotlib makes room for all points, and some vertices may belong to no element.
+    used, places = np.unique(
+        np.concatenate([subject.triangles.ravel(), subject.quadrilaterals.ravel()]), return_inverse=True
+    )
+    of_triangles, of_others = np.split(places.ravel(), [subject.triangles.size])
+    triangles, quadrilaterals = of_triangles.reshape(-1, 3), of_others.reshape(-1, 4)
     if ax is None:
         width, height = np.ptp(states["after"][used], axis=0)
         each = 6.0 * min(max(height / max(width, np.finfo(float).tiny), 0.3), 2.0)
@@ -66,7 +70,7 @@ def plot(
     else:
         figure, all_axes = ax.figure, [ax]
         names = names[-1:]
-    values = {name: _judged_values(states[name], subject.triangles, measure) for name in names}
+    values = {name: _judged_values(states[name], subject, measure) for name in names}
     row = next(row for row in _native.measures() if row["name"] == measure.lower().replace("_", "-"))
     colors = plt.get_cmap(options.get("cmap", LinearSegmentedColormap.from_list("quality", scale["colors"])))
     chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2}
@@ -78,9 +82,10 @@ def plot(
     drawn: Any = None
     for name, axis in zip(names, all_axes):
         points = states[name][used]
-        drawn = axis.tripcolor(
-            points[:, 0], points[:, 1], triangles, facecolors=values[name], **chosen
-        )
+        if len(quadrilaterals):
+            drawn = _add_polygons(axis, [*points[triangles], *points[quadrilaterals]], values[name], chosen)
+        else:
+            drawn = axis.tripcolor(points[:, 0], points[:, 1], triangles, facecolors=values[name], **chosen)
         axis.set_aspect("equal")
         axis.set_title(name)
         if subject.axes != ("x", "y"):
@@ -88,7 +93,7 @@ def plot(
     every = np.concatenate(list(values.values()))
     label = f"{measure} ({row['unit']})" if row["unit"] else measure
     if np.isnan(every).any():
-        label += ", red: inverted or flat"
+        label += ", red: inverted or flat" + (" or concave" if len(quadrilaterals) else "")
     # The ends of the bar are pointed where values lie beyond.
     is_below, is_above = (every < drawn.norm.vmin).any(), (every > drawn.norm.vmax).any()
     extend = ("neither", "min", "max", "both")[is_below + 2 * is_above]
@@ -117,10 +122,31 @@ def _pyplot() -> Any:
     return plt
 
 
-def _judged_values(flat: Doubles, triangles: Integers, measure: str) -> Doubles:
-    """Return the value of a measure for each triangle: a finite number, or NaN for an inverted or flat triangle."""
-    values: Doubles = np.minimum(_native.quality(flat, triangles, measure, "plane", "data"), 1e300)
-    values[_native.quality(flat, triangles, "shape", "plane", "data") <= 0.0] = np.nan
+def _add_polygons(axis: Any, corners: list[Doubles], values: Doubles, chosen: dict[str, Any]) -> Any:
+    """Draw polygons, each by its corners of shape (k, 2), as `tripcolor` draws triangles."""
+    from matplotlib.collections import PolyCollection
+
+    options = dict(chosen)
+    low, high = options.pop("vmin", None), options.pop("vmax", None)
+    drawn = PolyCollection(corners, array=values, **options)
+    if low is not None or high is not None:
+        drawn.set_clim(low, high)
+    drawn.autoscale_None()
+    axis.add_collection(drawn)
+    axis.autoscale_view()
+    return drawn
+
+
+def _judged_values(flat: Doubles, subject: Subject, measure: str) -> Doubles:
+    """Return the value of a measure for each triangle, then for each quadrilateral.
+
+    A finite number, or NaN for an element that is inverted, flat or concave.
+    """
+    cells = (subject.triangles, subject.quadrilaterals)
+    values: Doubles = np.minimum(_native.quality(flat, cells, measure, "plane", "data"), 1e300)
+    if np.isnan(values[len(subject.triangles) :]).any():
+        raise OptionError(f"measure: quadrilaterals have no {measure}. Choose another measure")
+    values[_native.quality(flat, cells, "shape", "plane", "data") <= 0.0] = np.nan
     return values
 
 
@@ -131,13 +157,15 @@ def _which_error(which: str) -> Exception:
 def html(subject: Subject, rows: Sequence[tuple[str, str, str]], ending: str) -> str:
     """Return a mesh before and after a run as HTML: pictures colored by shape, a table of three columns, and a sentence."""
     pictures = legend = ""
-    if len(subject.triangles) <= MOST_TRIANGLES:
+    if len(subject.triangles) + len(subject.quadrilaterals) <= MOST_ELEMENTS:
         pictures = "".join(
             f'<figure style="display:inline-block;margin:4px"><figcaption>{name}</figcaption>'
-            f"{svg(points, subject.triangles)}</figure>"
+            f"{svg(points, subject)}</figure>"
             for name, points in subject.states.items()
         )
         legend = f"{_native.color_scale('shape', None)['legend']}.<br/>"
+        if len(subject.quadrilaterals):
+            legend = legend.replace("Triangles", "Triangles and quadrilaterals", 1)
     table = "".join(
         f"<tr><th>{name}</th><td>{was}</td><td>{now}</td></tr>" for name, was, now in rows
     )
@@ -147,23 +175,26 @@ def html(subject: Subject, rows: Sequence[tuple[str, str, str]], ending: str) ->
     )
 
 
-def svg(flat: Doubles, triangles: Integers) -> str:
-    """Return a mesh with points of shape (n, 2) as an SVG picture, each triangle colored by its shape."""
-    used = np.unique(triangles)
+def svg(flat: Doubles, subject: Subject) -> str:
+    """Return a mesh with points of shape (n, 2) as an SVG picture, each element colored by its shape."""
+    used = np.union1d(subject.triangles, subject.quadrilaterals)
     low, high = flat[used].min(axis=0), flat[used].max(axis=0)
     size = np.maximum(high - low, np.finfo(float).tiny)
     scale = WIDTH / max(size[0], size[1])
     xy = np.round((flat - low) * [scale, -scale] + [0.0, scale * size[1]], 2)
     chart = _native.color_scale("shape", None)
-    quality = _judged_values(flat, triangles, "shape")
+    quality = _judged_values(flat, subject, "shape")
     shares = (quality - chart["low"]) / (chart["high"] - chart["low"])
     steps = len(chart["colors"])
-    # Inverted and flat triangles have the number after those of the steps.
+    # Inverted, flat and concave elements have the number after those of the steps.
     colors = np.nan_to_num(np.clip(np.floor(shares * steps), 0, steps - 1), nan=steps)
+    of_triangles, of_others = np.split(colors, [len(subject.triangles)])
     paths = []
     for number, color in enumerate([*chart["colors"], chart["inverted"]]):
-        corners = xy[triangles[colors == number]].reshape(-1, 6).tolist()
+        corners = xy[subject.triangles[of_triangles == number]].reshape(-1, 6).tolist()
         path = "".join("M%g %gL%g %gL%g %gZ" % tuple(corner) for corner in corners)
+        corners = xy[subject.quadrilaterals[of_others == number]].reshape(-1, 8).tolist()
+        path += "".join("M%g %gL%g %gL%g %gL%g %gZ" % tuple(corner) for corner in corners)
         if path:
             paths.append(f'<path fill="{color}" d="{path}"/>')
     width, height = size * scale

@@ -12,7 +12,7 @@ from gpu_smooth._ends import ends_of_numbers
 from gpu_smooth._errors import MeshError
 
 # Types of VTK's cells.
-VERTEX, POLY_VERTEX, LINE, POLY_LINE, TRIANGLE = 1, 2, 3, 4, 5
+VERTEX, POLY_VERTEX, LINE, POLY_LINE, TRIANGLE, QUAD = 1, 2, 3, 4, 5, 9
 
 
 class _Part:
@@ -58,23 +58,24 @@ def cells_of(mesh: Any) -> Cells:
     if isinstance(mesh, pyvista.UnstructuredGrid):
         part, types = _part(mesh.GetCells()), np.asarray(mesh.celltypes)
         is_line = np.isin(types, (LINE, POLY_LINE))
-        is_triangle = types == TRIANGLE
+        is_triangle, is_quad = types == TRIANGLE, types == QUAD
         lines = part.segments(is_line) if len(types) else np.empty((0, 2), np.int64)
         is_line_cell, line_sizes = is_line, part.sizes
-        anchored = part.vertices(~(is_line | is_triangle))
-        triangles = part.rows(is_triangle, 3)
+        anchored = part.vertices(~(is_line | is_triangle | is_quad))
+        triangles, quadrilaterals = part.rows(is_triangle, 3), part.rows(is_quad, 4)
     elif isinstance(mesh, pyvista.PolyData):
         # Cell data are of vertices, lines, polygons and strips, in this order.
         parts = [_part(own()) for own in (mesh.GetVerts, mesh.GetLines, mesh.GetPolys, mesh.GetStrips)]
         vertices, polylines, polygons, strips = parts
-        is_polygon = polygons.sizes == 3
-        triangles = polygons.rows(is_polygon, 3)
+        is_three, is_four = polygons.sizes == 3, polygons.sizes == 4
+        triangles, quadrilaterals = polygons.rows(is_three, 3), polygons.rows(is_four, 4)
         lines = polylines.segments(np.ones(len(polylines.sizes), bool))
         anchored = np.concatenate(
-            [vertices.connectivity, strips.connectivity, polygons.vertices(~is_polygon)]
+            [vertices.connectivity, strips.connectivity, polygons.vertices(~(is_three | is_four))]
         )
-        is_triangle = np.concatenate(
-            [is_polygon if own is polygons else np.zeros(len(own.sizes), bool) for own in parts]
+        is_triangle, is_quad = (
+            np.concatenate([chosen if own is polygons else np.zeros(len(own.sizes), bool) for own in parts])
+            for chosen in (is_three, is_four)
         )
         is_line_cell = np.concatenate([np.full(len(own.sizes), own is polylines) for own in parts])
         line_sizes = np.concatenate([own.sizes for own in parts])
@@ -84,13 +85,16 @@ def cells_of(mesh: Any) -> Cells:
             "unstructured_grid()"
         )
     regions = next((mesh.cell_data[name] for name in REGIONS if name in mesh.cell_data), None)
-    of_triangles = None if regions is None else whole(np.asarray(regions)[is_triangle])
+    of_elements = None
+    if regions is not None:
+        numbers = np.asarray(regions)
+        of_elements = whole(np.concatenate([numbers[is_triangle], numbers[is_quad]]))
     of_lines = None if regions is None else whole(np.asarray(regions)[is_line_cell])
     ends = np.empty(0, np.int64)
     if of_lines is not None:
         # Lines of fewer than two vertices have no edges.
         ends = ends_of_numbers(lines, np.repeat(of_lines, np.maximum(line_sizes[is_line_cell] - 1, 0)))
-    return Cells(triangles, lines, anchored.astype(np.int64), of_triangles, ends)
+    return Cells(triangles, lines, anchored.astype(np.int64), of_elements, quadrilaterals, ends)
 
 
 def points_of(mesh: Any) -> Any:

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 # Methods and properties of an outcome whose values a pickled result has.
 _METHODS = (
-    "triangles", "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before", "quality_after"
+    "triangles", "quadrilaterals", "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before",
+    "quality_after",
 )
 _PROPERTIES = (
     "axes", "metric", "has_target", "engine", "stop", "fault", "remarks", "sweeps", "corrections", "newton_steps",
@@ -47,6 +48,11 @@ class Result:
     def triangles(self) -> Integers:
         """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
         return self._outcome.triangles()
+
+    @functools.cached_property
+    def quadrilaterals(self) -> Integers:
+        """Vertices of each quadrilateral, of shape (k, 4), counter-clockwise."""
+        return self._outcome.quadrilaterals()
 
     @property
     def mesh(self) -> Any:
@@ -162,7 +168,7 @@ class Result:
 
     @property
     def movable_f(self) -> tuple[float, float]:
-        """f over the triangles that can move, which judges the run, before and after the run."""
+        """f over the triangles and quadrilaterals that can move, which judges the run, before and after the run."""
         return self._outcome.movable_f
 
     @property
@@ -210,7 +216,7 @@ class Result:
         picture_range: tuple[float, float] | None = None,
         **options: Any,
     ) -> Any:
-        """Draw the mesh by matplotlib, each triangle colored by a measure. Inverted and flat triangles are red.
+        """Draw the mesh by matplotlib, each element colored by a measure. Inverted, flat and concave elements are red.
 
         Parameters
         ----------
@@ -224,7 +230,8 @@ class Result:
             Values of the measure between which colors change, as `--picture-range` of the command line. Further values have
             the color of the nearer one. By default, colors change where good meshes differ, such as from 0.5 to 1 by shape.
         **options
-            Passed to `matplotlib.axes.Axes.tripcolor`, such as `cmap`, `vmin` or `edgecolors`.
+            Passed to `matplotlib.axes.Axes.tripcolor`, or to `matplotlib.collections.PolyCollection` for a mesh with
+            quadrilaterals, such as `cmap`, `vmin` or `edgecolors`.
 
         Returns
         -------
@@ -235,7 +242,7 @@ class Result:
         ImportError
             matplotlib is not installed.
         OptionError
-            No measure has the name, or the measure has no such range.
+            No measure has the name, the measure has no such range, or quadrilaterals of the mesh do not have it.
         """
         return _picture.plot(self._subject(), which, measure, ax, picture_range, options)
 
@@ -260,14 +267,14 @@ class Result:
             Values of the measure between which colors change, as `--picture-range` of the command line. Further values have
             the color of the nearer one. By default, colors change where good meshes differ, such as from 0.5 to 1 by shape.
         **options
-            Passed to `matplotlib.axes.Axes.tripcolor`.
+            Options of `plot` for matplotlib.
 
         Raises
         ------
         ImportError
             matplotlib is not installed.
         OptionError
-            No measure has the name, or the measure has no such range.
+            No measure has the name, the measure has no such range, or quadrilaterals of the mesh do not have it.
         """
         _picture.show(self._subject(), which, measure, picture_range, options)
 
@@ -281,7 +288,7 @@ class Result:
     def _subject(self) -> _picture.Subject:
         outcome = self._outcome
         states = {"before": outcome.flat_points_before(), "after": outcome.flat_points()}
-        return _picture.Subject(states, self.triangles, self.axes)
+        return _picture.Subject(states, self.triangles, self.quadrilaterals, self.axes)
 
     def _judged(self) -> tuple[str, float, float]:
         """Return the name of the objective that judges the run, and its values before and after the run."""

@@ -15,20 +15,26 @@ from gpu_smooth._errors import MeshError
 
 
 def points_of(mesh: Any) -> Any:
-    """Return the points of a `skfem.MeshTri`, of shape (n, 2)."""
+    """Return the points of a `skfem.MeshTri` or `MeshQuad`, of shape (n, 2)."""
     return np.ascontiguousarray(np.asarray(mesh.p).T)
 
 
 def cells_of(mesh: Any) -> Cells:
-    """Return the cells of a `skfem.MeshTri`: its triangles, the facets of its boundaries, and its subdomains as regions."""
+    """Return the cells of a `skfem.MeshTri` or `MeshQuad`: its elements, the facets of its boundaries, and its subdomains as
+    regions."""
     corners = np.asarray(mesh.t)
-    # Vertices of further types are no corners of triangles, such as the middles of curved edges.
-    is_linear = "MeshTri2" not in {kind.__name__ for kind in type(mesh).__mro__}
-    if len(corners) != 3 or len(mesh.p) != 2 or not is_linear:
-        raise MeshError(f"mesh: {type(mesh).__name__} is not accepted. Pass a MeshTri of linear triangles, such as MeshTri1")
+    # Vertices of further types are no corners of elements, such as the middles of curved edges. Tetrahedra have four vertices too.
+    kinds = {kind.__name__ for kind in type(mesh).__mro__}
+    is_linear = not kinds & {"MeshTri2", "MeshQuad2"}
+    if len(corners) not in (3, 4) or len(mesh.p) != 2 or not is_linear:
+        raise MeshError(
+            f"mesh: {type(mesh).__name__} is not accepted. Pass a MeshTri or MeshQuad of linear elements, such as MeshTri1"
+        )
     lines = [np.empty((0, 2), np.int64), *(_edges(mesh, own) for own in (mesh.boundaries or {}).values())]
-    triangles = np.ascontiguousarray(corners.T).astype(np.int64)
-    return Cells(triangles, np.concatenate(lines), np.empty(0, np.int64), _regions(mesh))
+    elements, none = np.ascontiguousarray(corners.T).astype(np.int64), np.empty(0, np.int64)
+    if len(corners) == 4:
+        return Cells(none.reshape(0, 3), np.concatenate(lines), none, _regions(mesh), elements)
+    return Cells(elements, np.concatenate(lines), none, _regions(mesh))
 
 
 def _edges(mesh: Any, facets: Any) -> Any:
@@ -37,7 +43,7 @@ def _edges(mesh: Any, facets: Any) -> Any:
 
 
 def _regions(mesh: Any) -> Any:
-    """Return a number for each triangle, which differs where a triangle is in other subdomains; None without subdomains."""
+    """Return a number for each element, which differs where an element is in other subdomains; None without subdomains."""
     subdomains = mesh.subdomains or {}
     if not subdomains:
         return None
@@ -49,10 +55,10 @@ def _regions(mesh: Any) -> Any:
 
 def groups_of(mesh: Any) -> dict[str, Callable[[], Any]]:
     """Return the boundaries and subdomains of a mesh by their names."""
-    of_triangles = np.asarray(mesh.t)
+    corners = np.asarray(mesh.t)
     groups: dict[str, Callable[[], Any]] = {}
     for name, own in (mesh.subdomains or {}).items():
-        groups[name] = functools.partial(np.unique, of_triangles[:, np.asarray(own)])
+        groups[name] = functools.partial(np.unique, corners[:, np.asarray(own)])
     for name, own in (mesh.boundaries or {}).items():
         groups[name] = functools.partial(np.unique, _edges(mesh, own))
     return groups

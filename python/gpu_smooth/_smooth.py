@@ -34,7 +34,7 @@ class Smoother:
     triangles : array_like of int, shape (m, 3)
         Vertices of each triangle, numbered from 0.
     **options
-        Options that belong to the mesh: `fixed`, `lines`, `regions`, `slide`, `corner_angle`, `hausdorff`, `periodic`,
+        Options that belong to the mesh: `quadrilaterals`, `fixed`, `lines`, `regions`, `slide`, `corner_angle`, `hausdorff`, `periodic`,
         `free_lines`, `keep_layers`, `only_bad`, `rings`, `target`, `target_rings`, `target_of`, `surface`, `z` and `untangle`.
         `smooth` describes each.
 
@@ -76,7 +76,7 @@ class Smoother:
         ----------
         points : array_like of float, shape (n, 2) or (n, 3), optional
             New positions of all vertices, such as after a step of a moving boundary, in the plane of the points that were
-            passed to the constructor. Fixed vertices and the boundary may be anywhere. Triangles, fixed vertices and boundary
+            passed to the constructor. Fixed vertices and the boundary may be anywhere. Elements, fixed vertices and boundary
             layers are those of the constructor; targets and the lines along which vertices slide are those of the new points.
             A mesh that is tangled there is untangled first if the constructor was called with `untangle=True`. The
             result is that of a new `Smoother` within `tolerance`, as vertices may be visited in another order.
@@ -121,7 +121,8 @@ class Smoother:
 
     def __repr__(self) -> str:
         free = self.free
-        return f"Smoother({len(free)} vertices, {free.sum()} free, {len(self.triangles)} triangles)"
+        others = f", {len(self.quadrilaterals)} quadrilaterals" if len(self.quadrilaterals) else ""
+        return f"Smoother({len(free)} vertices, {free.sum()} free, {len(self.triangles)} triangles{others})"
 
     # A prepared mesh does not change, so that copies may share it.
     def __copy__(self) -> Smoother:
@@ -138,6 +139,11 @@ class Smoother:
         """Vertices of each triangle, of shape (m, 3), counter-clockwise."""
         return self._native.triangles
 
+    @functools.cached_property
+    def quadrilaterals(self) -> Integers:
+        """Vertices of each quadrilateral, of shape (k, 4), counter-clockwise."""
+        return self._native.quadrilaterals
+
 
 MESH_OPTIONS = frozenset(_native.mesh_options())
 RUN_OPTIONS = frozenset(_native.run_options())
@@ -150,27 +156,33 @@ def smooth(points: MeshFile, triangles: None = None, **options: Unpack[SmoothOpt
 @overload
 def smooth(points: Mesh, triangles: None = None, **options: Unpack[SmoothOptions]) -> Mesh: ...
 def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
-    """Move the interior vertices of a mesh so that its triangles get better shapes, and return the new points.
+    """Move the interior vertices of a mesh so that its triangles and quadrilaterals get better shapes, and return the new points.
 
-    No triangle is ever inverted. The boundary stays unless `slide` is set. Arrays are not changed.
+    No triangle is ever inverted, and no quadrilateral loses its convexity. The boundary stays unless `slide` is set. Arrays are
+    not changed.
 
     Parameters
     ----------
     points : array_like of float, shape (n, 2) or (n, 3); or a mesh
         Positions of the vertices, in any unit. Vertices with three coordinates lie in one plane of any orientation, and
         are moved in the plane; `z` makes exceptions. The result has the same shape, and is float32 if the array is. In
-        place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid`, a `pyvista.PolyData`, a `skfem.MeshTri`, a
-        `meshkernel.Mesh2d`, or a `Ugrid2d`, `UgridDataset` or `UgridDataArray` of xugrid may be passed. A mesh of the same kind is then returned, with all other cells, groups and
-        data. Vertices of other cells, of boundaries of scikit-fem, and between regions stay. A `MeshFile` may be passed
-        too; the new points are then returned, for `MeshFile.write`.
+        place of both arrays, a `meshio.Mesh`, a `pyvista.UnstructuredGrid`, a `pyvista.PolyData`, a `skfem.MeshTri` or
+        `MeshQuad`, a `meshkernel.Mesh2d`, or a `Ugrid2d`, `UgridDataset` or `UgridDataArray` of xugrid may be passed. A mesh of
+        the same kind is then returned, with all other cells, groups and data. Vertices of cells other than triangles and
+        quadrilaterals, of boundaries of scikit-fem, and between regions stay. A `MeshFile` may be passed too; the new points are
+        then returned, for `MeshFile.write`.
     triangles : array_like of int, shape (m, 3)
-        Vertices of each triangle, numbered from 0, in either winding.
+        Vertices of each triangle, numbered from 0, in either winding. An empty list for a mesh of quadrilaterals alone.
+    quadrilaterals : array_like of int, shape (k, 4), or {"keep", "move"}, optional
+        Vertices of each quadrilateral, around it in either direction. It must be convex, unless `untangle` is set. For a mesh in
+        place of the arrays, whether the vertices of its quadrilaterals move, or all stay. They move by default, except on a
+        sphere across the date line or with a pole. Quadrilaterals that list a vertex twice stay anyway.
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
         Vertices that neither move nor slide. For a mesh with named groups, also the name of a group, or a list of names.
     lines : array_like of int, shape (k, 2), optional
         Edges of triangles, such as those on a line between two materials. Their vertices stay, or slide along the lines.
-    regions : array_like of int, shape (m,), optional
-        Region of each triangle. Vertices between regions stay, or slide along the lines between regions.
+    regions : array_like of int, shape (m,) or (m + k,), optional
+        Region of each triangle, then of each quadrilateral. Vertices between regions stay, or slide along the lines between regions.
     slide : bool, default False
         Let vertices of the boundary, between regions and on lines slide along them, from corner to corner. Straight
         lines stay straight; on other lines, vertices follow a cubic through the vertices of the given mesh. Two

@@ -120,8 +120,9 @@ def _interpolated(data: Any, grid: Any, points: Any, surface: str) -> Any:
     axis = data.get_axis_num(grid.node_dimension)
     old = np.moveaxis(data.to_numpy(), axis, 0)
     values = old.reshape(len(points), -1).astype(np.float64)
-    triangles = cells_of(grid).triangles
-    new = _native.interpolate(grid.node_coordinates, triangles, points, values, surface, "coordinate")
+    cells = cells_of(grid).proper()
+    elements = (cells.triangles, cells.quadrilaterals)
+    new = _native.interpolate(grid.node_coordinates, elements, points, values, surface, "coordinate")
     # Beside a node without a number, the data stay.
     new = np.where(np.isfinite(new), new, values).reshape(old.shape)
     return data.copy(data=np.moveaxis(new, 0, axis).astype(data.dtype))

@@ -3,12 +3,14 @@
 use gpu_smooth::interpolate::Interpolation;
 use gpu_smooth::measure::{Change, Distribution};
 use gpu_smooth::targets::Surface;
+use gpu_smooth::topology::BadQuadrilateral;
 use gpu_smooth::{Mesh, MeshError, Quality as MeshQuality, Topology, Untangle};
+use gpu_smooth_job::halves_of_quadrilaterals;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{self, Points, PointsForm};
+use crate::arrays::{self, Cells, Points, PointsForm};
 use crate::error;
 use crate::input::{self, Failure};
 use crate::measures::{self, Named, Quality};
@@ -18,12 +20,12 @@ use crate::run_options::RunOptions;
 use crate::threads;
 use crate::values::Given;
 
-/// Moves free vertices until no triangle is inverted or flat.
+/// Moves free vertices until no triangle is inverted or flat, and all quadrilaterals are convex.
 #[pyfunction]
-#[pyo3(signature = (points, triangles, fixed, z, keep_going, time_limit, on_sweep))]
+#[pyo3(signature = (points, cells, fixed, z, keep_going, time_limit, on_sweep))]
 pub(crate) fn untangle<'py>(
     points: &Bound<'py, PyAny>,
-    triangles: &Bound<'py, PyAny>,
+    cells: Cells<'py>,
     fixed: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,
     keep_going: &Bound<'py, PyAny>,
@@ -34,7 +36,7 @@ pub(crate) fn untangle<'py>(
     let z = plane::third_coordinate(z)?;
     let keep_going = Given { name: "keep_going", value: keep_going }.flag()?;
     let given = Named { name: "points", points };
-    let (mut mesh, form) = measures::mesh(given, triangles, z, Surface::Plane)?;
+    let (mut mesh, form) = measures::mesh(given, &cells, z, Surface::Plane)?;
     if !fixed.is_none() {
         mesh.fixed = arrays::vertex_set("fixed", fixed, mesh.points.len())?;
     }
@@ -71,7 +73,7 @@ pub(crate) fn untangle<'py>(
 pub(crate) fn interpolate<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
-    triangles: &Bound<'py, PyAny>,
+    cells: Cells<'py>,
     moved: &Bound<'py, PyAny>,
     values: &Bound<'py, PyAny>,
     on: &Bound<'py, PyAny>,
@@ -79,23 +81,59 @@ pub(crate) fn interpolate<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let (surface, z) = (measures::surface(on)?, plane::third_coordinate(z)?);
     let given = Named { name: "points", points };
-    let (mesh, form) = measures::mesh(given, triangles, z, surface)?;
+    let (mesh, form) = measures::mesh(given, &cells, z, surface)?;
     let moved = likewise("moved", moved, &mesh, &form)?.xy;
     let count = mesh.points.len();
     let values = arrays::per_vertex("values", values, count)?;
+    let split = Split::of(mesh);
+    let mesh = &split.mesh;
     let taken = threads::detached(py, || {
-        let Some(chart) = measures::chart(&mesh, surface, form.precision())? else {
-            return interpolated(&mesh, &moved, &values.numbers, values.each);
+        let Some(chart) = measures::chart(mesh, surface, form.precision())? else {
+            return interpolated(mesh, &moved, &values.numbers, values.each);
         };
         let numbers = chart.extended(&values.numbers, values.each);
         let taken = interpolated(chart.mesh(), &chart.continued(&moved), &numbers, values.each);
         // The copies of vertices come last.
         taken.map(|taken| taken[..count * values.each].to_vec())
     })?;
-    let taken = taken.map_err(|error| error::of_mesh(py, &error))?;
+    let taken = taken.map_err(|error| error::of_mesh(py, &split.named(error)))?;
     match values.is_flat {
         true => Ok(PyArray1::from_vec(py, taken).into_any()),
         false => arrays::matrix(py, taken, [count, values.each]),
+    }
+}
+
+/// A mesh whose quadrilaterals are cut in two triangles each, along the shorter diagonal. The cut triangles come last.
+struct Split {
+    mesh: Mesh,
+    quadrilaterals: Vec<[u32; 4]>,
+}
+
+impl Split {
+    fn of(mut mesh: Mesh) -> Self {
+        let quadrilaterals = std::mem::take(&mut mesh.quadrilaterals);
+        let halves = halves_of_quadrilaterals(&mesh.points, quadrilaterals.iter().copied());
+        mesh.triangles.extend(halves);
+        Self { mesh, quadrilaterals }
+    }
+
+    /// Returns an error of the cut mesh in terms of the mesh before: an inverted triangle of a quadrilateral is a concave corner.
+    fn named(&self, error: MeshError) -> MeshError {
+        let MeshError::Infeasible { mut triangles, mut quadrilaterals } = error else {
+            return error;
+        };
+        let count = self.mesh.triangles.len() - 2 * self.quadrilaterals.len();
+        let first = triangles.partition_point(|bad| bad.triangle < count);
+        for bad in triangles.split_off(first) {
+            let quadrilateral = (bad.triangle - count) / 2;
+            let vertices = self.quadrilaterals[quadrilateral];
+            // The vertex that is not on the diagonal.
+            let apex = self.mesh.triangles[bad.triangle][1];
+            let corner = vertices.iter().position(|&v| v == apex).unwrap_or_default();
+            let flat = bad.flat;
+            quadrilaterals.push(BadQuadrilateral { quadrilateral, vertices, corner, flat });
+        }
+        MeshError::Infeasible { triangles, quadrilaterals }
     }
 }
 
@@ -116,13 +154,13 @@ pub(crate) fn compare<'py>(
     py: Python<'py>,
     before: &Bound<'py, PyAny>,
     after: &Bound<'py, PyAny>,
-    triangles: &Bound<'py, PyAny>,
+    cells: Cells<'py>,
     on: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (surface, z) = (measures::surface(on)?, plane::third_coordinate(z)?);
     let given = Named { name: "before", points: before };
-    let (mesh, form) = measures::mesh(given, triangles, z, surface)?;
+    let (mesh, form) = measures::mesh(given, &cells, z, surface)?;
     let Points { xy: after, form: other } = likewise("after", after, &mesh, &form)?;
     let compared = threads::detached(py, || {
         let chart = measures::chart(&mesh, surface, form.precision())?;

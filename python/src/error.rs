@@ -2,7 +2,8 @@
 //! and a remedy.
 
 use gpu_smooth::front_ends::NotPlanar;
-use gpu_smooth::{GpuError, MeshError, SmoothError};
+use gpu_smooth::topology::{BadQuadrilateral, BadTriangle};
+use gpu_smooth::{Element, GpuError, MeshError, SmoothError};
 use gpu_smooth_job::options::{GivenOptions, Spelling};
 use mesh_io::{ReadError, WriteError};
 use pyo3::intern;
@@ -95,16 +96,48 @@ pub(crate) fn of_gpu(py: Python<'_>, error: &GpuError) -> PyErr {
     device(py, &format!("engine: {error}. {remedy}"))
 }
 
-/// Returns the exception of a mesh that cannot be untangled.
-pub(crate) fn tangled(py: Python<'_>, text: &str, triangles: Vec<usize>) -> PyErr {
-    with_indices(py, mesh(py, text), triangles, None)
+/// The indices of triangles, quadrilaterals and a vertex that an exception names.
+#[derive(Default)]
+pub(crate) struct Indices {
+    triangles: Vec<usize>,
+    quadrilaterals: Vec<usize>,
+    vertex: Option<usize>,
 }
 
-/// Returns the exception of a mesh that the library refuses. The attributes `triangles` and `vertex` of the exception
-/// have the indices that the error names.
+impl Indices {
+    fn of_vertex(vertex: usize) -> Self {
+        Self { vertex: Some(vertex), ..Self::default() }
+    }
+
+    fn of_elements(elements: &[Element]) -> Self {
+        let mut found = Self::default();
+        for element in elements {
+            match *element {
+                Element::Triangle(index) => found.triangles.push(index),
+                Element::Quadrilateral(index) => found.quadrilaterals.push(index),
+            }
+        }
+        found
+    }
+
+    /// Returns the indices of bad elements. Several corners of a quadrilateral follow each other.
+    pub(crate) fn of_bad(triangles: &[BadTriangle], corners: &[BadQuadrilateral]) -> Self {
+        let triangles = triangles.iter().map(|bad| bad.triangle).collect();
+        let mut quadrilaterals: Vec<usize> = corners.iter().map(|bad| bad.quadrilateral).collect();
+        quadrilaterals.dedup();
+        Self { triangles, quadrilaterals, vertex: None }
+    }
+}
+
+/// Returns the exception of a mesh that cannot be untangled.
+pub(crate) fn tangled(py: Python<'_>, text: &str, left: Indices) -> PyErr {
+    with_indices(py, mesh(py, text), left)
+}
+
+/// Returns the exception of a mesh that the library refuses. The attributes `triangles`, `quadrilaterals` and `vertex` of the
+/// exception have the indices that the error names.
 pub(crate) fn of_mesh(py: Python<'_>, error: &MeshError) -> PyErr {
-    let (triangles, vertex) = indices(error);
-    with_indices(py, mesh(py, &explained(error)), triangles, vertex)
+    with_indices(py, mesh(py, &explained(error)), indices(error))
 }
 
 /// Returns the exception of points that do not lie in one plane.
@@ -115,7 +148,7 @@ pub(crate) fn not_planar(py: Python<'_>, name: &str, refused: &NotPlanar) -> PyE
          vertices. If z is data of a mesh in x and y, such as the depth of water, pass z=\"data\". Curved surfaces are not \
          smoothed"
     );
-    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+    with_indices(py, mesh(py, &text), Indices::of_vertex(vertex))
 }
 
 const NOT_FINITE_REMEDY: &str = "Replace NaN and infinity, or remove the vertex";
@@ -125,7 +158,7 @@ pub(crate) fn not_finite(py: Python<'_>, name: &str, vertex: usize) -> PyErr {
     let text = format!(
         "{name}[{vertex}]: vertex {vertex} has a coordinate that is not a finite number. {NOT_FINITE_REMEDY}"
     );
-    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+    with_indices(py, mesh(py, &text), Indices::of_vertex(vertex))
 }
 
 /// Returns the exception of a third coordinate that is not finite.
@@ -134,7 +167,7 @@ pub(crate) fn third_coordinate(py: Python<'_>, name: &str, vertex: usize, z: f64
         "{name}[{vertex}, 2]: the third coordinate is {z}. Replace NaN and infinity, or pass z=\"data\" if z is data of a \
          mesh in x and y"
     );
-    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+    with_indices(py, mesh(py, &text), Indices::of_vertex(vertex))
 }
 
 /// Returns the exception of a point that is not in the plane of a prepared mesh.
@@ -143,7 +176,7 @@ pub(crate) fn other_plane(py: Python<'_>, vertex: usize) -> PyErr {
         "points[{vertex}]: the vertex is not in the plane of the points of the Smoother. Make a Smoother of the new points, or \
          pass z=\"data\" to it if z is data of a mesh in x and y"
     );
-    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+    with_indices(py, mesh(py, &text), Indices::of_vertex(vertex))
 }
 
 /// Returns the exception of a point to write, at which a vertex is that a run keeps.
@@ -160,19 +193,16 @@ pub(crate) fn moved_fixed(py: Python<'_>, vertex: usize, slides: bool) -> PyErr 
              to write any points"
         ),
     };
-    with_indices(py, mesh(py, &text), Vec::new(), Some(vertex))
+    with_indices(py, mesh(py, &text), Indices::of_vertex(vertex))
 }
 
-/// Sets the attributes of an exception that name triangles and a vertex.
-fn with_indices(
-    py: Python<'_>,
-    raised: PyErr,
-    triangles: Vec<usize>,
-    vertex: Option<usize>,
-) -> PyErr {
+/// Sets the attributes of an exception that name triangles, quadrilaterals and a vertex.
+fn with_indices(py: Python<'_>, raised: PyErr, indices: Indices) -> PyErr {
+    let Indices { triangles, quadrilaterals, vertex } = indices;
     let value = raised.value(py);
-    let set = PyTuple::new(py, triangles)
-        .and_then(|triangles| value.setattr(intern!(py, "triangles"), triangles))
+    let set = |name, list| PyTuple::new(py, list).and_then(|list| value.setattr(name, list));
+    let set = set(intern!(py, "triangles"), triangles)
+        .and_then(|()| set(intern!(py, "quadrilaterals"), quadrilaterals))
         .and_then(|()| value.setattr(intern!(py, "vertex"), vertex));
     match set {
         Ok(()) => raised,
@@ -180,29 +210,49 @@ fn with_indices(
     }
 }
 
-/// Returns the triangles and the vertex that an error names.
-fn indices(error: &MeshError) -> (Vec<usize>, Option<usize>) {
+/// Returns the elements and the vertex that an error names.
+fn indices(error: &MeshError) -> Indices {
     match error {
         MeshError::NotFinite { vertex } | MeshError::OverlappingStar { vertex, .. } => {
-            (Vec::new(), Some(*vertex as usize))
+            Indices::of_vertex(*vertex as usize)
         }
         MeshError::IndexOutOfRange { element, vertex, .. } => {
-            (element.iter().map(|element| element.index()).collect(), Some(*vertex as usize))
+            let element = element.as_ref().map_or(&[][..], std::slice::from_ref);
+            Indices { vertex: Some(*vertex as usize), ..Indices::of_elements(element) }
         }
         MeshError::RepeatedVertex { element, vertex } => {
-            (vec![element.index()], Some(*vertex as usize))
+            let vertex = Some(*vertex as usize);
+            Indices { vertex, ..Indices::of_elements(&[*element]) }
         }
-        MeshError::EdgeOfThree { elements, .. } => {
-            (elements.iter().map(|element| element.index()).collect(), None)
+        MeshError::Doublet { vertex, elements } => {
+            Indices { vertex: Some(*vertex as usize), ..Indices::of_elements(elements) }
         }
-        MeshError::Infeasible { triangles, .. } => {
-            (triangles.iter().map(|bad| bad.triangle).collect(), None)
+        MeshError::EdgeOfThree { elements, .. } => Indices::of_elements(elements),
+        MeshError::Infeasible { triangles, quadrilaterals } => {
+            Indices::of_bad(triangles, quadrilaterals)
         }
         MeshError::Closed { element }
         | MeshError::BeyondPrecision { element, .. }
-        | MeshError::Pole { element } => (vec![element.index()], None),
-        MeshError::Target { vertex, .. } => (Vec::new(), Some(*vertex)),
-        _ => (Vec::new(), None),
+        | MeshError::Pole { element } => Indices::of_elements(&[*element]),
+        MeshError::Target { vertex, .. } => Indices::of_vertex(*vertex),
+        _ => Indices::default(),
+    }
+}
+
+/// Returns the argument and the row of an element, such as `triangles[4]`.
+fn argument(element: Element) -> String {
+    let name = match element {
+        Element::Triangle(_) => "triangles",
+        Element::Quadrilateral(_) => "quadrilaterals",
+    };
+    format!("{name}[{}]", element.index())
+}
+
+/// Returns the name of an element without its index.
+fn kind(element: Element) -> &'static str {
+    match element {
+        Element::Triangle(_) => "triangle",
+        Element::Quadrilateral(_) => "quadrilateral",
     }
 }
 
@@ -210,44 +260,69 @@ fn indices(error: &MeshError) -> (Vec<usize>, Option<usize>) {
 fn explained(error: &MeshError) -> String {
     match error {
         MeshError::Empty => {
-            "triangles: the mesh has no triangles. Pass an integer array of shape (m, 3) with at least one row".to_owned()
+            format!(
+                "triangles: {error}. Pass an integer array of shape (m, 3), or quadrilaterals of shape (k, 4), with at least one row"
+            )
         }
         MeshError::NotFinite { vertex } => {
             format!("points[{vertex}]: {error}. {NOT_FINITE_REMEDY}")
         }
         MeshError::OutOfRange { .. } => format!("points: {error}. Choose another unit of length"),
         MeshError::IndexOutOfRange { element: Some(element), .. } => {
-            let triangle = element.index();
-            format!("triangles[{triangle}]: {error}. Vertices are numbered from 0 by the rows of points")
+            let argument = argument(*element);
+            format!("{argument}: {error}. Vertices are numbered from 0 by the rows of points")
         }
         MeshError::RepeatedVertex { element, .. } => {
-            let triangle = element.index();
-            format!("triangles[{triangle}]: {error}. Remove the triangle")
+            format!("{}: {error}. Remove the {}", argument(*element), kind(*element))
         }
-        MeshError::EdgeOfThree { .. } => {
-            format!("triangles: {error}. Remove triangles until an edge has two at most")
+        MeshError::EdgeOfThree { elements, .. } => {
+            let name = match elements.iter().any(|own| matches!(own, Element::Triangle(_))) {
+                true => "triangles",
+                false => "quadrilaterals",
+            };
+            format!("{name}: {error}. Remove {name} until an edge has two at most")
         }
-        MeshError::Infeasible { .. } => {
-            format!("triangles: {error}. Pass untangle=True, or correct the points of their vertices")
+        MeshError::Doublet { vertex, .. } => format!("points[{vertex}]: {error}"),
+        MeshError::Infeasible { triangles, quadrilaterals } => {
+            let remedy = "Pass untangle=True, or correct the points of their vertices";
+            match &quadrilaterals[..] {
+                [first, others @ ..] if triangles.is_empty() => {
+                    let number = first.quadrilateral;
+                    let (problem, vertex) = (first.problem(), first.vertices[first.corner]);
+                    let more = match others.len() {
+                        0 => String::new(),
+                        n => format!(", one of {} corners that are not convex", n + 1),
+                    };
+                    format!(
+                        "quadrilaterals[{number}]: quadrilateral {number} is {problem} at vertex {vertex}{more}. {remedy}"
+                    )
+                }
+                _ => format!("triangles: {error}. {remedy}"),
+            }
         }
         MeshError::OverlappingStar { vertex, .. } => {
             format!("points[{vertex}]: {error}. Correct the points around the vertex")
         }
         MeshError::BeyondPrecision { element, usable, .. } => {
-            let triangle = element.index();
+            let argument = argument(*element);
             let usable = match usable.is_empty() {
                 true => "Pass untangle=True".to_owned(),
                 false => format!("Pass untangle=True, or a scheme of {}", usable.join(", ")),
             };
-            format!("triangles[{triangle}]: {error}. {usable}")
+            format!("{argument}: {error}. {usable}")
         }
         MeshError::Target { vertex, problem } => {
-            format!("target: vertex {vertex} has no target: {problem}. Sizes are positive, tensors (xx, xy, yy) positive definite")
+            format!(
+                "target: vertex {vertex} has no target: {problem}. Sizes are positive, tensors (xx, xy, yy) positive definite"
+            )
         }
         MeshError::NothingFree { .. } => format!(
             "{error}: all are on the boundary, fixed, on lines or between regions. Pass free_lines=True if lines hold them, \
              pass slide=True, fix fewer vertices, or refine the mesh"
         ),
+        MeshError::TrianglesAlone { .. } => {
+            format!("quadrilaterals: {error}. Fix their vertices, and pass the triangles alone")
+        }
         MeshError::PointCount { .. } => format!("points: {error}. Pass one row per vertex"),
         MeshError::ValueCount { .. } => format!("{error}. Pass one row per vertex"),
         other => other.to_string(),

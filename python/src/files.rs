@@ -32,6 +32,11 @@ fn indices<'py>(py: Python<'py>, list: &[u32]) -> Bound<'py, PyArray1<i64>> {
     PyArray1::from_vec(py, list.iter().map(|&index| i64::from(index)).collect())
 }
 
+/// Returns whether the vertices of a quadrilateral differ.
+fn is_proper(corners: &[u32; 4]) -> bool {
+    (1..4).all(|k| !corners[..k].contains(&corners[k]))
+}
+
 #[pymethods]
 impl MeshFile {
     #[new]
@@ -47,6 +52,7 @@ impl MeshFile {
         let allow_outside = Given { name: "allow_outside", value: allow_outside }.flag()?;
         let regions = regions.map(|value| Given { name: "regions", value }.text()).transpose()?;
         let options = ReadOptions::new().weld(weld).allow_outside(allow_outside).regions(regions);
+        let options = options.allow_quadrilaterals_alone(true);
         let file = threads::detached(py, || options.read(&path))?;
         Ok(Self(Arc::new(file.map_err(|error| error::of_reading(py, &error))?)))
     }
@@ -74,10 +80,28 @@ impl MeshFile {
         arrays::matrix(py, numbers, [triangles.len(), 3])
     }
 
+    /// The quadrilaterals of four different vertices.
+    #[getter]
+    fn quadrilaterals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let all = self.0.quadrilaterals().iter().filter(|corners| is_proper(corners));
+        let numbers: Vec<i64> = all.flatten().map(|&v| i64::from(v)).collect();
+        let rows = numbers.len() / 4;
+        arrays::matrix(py, numbers, [rows, 4])
+    }
+
+    /// The regions of the triangles, then those of the quadrilaterals of four different vertices.
     #[getter]
     fn regions<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<i64>>> {
-        let regions = self.0.regions()?.iter().map(|&region| i64::from(region)).collect();
-        Some(PyArray1::from_vec(py, regions))
+        let file = &self.0;
+        let of_triangles = match file.regions() {
+            Some(regions) => regions.to_vec(),
+            None => vec![0; file.triangles().len()],
+        };
+        let others = file.quadrilaterals().iter().zip(file.quadrilateral_regions());
+        let others = others.filter(|(corners, _)| is_proper(corners)).map(|(_, &region)| region);
+        let all: Vec<i64> = of_triangles.into_iter().chain(others).map(i64::from).collect();
+        let is_one = all.windows(2).all(|pair| pair[0] == pair[1]);
+        (!is_one).then(|| PyArray1::from_vec(py, all))
     }
 
     #[getter]
@@ -91,7 +115,7 @@ impl MeshFile {
     fn anchored<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let ends = threads::detached(py, || self.0.group_ends())?;
         let mut anchored = ends.map_err(|error| error::of_reading(py, &error))?;
-        anchored.extend(&self.0.constraints().anchored);
+        anchored.extend(&self.0.constraints_beside_quadrilaterals().anchored);
         anchored.sort_unstable();
         anchored.dedup();
         Ok(indices(py, &anchored))
@@ -100,13 +124,14 @@ impl MeshFile {
     /// The vertices that neither move nor slide, without the ends of groups.
     #[getter]
     fn anchored_alone<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        indices(py, &self.0.constraints().anchored)
+        indices(py, &self.0.constraints_beside_quadrilaterals().anchored)
     }
 
-    /// The vertices that the file constrains: those on lines, and those that neither move nor slide.
+    /// The vertices that the file constrains, apart from those of quadrilaterals: vertices on lines, and vertices that neither move
+    /// nor slide.
     #[getter]
     fn constrained<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        indices(py, &self.0.constraints().vertices)
+        indices(py, &self.0.constraints_beside_quadrilaterals().vertices)
     }
 
     #[getter]

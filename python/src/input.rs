@@ -6,13 +6,14 @@ use std::ops::ControlFlow;
 use gpu_smooth::layers::Layers;
 use gpu_smooth::options::Precision;
 use gpu_smooth::targets::Surface;
+use gpu_smooth::topology::{BadQuadrilateral, BadTriangle};
 use gpu_smooth::untangle::{Untangled, Untangling};
 use gpu_smooth::{Mesh, MeshError, SmoothError, Smoother, Topology, Untangle};
 use gpu_smooth_job::{Domain, look_like_degrees};
 
 use pyo3::prelude::*;
 
-use crate::error;
+use crate::error::{self, Indices};
 use crate::mesh_options::MeshOptions;
 use crate::movement;
 use crate::observer::RunObserver;
@@ -21,10 +22,10 @@ use crate::remarks::Remarks;
 /// The reason for which a mesh cannot be smoothed.
 pub(crate) enum Failure {
     Run(SmoothError),
-    /// The mesh cannot be untangled; with the reason and the triangles that stay inverted or flat.
+    /// The mesh cannot be untangled; with the reason and the elements that stay inverted, flat or concave.
     Tangled {
         text: String,
-        triangles: Vec<usize>,
+        left: Indices,
     },
 }
 
@@ -33,7 +34,7 @@ impl Failure {
     pub(crate) fn raised(self, py: Python<'_>) -> PyErr {
         match self {
             Self::Run(error) => error::of_run(py, &error),
-            Self::Tangled { text, triangles } => error::tangled(py, &text, triangles),
+            Self::Tangled { text, left } => error::tangled(py, &text, left),
         }
     }
 }
@@ -80,7 +81,8 @@ impl Input {
         let settings = options.settings();
         if let Some(limit) = settings.only_bad {
             let near = domain.fix_far_from_bad(limit, settings.rings_of_bad())?;
-            remarks.only_bad(limit, near.elements, near.free);
+            let has_others = !domain.mesh().quadrilaterals.is_empty();
+            remarks.only_bad(limit, near.elements, near.free, has_others);
         }
         let layers = movement::keep_layers(&mut domain, options, remarks)?;
         if !options.settings().slides {
@@ -154,36 +156,70 @@ pub(crate) fn untangled(
     let done = untangle_mesh(mesh, stored, observer)?;
     let remedy =
         "Pass the mesh to gpu_smooth.untangle with keep_going=True to get the best points found";
-    let bad = |list: &[gpu_smooth::topology::BadTriangle]| -> Vec<usize> {
-        list.iter().map(|bad| bad.triangle).collect()
-    };
-    match done {
-        Untangled { bad_before: 0, .. } => Ok(None),
-        Untangled { hopeless, .. } if !hopeless.is_empty() => Err(Failure::Tangled {
-            text: format!(
-                "triangles: triangle {} and {} more cannot be untangled, as none of their vertices is free, or two fixed \
-                 vertices are at the same point. Correct the points of their vertices, or fix fewer vertices",
-                hopeless[0].triangle,
-                hopeless.len() - 1
-            ),
-            triangles: bad(&hopeless),
-        }),
-        Untangled { left, sweeps, .. } if !left.is_empty() => Err(Failure::Tangled {
-            text: format!(
-                "triangles: {} triangles stay inverted or flat after {sweeps} sweeps of untangling, the first is triangle \
-                 {}. {remedy}",
-                left.len(),
-                left[0].triangle
-            ),
-            triangles: bad(&left),
-        }),
-        Untangled { overlapping: Some(vertex), .. } => Err(Failure::Tangled {
-            text: format!(
-                "points[{vertex}]: the triangles around the vertex wind more than once around it after untangling. {remedy}"
-            ),
-            triangles: Vec::new(),
-        }),
-        Untangled { points, .. } => Ok(Some(points)),
+    let failure = |text, left| Err(Failure::Tangled { text, left });
+    if done.bad_before == 0 {
+        return Ok(None);
+    }
+    if let Some(bad) = Bad::of(&done.hopeless, &done.hopeless_quadrilaterals) {
+        let Bad { argument, first, count, all, .. } = bad;
+        let text = format!(
+            "{argument}: {first} and {} more cannot be untangled, as none of their vertices is free, or two fixed vertices are \
+             at the same point. Correct the points of their vertices, or fix fewer vertices",
+            count - 1
+        );
+        return failure(text, all);
+    }
+    if let Some(bad) = Bad::of(&done.left, &done.left_quadrilaterals) {
+        let (Bad { argument, first, named, all, .. }, sweeps) = (bad, done.sweeps);
+        let text = format!(
+            "{argument}: {named} after {sweeps} sweeps of untangling, the first is {first}. {remedy}"
+        );
+        return failure(text, all);
+    }
+    if let Some(vertex) = done.overlapping {
+        let text = format!(
+            "points[{vertex}]: the triangles around the vertex wind more than once around it after untangling. {remedy}"
+        );
+        return failure(text, Indices::default());
+    }
+    Ok(Some(done.points))
+}
+
+/// Bad elements of a mesh, in words.
+struct Bad {
+    /// The argument that has the first element.
+    argument: &'static str,
+    first: String,
+    /// Number of bad triangles and of bad corners of quadrilaterals.
+    count: usize,
+    /// The numbers, and how the elements stay.
+    named: String,
+    all: Indices,
+}
+
+impl Bad {
+    /// Describes bad elements; `None` without such elements.
+    fn of(triangles: &[BadTriangle], corners: &[BadQuadrilateral]) -> Option<Self> {
+        let of_triangles = format!("{} triangles stay inverted or flat", triangles.len());
+        let of_corners =
+            format!("{} corners of quadrilaterals stay concave or flat", corners.len());
+        let (argument, first, named) = match (triangles, corners) {
+            ([], []) => return None,
+            ([first, ..], []) => {
+                ("triangles", format!("triangle {}", first.triangle), of_triangles)
+            }
+            ([first, ..], _) => {
+                let named = format!("{of_triangles}, and {of_corners}");
+                ("triangles", format!("triangle {}", first.triangle), named)
+            }
+            ([], [first, ..]) => {
+                let (number, vertex) = (first.quadrilateral, first.vertices[first.corner]);
+                let first = format!("quadrilateral {number} at vertex {vertex}");
+                ("quadrilaterals", first, of_corners)
+            }
+        };
+        let count = triangles.len() + corners.len();
+        Some(Self { argument, first, count, named, all: Indices::of_bad(triangles, corners) })
     }
 }
 
@@ -194,8 +230,10 @@ fn untangle_mesh(
     observer: &RunObserver<'_>,
 ) -> Result<Untangled, Failure> {
     let topology = Topology::by_area(mesh)?;
-    if !topology.bad_triangles(&mesh.points)?.is_empty() {
-        let refused = |text| Err(Failure::Tangled { text, triangles: Vec::new() });
+    let is_tangled = !topology.bad_triangles(&mesh.points)?.is_empty()
+        || !topology.bad_quadrilaterals(&mesh.points)?.is_empty();
+    if is_tangled {
+        let refused = |text| Err(Failure::Tangled { text, left: Indices::default() });
         if let Some(crossing) = topology.crossings(&mesh.points, 1)?.first() {
             let [[a, b], [c, d]] = crossing.edges;
             return refused(format!(

@@ -1,17 +1,17 @@
-//! Quality of the triangles of a mesh.
+//! Quality of the triangles and quadrilaterals of a mesh.
 
 use gpu_smooth::front_ends::Chart;
 use gpu_smooth::measure::{Measure, Measured, UnknownMeasure};
 use gpu_smooth::options::Precision;
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Mesh, MeshError, Metric, Quality as MeshQuality, Topology};
+use gpu_smooth::{Element, Mesh, MeshError, Metric, Quality as MeshQuality, Topology};
 use gpu_smooth_cli::colors::{BAD, ColorScale, VIRIDIS};
 use numpy::PyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{self, Points, PointsForm};
+use crate::arrays::{self, Cells, Points, PointsForm};
 use crate::error;
 use crate::plane;
 use crate::threads;
@@ -71,19 +71,19 @@ pub(crate) struct Named<'a, 'py> {
     pub(crate) points: &'a Bound<'py, PyAny>,
 }
 
-/// Returns the mesh of two arrays, in the plane in which the points lie, and the form of the points.
+/// Returns the mesh of arrays, in the plane in which the points lie, and the form of the points.
 pub(crate) fn mesh(
     given: Named<'_, '_>,
-    triangles: &Bound<'_, PyAny>,
+    cells: &Cells<'_>,
     z: ThirdCoordinate,
     surface: Surface,
 ) -> PyResult<(Mesh, PointsForm)> {
     let Named { name, points } = given;
     let read = arrays::points(name, points)?;
-    let triangles = arrays::triangles("triangles", triangles, read.xy.len())?;
+    let mesh = cells.read(read.xy.len())?;
     arrays::check_finite(points.py(), name, &read.xy)?;
     let Points { xy, form } = plane::lay_out(points.py(), name, read, z, surface)?;
-    Ok((Mesh { points: xy, triangles, ..Mesh::default() }, form))
+    Ok((Mesh { points: xy, ..mesh }, form))
 }
 
 /// Returns the chart of a mesh with the stored precision of its coordinates; `None` in the plane, and if no triangle is across
@@ -99,32 +99,35 @@ pub(crate) fn chart(
     }
 }
 
-/// Returns the value of a measure for each triangle.
+/// Returns the value of a measure for each triangle, then for each quadrilateral. NaN for quadrilaterals if they do not have the
+/// measure.
 #[pyfunction]
 pub(crate) fn quality<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
-    triangles: &Bound<'py, PyAny>,
+    cells: Cells<'py>,
     measure: &Bound<'py, PyAny>,
     on: &Bound<'py, PyAny>,
     z: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let surface = surface(on)?;
     let z = plane::third_coordinate(z)?;
-    let (mut mesh, form) = mesh(Named { name: "points", points }, triangles, z, surface)?;
+    let (mut mesh, form) = mesh(Named { name: "points", points }, &cells, z, surface)?;
     let measure = measure_of(measure)?;
     let values = threads::detached(py, || {
         if let Some(chart) = chart(&mesh, surface, form.precision())? {
             mesh = chart.mesh().clone();
         }
         let topology = Topology::new(&mesh)?;
-        Ok(Measured::on(surface, &mesh.points, &topology)?.values(measure))
+        let mut values = Measured::on(surface, &mesh.points, &topology)?.values(measure);
+        values.resize(topology.element_count(), f64::NAN);
+        Ok(values)
     })?;
     let values = values.map_err(|error| error::of_mesh(py, &error))?;
     Ok(PyArray1::from_vec(py, values))
 }
 
-/// Statistics of the triangles of a mesh.
+/// Statistics of the triangles and quadrilaterals of a mesh.
 #[pyclass(frozen, module = "gpu_smooth")]
 pub(crate) struct Quality(Statistics);
 
@@ -137,7 +140,7 @@ pub(crate) struct Statistics {
     min_angle: f64,
     max_angle: f64,
     worst_imr: f64,
-    worst_triangle: usize,
+    worst_element: (String, usize),
     inverted: usize,
 }
 
@@ -145,8 +148,12 @@ impl Quality {
     pub(crate) fn of(quality: MeshQuality) -> Self {
         let f = Metric::ALL.iter().map(|&own| (own.name().to_owned(), quality.f(own))).collect();
         let MeshQuality { min_angle, max_angle, worst_imr, worst, inverted, .. } = quality;
-        let worst_triangle = worst.index();
-        Self(Statistics { f, min_angle, max_angle, worst_imr, worst_triangle, inverted })
+        let kind = match worst {
+            Element::Triangle(_) => "triangle",
+            Element::Quadrilateral(_) => "quadrilateral",
+        };
+        let worst_element = (kind.to_owned(), worst.index());
+        Self(Statistics { f, min_angle, max_angle, worst_imr, worst_element, inverted })
     }
 
     /// Returns f by a metric. NaN if the quality was pickled by a version without the metric.
@@ -164,7 +171,7 @@ pub(crate) fn restored_quality(statistics: Statistics) -> Quality {
 
 #[pymethods]
 impl Quality {
-    /// The objective f, the mean of q² over all triangles, by a metric. Infinite if a triangle is inverted or flat and
+    /// The objective f, the mean of q² over all triangles and quadrilaterals, by a metric. Infinite if one is inverted or flat and
     /// the metric has a barrier.
     #[pyo3(signature = (metric = None), text_signature = "($self, metric='imr')")]
     fn f(&self, py: Python<'_>, metric: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
@@ -178,31 +185,31 @@ impl Quality {
         Ok(self.by(metric))
     }
 
-    /// Smallest angle of any triangle, in degrees.
+    /// Smallest angle of any triangle or quadrilateral, in degrees.
     #[getter]
     fn min_angle(&self) -> f64 {
         self.0.min_angle
     }
 
-    /// Largest angle of any triangle, in degrees.
+    /// Largest angle of any triangle or quadrilateral, in degrees.
     #[getter]
     fn max_angle(&self) -> f64 {
         self.0.max_angle
     }
 
-    /// Largest inverse mean ratio: 1 at best, infinite if a triangle is inverted or flat.
+    /// Largest inverse mean ratio of a triangle or of a corner of a quadrilateral: 1 at best, infinite if one is inverted or flat.
     #[getter]
     fn worst_imr(&self) -> f64 {
         self.0.worst_imr
     }
 
-    /// Index of the triangle with the largest inverse mean ratio.
+    /// Kind and index of the triangle or quadrilateral with the largest inverse mean ratio.
     #[getter]
-    fn worst_triangle(&self) -> usize {
-        self.0.worst_triangle
+    fn worst_element(&self) -> (String, usize) {
+        self.0.worst_element.clone()
     }
 
-    /// Number of inverted or flat triangles.
+    /// Number of inverted or flat triangles, and of quadrilaterals that are not convex.
     #[getter]
     fn inverted(&self) -> usize {
         self.0.inverted

@@ -16,7 +16,8 @@ use crate::run_options::{self, RunOptions};
 use crate::values::{self, Given, ThirdCoordinate};
 
 /// Names of the options of a mesh that are not in the table.
-const OWN: [&str; 6] = ["fixed", "lines", "regions", "periodic", "keep_layers", "target"];
+const OWN: [&str; 7] =
+    ["quadrilaterals", "fixed", "lines", "regions", "periodic", "keep_layers", "target"];
 
 /// Returns the names of the options of a mesh.
 pub(crate) fn names() -> Vec<String> {
@@ -46,7 +47,7 @@ pub(crate) struct MeshOptions {
     pub(crate) fixed: Vec<u32>,
     /// Edges whose vertices stay, or slide along the edges.
     pub(crate) lines: Vec<[u32; 2]>,
-    /// Region of each triangle; empty without regions.
+    /// Region of each triangle, then of each quadrilateral; empty without regions.
     pub(crate) regions: Vec<i64>,
     /// Pairs of vertices that slide together.
     pub(crate) periodic: Vec<[u32; 2]>,
@@ -79,10 +80,10 @@ impl MeshOptions {
         }
     }
 
-    /// Sets an option of a mesh with `size` vertices and triangles. Returns false if no option of a mesh has the name.
-    fn set(&mut self, given: Given<'_, '_>, size: [usize; 2]) -> PyResult<bool> {
+    /// Sets an option of a mesh of a size. Returns false if no option of a mesh has the name. Quadrilaterals are read before.
+    fn set(&mut self, given: Given<'_, '_>, size: Size) -> PyResult<bool> {
         let Given { name, value } = given;
-        let [vertices, triangles] = size;
+        let Size { vertices, triangles, elements } = size;
         if let Some(row) = GivenOptions::row(name).filter(|row| row.belongs == Belongs::ToMesh) {
             given.set(row, &mut self.given)?;
             return Ok(true);
@@ -90,7 +91,7 @@ impl MeshOptions {
         match name {
             "fixed" => self.fixed = arrays::vertex_set(name, value, vertices)?,
             "lines" => self.lines = arrays::pairs(name, value, vertices)?,
-            "regions" => self.regions = arrays::labels(name, value, triangles)?,
+            "regions" => self.regions = arrays::labels(name, value, [triangles, elements])?,
             "periodic" => self.periodic = arrays::pairs(name, value, vertices)?,
             "keep_layers" => {
                 let words = "\"auto\", \"none\", \"rows=N\" with N from 1 to 1000, or \"within=DISTANCE\", alone or in a \
@@ -218,6 +219,14 @@ pub(crate) fn all_names() -> Vec<String> {
     [names(), run_options::names()].concat()
 }
 
+/// The numbers of vertices, of triangles, and of triangles and quadrilaterals of a mesh.
+#[derive(Clone, Copy)]
+pub(crate) struct Size {
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    pub(crate) elements: usize,
+}
+
 /// The options of a call.
 pub(crate) struct CallOptions {
     pub(crate) mesh: MeshOptions,
@@ -225,11 +234,11 @@ pub(crate) struct CallOptions {
 }
 
 impl CallOptions {
-    /// Reads the options of a call for a mesh with `size` vertices and triangles. `None` is the default of each option.
+    /// Reads the options of a call for a mesh of a size. `None` is the default of each option.
     pub(crate) fn of_call(
         py: Python<'_>,
         options: Option<&Bound<'_, PyDict>>,
-        size: [usize; 2],
+        size: Size,
     ) -> PyResult<Self> {
         let mut all = Self { mesh: MeshOptions::new(), run: RunOptions::default() };
         for (name, value) in options.into_iter().flatten() {

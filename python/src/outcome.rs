@@ -66,6 +66,11 @@ impl Outcome {
         self.prepared.triangles(py)
     }
 
+    /// Returns the quadrilaterals with consistent windings, counter-clockwise.
+    fn quadrilaterals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.prepared.quadrilaterals(py)
+    }
+
     /// Returns the points after the run, in the form of the points that were passed.
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let points = self.prepared.given(self.outcome.points.clone());
@@ -200,7 +205,7 @@ impl Outcome {
         self.outcome.best_sweep
     }
 
-    /// f over the triangles that can move, before and after the run.
+    /// f over the elements that can move, before and after the run.
     #[getter]
     fn movable_f(&self) -> (f64, f64) {
         self.outcome.movable_f.into()

@@ -70,6 +70,14 @@ impl Prepared {
         arrays::matrix(py, numbers, [triangles.len(), 3])
     }
 
+    /// Returns the quadrilaterals with consistent windings, counter-clockwise, as an array of shape (k, 4).
+    pub(crate) fn quadrilaterals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let quadrilaterals = self.smoother.topology().quadrilaterals();
+        let rows = quadrilaterals.len();
+        let numbers = quadrilaterals.flatten().map(i64::from).collect();
+        arrays::matrix(py, numbers, [rows, 4])
+    }
+
     /// Returns the vertex of the call for a vertex of the mesh, which is a copy if a chart has made it.
     pub(crate) fn owner(&self, vertex: u32) -> u32 {
         let copy = (vertex as usize).checked_sub(self.vertices());

@@ -52,9 +52,19 @@ impl<'a> Remarks<'a> {
         }
     }
 
-    /// Remarks on bad triangles, `bad` in number, near which `free` of `of_all` free vertices move.
-    pub(crate) fn only_bad(&mut self, limit: f64, bad: usize, [free, of_all]: [usize; 2]) {
-        let are = numbered(bad, "triangle is", "triangles are");
+    /// Remarks on bad elements, `bad` in number, near which `free` of `of_all` free vertices move. `has_others` holds if the mesh
+    /// has quadrilaterals.
+    pub(crate) fn only_bad(
+        &mut self,
+        limit: f64,
+        bad: usize,
+        [free, of_all]: [usize; 2],
+        has_others: bool,
+    ) {
+        let are = match has_others {
+            false => numbered(bad, "triangle is", "triangles are"),
+            true => numbered(bad, "element is", "elements are"),
+        };
         self.add(format!(
             "only_bad: {are} above an inverse mean ratio of {limit}, and {free} of {of_all} free vertices may move"
         ));

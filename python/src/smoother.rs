@@ -9,11 +9,11 @@ use gpu_smooth_job::{Adapted, CheckpointFile, EngineRequest};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{self, Points, PointsForm};
+use crate::arrays::{self, Cells, Points, PointsForm};
 use crate::engine;
 use crate::error;
 use crate::input::{Failure, Input, Layout};
-use crate::mesh_options::{CallOptions, MeshOptions, Target};
+use crate::mesh_options::{CallOptions, MeshOptions, Size, Target};
 use crate::observer::RunObserver;
 use crate::outcome::Outcome;
 use crate::plane;
@@ -30,14 +30,16 @@ pub(crate) struct Smoother(Arc<Prepared>);
 #[pymethods]
 impl Smoother {
     #[new]
-    #[pyo3(signature = (points, triangles, **options))]
+    #[pyo3(signature = (points, triangles, *, quadrilaterals = None, **options))]
     fn new(
         py: Python<'_>,
         points: &Bound<'_, PyAny>,
-        triangles: &Bound<'_, PyAny>,
+        triangles: Bound<'_, PyAny>,
+        quadrilaterals: Option<Bound<'_, PyAny>>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let Call { mesh, form, options } = Call::read(points, triangles, options)?;
+        let cells = Cells(triangles, quadrilaterals);
+        let Call { mesh, form, options } = Call::read(points, &cells, options)?;
         let CallOptions { mesh: options, run } = options;
         let observer = RunObserver::new(&run);
         let prepared = threads::watched(py, &observer, || {
@@ -97,6 +99,12 @@ impl Smoother {
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.0.triangles(py)
     }
+
+    /// The quadrilaterals with consistent windings, counter-clockwise.
+    #[getter]
+    fn quadrilaterals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.0.quadrilaterals(py)
+    }
 }
 
 impl Smoother {
@@ -144,20 +152,25 @@ struct Call {
 impl Call {
     fn read(
         points: &Bound<'_, PyAny>,
-        triangles: &Bound<'_, PyAny>,
+        cells: &Cells<'_>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let py = points.py();
         let read = arrays::points("points", points)?;
-        let triangles = arrays::triangles("triangles", triangles, read.xy.len())?;
-        let size = [read.xy.len(), triangles.len()];
+        let mesh = cells.read(read.xy.len())?;
+        let triangles = mesh.triangles.len();
+        let size = Size {
+            vertices: read.xy.len(),
+            triangles,
+            elements: triangles + mesh.quadrilaterals.len(),
+        };
         let mut options = CallOptions::of_call(py, options, size)?;
         let Points { xy, form } =
             plane::lay_out(py, "points", read, options.mesh.z(), options.mesh.surface())?;
         if let Target::Background { points, .. } = &mut options.mesh.target {
             **points = plane::lay_out_likewise(py, "target[0]", std::mem::take(points), &form)?;
         }
-        let mesh = Mesh { points: xy, triangles, ..Mesh::default() };
+        let mesh = Mesh { points: xy, ..mesh };
         Ok(Self { mesh, form, options })
     }
 }
@@ -247,14 +260,16 @@ fn finished<T>(
 
 /// Smooths a mesh that is given as arrays, and returns the new points.
 #[pyfunction]
-#[pyo3(signature = (points, triangles, **options))]
+#[pyo3(signature = (points, triangles, *, quadrilaterals = None, **options))]
 pub(crate) fn smooth<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
-    triangles: &Bound<'py, PyAny>,
+    triangles: Bound<'py, PyAny>,
+    quadrilaterals: Option<Bound<'py, PyAny>>,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let Call { mesh, form, options } = Call::read(points, triangles, options)?;
+    let cells = Cells(triangles, quadrilaterals);
+    let Call { mesh, form, options } = Call::read(points, &cells, options)?;
     let CallOptions { mesh: options, run } = options;
     let observer = RunObserver::new(&run);
     let remarks = &mut Remarks::new(&observer);

@@ -30,6 +30,20 @@ def lattice(side: int, seed: int = 1, by: float = 0.24) -> tuple[Points, Triangl
     return points + moves, np.concatenate([lower, upper])
 
 
+def squares(side: int) -> Triangles:
+    """Return the cells of `lattice(side)` as quadrilaterals, of shape (side * side, 4)."""
+    corner = (np.arange(side) + (side + 1) * np.arange(side)[:, None]).ravel()
+    return np.stack([corner, corner + 1, corner + side + 2, corner + side + 1], axis=1)
+
+
+def mixed(side: int) -> tuple[Triangles, Triangles]:
+    """Return the cells of `lattice(side)`: triangles of the left half, and quadrilaterals of the right half."""
+    _, triangles = lattice(side)
+    cells = squares(side)
+    middle = side // 2
+    return triangles[triangles[:, 0] % (side + 1) < middle], cells[cells[:, 0] % (side + 1) >= middle]
+
+
 def across_date_line(points: Points) -> tuple[Points, Points]:
     """Return points of `lattice(12)` in degrees, around longitude 180, as they are and with longitudes from -180 to 180."""
     continued = points * [0.2, 0.1] + [178.9, 60.0]
@@ -49,18 +63,24 @@ def alternating(side: int) -> tuple[Points, Triangles]:
 
 
 def written(
-    path: Path, points: npt.NDArray[Any], triangles: Triangles, edges: npt.NDArray[np.int64] | tuple[()] = ()
+    path: Path,
+    points: npt.NDArray[Any],
+    triangles: Triangles,
+    edges: npt.NDArray[np.int64] | tuple[()] = (),
+    quadrilaterals: npt.NDArray[np.int64] | tuple[()] = (),
 ) -> Path:
     """Write a mesh as a VTK file of the type of the points, with all digits. Points of two coordinates get z = 0.
 
-    `edges` are written as lines, of shape (k, 2).
+    `edges` are written as lines, of shape (k, 2), and `quadrilaterals` have the shape (k, 4).
     """
     kind = {"float64": "double", "float32": "float"}[points.dtype.name]
     rows = [" ".join(map(str, row)) + " 0" * (3 - len(row)) for row in points.tolist()]
-    cells = [f"{len(row)} " + " ".join(map(str, row)) for row in [*triangles.tolist(), *np.asarray(edges).tolist()]]
-    types = [*["5"] * len(triangles), *["3"] * len(edges)]
+    of_kinds = [triangles, np.asarray(edges), np.asarray(quadrilaterals)]
+    cells = [f"{len(row)} " + " ".join(map(str, row)) for own in of_kinds for row in own.tolist()]
+    types = [kind for kind, own in zip("539", of_kinds) for _ in own]
+    size = sum(own.size + len(own) for own in of_kinds)
     head = "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n"
-    lines = [f"POINTS {len(rows)} {kind}", *rows, f"CELLS {len(cells)} {4 * len(triangles) + 3 * len(edges)}", *cells]
+    lines = [f"POINTS {len(rows)} {kind}", *rows, f"CELLS {len(cells)} {size}", *cells]
     lines += [f"CELL_TYPES {len(cells)}", *types]
     path.write_text(head + "\n".join(lines) + "\n")
     return path

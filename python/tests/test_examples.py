@@ -184,6 +184,7 @@ def test_a_notebook_shows_the_mesh_before_and_after(mesh: Mesh) -> None:
 def test_inverted_triangles_of_a_picture_are_red() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.5, 0.5]])
     triangles = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    assert _picture.svg(points, triangles).count('fill="#e6194b"') == 1
+    subject = _picture.Subject({}, triangles, np.empty((0, 4), np.int64), ("x", "y"))
+    assert _picture.svg(points, subject).count('fill="#e6194b"') == 1
     points[4] = [0.5, 0.5]
-    assert "#e6194b" not in _picture.svg(points, triangles)
+    assert "#e6194b" not in _picture.svg(points, subject)

@@ -74,6 +74,25 @@ def test_a_model_is_smoothed_in_place_and_its_geometry_stays(gmsh: Any) -> None:
     assert np.allclose(gmsh.model.getValue(2, gmsh.model.getEntities(2)[0][1], parameters), place)
 
 
+def test_nodes_of_quadrilaterals_move_unless_told(gmsh: Any) -> None:
+    gmsh.option.setNumber("Mesh.RecombineAll", 1)
+    square(gmsh)
+    before = nodes(gmsh)
+    kinds, _, connectivity = gmsh.model.mesh.getElements(2)
+    corners = set(connectivity[list(kinds).index(3)].tolist())
+    geometry = of_dimension(gmsh, 0) | of_dimension(gmsh, 1)
+    assert len(corners) > 100
+    # All nodes inside are corners of quadrilaterals.
+    with pytest.raises(gpu_smooth.MeshError, match="free to move|no quadrilaterals of four that move"):
+        gpu_smooth.smooth_gmsh_model(quadrilaterals="keep")
+    result = gpu_smooth.smooth_gmsh_model()
+    after = nodes(gmsh)
+    moved = {tag for tag in before if before[tag] != after[tag]}
+    assert len(moved & corners) > 50 and not moved & geometry
+    assert len(result.quadrilaterals) > 100 and result.quality_after.f() < result.quality_before.f()
+    gmsh.option.setNumber("Mesh.RecombineAll", 0)
+
+
 def test_nodes_slide_along_curves_and_periodic_nodes_in_pairs(gmsh: Any) -> None:
     square(gmsh, periodic=True)
     before = nodes(gmsh)
@@ -133,7 +152,7 @@ def test_models_that_cannot_be_smoothed_are_refused(gmsh: Any) -> None:
         gpu_smooth.smooth_gmsh_model()
     square(gmsh)
     gmsh.model.mesh.setOrder(2)
-    with pytest.raises(gpu_smooth.MeshError, match="linear triangles"):
+    with pytest.raises(gpu_smooth.MeshError, match="linear elements"):
         gpu_smooth.smooth_gmsh_model()
     gmsh.clear()
     gmsh.model.occ.addSphere(0, 0, 0, 1)

@@ -75,7 +75,7 @@ def test_boundaries_and_subdomains_of_scikit_fem_are_held(mesh: Mesh) -> None:
     assert np.array_equal(held.p[:, column], given.p[:, column])
     with pytest.raises(gpu_smooth.MeshError, match="no group 'inlet'. Its groups are: column, right, top"):
         gpu_smooth.smooth(given, fixed="inlet")
-    with pytest.raises(gpu_smooth.MeshError, match="MeshTri2 is not accepted. Pass a MeshTri of linear triangles"):
+    with pytest.raises(gpu_smooth.MeshError, match="MeshTri2 is not accepted. Pass a MeshTri or MeshQuad of linear elements"):
         gpu_smooth.smooth(of_skfem(points, triangles, MeshTri2))
 
 

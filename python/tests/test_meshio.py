@@ -110,9 +110,10 @@ def test_a_file_of_meshio_is_smoothed_as_by_the_command_line(tmp_path: Any) -> N
     assert np.array_equal(smoothed.points[:, :2], of_file.points[:, :2])
 
 
-def test_a_mesh_without_triangles_is_refused() -> None:
-    with pytest.raises(gpu_smooth.MeshError, match="no triangles"):
-        gpu_smooth.smooth(meshio.Mesh(np.eye(4, 2), [("quad", np.array([[0, 1, 2, 3]]))]))
+def test_a_mesh_without_triangles_and_quadrilaterals_is_refused() -> None:
+    cells: Any = [("polygon", np.array([[0, 1, 2, 3, 4]])), ("line", np.array([[0, 1]]))]
+    with pytest.raises(gpu_smooth.MeshError, match="no triangles of three vertices, and no quadrilaterals"):
+        gpu_smooth.smooth(meshio.Mesh(np.eye(5, 2), cells))
 
 
 def test_constraints_of_the_mesh_hold_beside_empty_and_other_options(mesh: Mesh) -> None:

@@ -95,19 +95,21 @@ def test_faces_of_edges_alone_are_found(mesh: Mesh) -> None:
             gpu_smooth.smooth(of_edges(points, np.reshape(none, (-1, 2))))
 
 
-def test_nodes_of_faces_with_four_nodes_stay(mesh: Mesh) -> None:
+def test_nodes_of_faces_with_four_nodes_move_unless_told(mesh: Mesh) -> None:
     points, triangles = mesh
     edges = edges_of(triangles)
     quads = np.array([[33, 34, 47, 46], [34, 35, 48, 47]])
     is_diagonal = np.isin(edges[:, 0], quads[:, 0]) & (edges[:, 1] == edges[:, 0] + 14)
     given = administered(of_edges(points, edges[~is_diagonal]))[1]
     assert sorted(set(given.nodes_per_face)) == [3, 4]
-    smoothed = gpu_smooth.smooth(given)
-    moved = (points_of(smoothed) != points).any(axis=1)
+    kept = gpu_smooth.smooth(given, quadrilaterals="keep")
+    moved = (points_of(kept) != points).any(axis=1)
     assert not moved[quads].any() and moved.sum() > 100
+    smoothed = gpu_smooth.smooth(given)
+    assert (points_of(smoothed) != points).any(axis=1)[quads].all()
     expected = administered(of_edges(points_of(smoothed), edges[~is_diagonal]))[1]
     np.testing.assert_allclose(smoothed.face_y, expected.face_y, rtol=0, atol=1e-12)
-    assert len(gpu_smooth.quality(given)) == np.count_nonzero(given.nodes_per_face == 3)
+    assert len(gpu_smooth.quality(given)) == len(given.nodes_per_face)
 
 
 def test_numbers_of_no_node_are_refused(mesh: Mesh) -> None:

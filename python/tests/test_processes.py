@@ -232,7 +232,7 @@ def test_results_go_to_other_processes() -> None:
         assert set(other.histories) == set(result.histories) and other.axes == ("x", "y")
         for metric in gpu_smooth.metrics():
             assert other.quality_after.f(metric.name) == result.quality_after.f(metric.name)
-        assert other.quality_after.worst_triangle == result.quality_after.worst_triangle
+        assert other.quality_after.worst_element == result.quality_after.worst_element
     # Values have the names of their metrics, as another version may have other metrics in another order.
     reduced: Any = result.quality_after.__reduce__()
     restore, (state,) = reduced

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Points, Triangles, lattice
+from conftest import Points, Triangles, lattice, mixed
 
 import gpu_smooth
 
@@ -64,6 +64,27 @@ def test_vertices_of_other_cells_and_between_regions_stay(mesh: Mesh) -> None:
     assert (np.asarray(slid.points)[line[1:-1]] != np.asarray(grid.points)[line[1:-1]]).any()
 
 
+def test_quadrilaterals_move_unless_told(mesh: Mesh) -> None:
+    import pyvista
+
+    points, _ = mesh
+    triangles, quadrilaterals = mixed(12)
+    grid = grid_of(points, [(9, quadrilaterals), (5, triangles)])
+    expected = gpu_smooth.smooth(np.asarray(grid.points), triangles, quadrilaterals=quadrilaterals)
+    faces = np.concatenate([*([4, *q] for q in quadrilaterals), *([3, *t] for t in triangles)])
+    surface = pyvista.PolyData(np.column_stack([points, 0 * points[:, 0]]), faces=faces)
+    for given in (grid, surface):
+        assert np.array_equal(gpu_smooth.smooth(given).points, expected.astype(given.points.dtype))
+        kept = gpu_smooth.smooth(given, quadrilaterals="keep").points
+        moved = (np.asarray(kept) != np.asarray(given.points)).any(axis=1)
+        assert not moved[quadrilaterals].any() and moved.sum() > 40
+    values = grid.gpu_smooth.quality("shape")
+    assert np.array_equal(values, gpu_smooth.quality(grid.points, triangles, "shape", quadrilaterals=quadrilaterals))
+    grid.cell_data["material"] = np.repeat([4, 6], [len(quadrilaterals), len(triangles)])
+    moved = (np.asarray(gpu_smooth.smooth(grid).points) != np.asarray(grid.points)).any(axis=1)
+    assert not moved[np.arange(169) % 13 == 6].any() and moved.sum() > 80
+
+
 def test_the_accessor_is_found_by_its_entry_point(mesh: Mesh) -> None:
     points, triangles = mesh
     grid = grid_of(points, [(5, triangles)])
@@ -80,4 +101,4 @@ def test_other_datasets_are_refused() -> None:
         gpu_smooth.smooth(pyvista.ImageData(dimensions=(3, 3, 1)))
     points, _ = lattice(1)
     with pytest.raises(gpu_smooth.MeshError, match="no triangles"):
-        gpu_smooth.smooth(grid_of(points, [(9, [[0, 1, 3, 2]])]))
+        gpu_smooth.smooth(grid_of(points, [(8, [[0, 1, 2, 3]])]))

@@ -11,6 +11,6 @@ mod points;
 
 pub(crate) use conversion::matrix;
 pub(crate) use numbers::{
-    PerVertex, labels, pairs, pairs_of, per_vertex, triangles, vertex_set, vertex_set_of,
+    Cells, PerVertex, labels, pairs, pairs_of, per_vertex, triangles, vertex_set, vertex_set_of,
 };
 pub(crate) use points::{Points, PointsForm, check_finite, points};

@@ -1,8 +1,10 @@
 //! Vertex numbers, numbers of triangles, and numbers per vertex.
 
+use gpu_smooth::Mesh;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 use crate::arrays::conversion::{
     converted, is_empty, kind, laid_out, matrix, of_shape, rows, typed,
@@ -15,7 +17,40 @@ pub(crate) fn triangles(
     value: &Bound<'_, PyAny>,
     vertices: usize,
 ) -> PyResult<Vec<[u32; 3]>> {
-    index_rows(name, value, vertices, "integers of shape (m, 3)")
+    match is_empty(value, &[3])? {
+        true => Ok(Vec::new()),
+        false => index_rows(name, value, vertices, "integers of shape (m, 3)"),
+    }
+}
+
+/// Reads quadrilaterals by their vertices: an array of integers of shape (k, 4), or None.
+fn quadrilaterals(value: Option<&Bound<'_, PyAny>>, vertices: usize) -> PyResult<Vec<[u32; 4]>> {
+    let Some(value) = value else { return Ok(Vec::new()) };
+    let name = "quadrilaterals";
+    if value.is_instance_of::<PyString>() {
+        let text = format!(
+            "{name}: the value is {}, and must be integers of shape (k, 4). Words are for a mesh in place of the arrays",
+            value.repr()?
+        );
+        return Err(error::option(value.py(), &text));
+    }
+    match is_empty(value, &[4])? {
+        true => Ok(Vec::new()),
+        false => index_rows(name, value, vertices, "integers of shape (k, 4)"),
+    }
+}
+
+/// The arguments `triangles` and `quadrilaterals` of a call, as a tuple.
+#[derive(FromPyObject)]
+pub(crate) struct Cells<'py>(pub(crate) Bound<'py, PyAny>, pub(crate) Option<Bound<'py, PyAny>>);
+
+impl Cells<'_> {
+    /// Reads the elements of a mesh with `vertices` vertices, and returns the mesh without points.
+    pub(crate) fn read(&self, vertices: usize) -> PyResult<Mesh> {
+        let triangles = triangles("triangles", &self.0, vertices)?;
+        let quadrilaterals = quadrilaterals(self.1.as_ref(), vertices)?;
+        Ok(Mesh { triangles, quadrilaterals, ..Mesh::default() })
+    }
 }
 
 /// Reads pairs of vertices: an array of integers of shape (k, 2).
@@ -158,9 +193,17 @@ pub(crate) fn pairs_of<'py>(
     matrix(value.py(), numbers, [pairs.len(), 2])
 }
 
-/// Reads a number per row: an array of shape (count,) of any integer type.
-pub(crate) fn labels(name: &str, value: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<i64>> {
-    let wanted = format!("integers of shape ({count},), one per triangle");
+/// Reads a number per element: an array of shape (count,) of any integer type, first for `triangles` triangles.
+pub(crate) fn labels(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+    [triangles, count]: [usize; 2],
+) -> PyResult<Vec<i64>> {
+    let each = match triangles == count {
+        true => "one per triangle".to_owned(),
+        false => format!("{triangles} of triangles and {} of quadrilaterals", count - triangles),
+    };
+    let wanted = format!("integers of shape ({count},), {each}");
     let array = converted(name, value, &wanted, &["i", "u"])?;
     if array.ndim() != 1 || array.len() != count {
         return Err(of_shape(name, array.as_any(), &wanted));
