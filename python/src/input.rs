@@ -81,8 +81,7 @@ impl Input {
         let settings = options.settings();
         if let Some(limit) = settings.only_bad {
             let near = domain.fix_far_from_bad(limit, settings.rings_of_bad())?;
-            let has_others = !domain.mesh().quadrilaterals.is_empty();
-            remarks.only_bad(limit, near.elements, near.free, has_others);
+            remarks.only_bad(limit, near.elements, near.free, domain.mesh());
         }
         let layers = movement::keep_layers(&mut domain, options, remarks)?;
         if !options.settings().slides {

@@ -171,7 +171,9 @@ impl Outcome {
         let mut all = prepared.remarks.clone();
         all.extend(remarks::hanging(&hanging, |v| prepared.owner(v)));
         all.extend_from_slice(&self.remarks);
-        all.extend(rise.map(|rise| remarks::worst_rise(rise, scheme.base())));
+        all.extend(
+            rise.map(|rise| remarks::worst_rise(rise, scheme.base(), prepared.smoother.mesh())),
+        );
         Ok(all)
     }
 

@@ -5,7 +5,7 @@ use gpu_smooth::options::WorstBy;
 use gpu_smooth::outcome::{Floored, Improved, LargeAngles};
 use gpu_smooth::targets::OutsideReport;
 use gpu_smooth::topology::HangingNode;
-use gpu_smooth::{Metric, Outcome, Smoother};
+use gpu_smooth::{Mesh, Metric, Outcome, Smoother};
 use gpu_smooth_job::{
     Adapted, RiseReason, TargetFacts, WorstEffect, WorstRise, cost_in_percent, vertices_in_rows,
 };
@@ -52,19 +52,16 @@ impl<'a> Remarks<'a> {
         }
     }
 
-    /// Remarks on bad elements, `bad` in number, near which `free` of `of_all` free vertices move. `has_others` holds if the mesh
-    /// has quadrilaterals.
+    /// Remarks on bad elements of a mesh, `bad` in number, near which `free` of `of_all` free vertices move.
     pub(crate) fn only_bad(
         &mut self,
         limit: f64,
         bad: usize,
         [free, of_all]: [usize; 2],
-        has_others: bool,
+        mesh: &Mesh,
     ) {
-        let are = match has_others {
-            false => numbered(bad, "triangle is", "triangles are"),
-            true => numbered(bad, "element is", "elements are"),
-        };
+        let [one, many] = nouns(mesh);
+        let are = numbered(bad, &format!("{one} is"), &format!("{many} are"));
         self.add(format!(
             "only_bad: {are} above an inverse mean ratio of {limit}, and {free} of {of_all} free vertices may move"
         ));
@@ -176,7 +173,7 @@ impl<'a> Remarks<'a> {
 
     /// Remarks on the end of a run: vertices that were held back, worst triangles that were made better again, and a device
     /// that failed.
-    pub(crate) fn outcome(&mut self, outcome: &Outcome) {
+    pub(crate) fn outcome(&mut self, outcome: &Outcome, mesh: &Mesh) {
         if outcome.held_back > 0 {
             let held = numbered(outcome.held_back, "vertex", "vertices");
             self.add(format!("a guard keeps {held} from moving on"));
@@ -210,7 +207,7 @@ impl<'a> Remarks<'a> {
             ));
         }
         if let Some(improved) = &outcome.improved {
-            self.add(worst_improved(improved));
+            self.add(worst_improved(improved, mesh));
         }
         if let Some(fault) = &outcome.device_fault {
             let (sweep, error) = (fault.sweep, &fault.error);
@@ -239,28 +236,30 @@ pub(crate) fn hanging(nodes: &[HangingNode], owner: impl Fn(u32) -> u32) -> Opti
     ))
 }
 
-/// Returns a remark on the worst triangle, which a run by the base metric `base` made worse.
-pub(crate) fn worst_rise(rise: WorstRise, base: Metric) -> String {
+/// Returns a remark on the worst element of a mesh, which a run by the base metric `base` made worse.
+pub(crate) fn worst_rise(rise: WorstRise, base: Metric, mesh: &Mesh) -> String {
     let [before, after] = rise.worst;
-    let mean = "f is a mean, which may fall as one triangle gets worse.";
+    let [one, many] = nouns(mesh);
+    let mean = format!("f is a mean, which may fall as one {one} gets worse.");
     let remedy = match rise.reason {
         RiseReason::JudgesNoShape => {
             let base = base.name();
             format!("{base} does not judge shapes. scheme=\"imr\" and scheme=\"{base}+imr\" do")
         }
         RiseReason::GuardsTargets => {
-            format!("{mean} guard=\"worst\" bounds triangles as the target transforms them")
+            format!("{mean} guard=\"worst\" bounds {many} as the target transforms them")
         }
         RiseReason::GuardsUnrounded => format!(
-            "{mean} guard=\"worst\" bounds triangles before points are rounded to the type of their array"
+            "{mean} guard=\"worst\" bounds {many} before points are rounded to the type of their array"
         ),
         _ => format!("{mean} Pass guard=\"worst\" to prevent it"),
     };
-    format!("worst imr of movable triangles rose from {before:.6} to {after:.6}: {remedy}")
+    format!("worst imr of movable {many} rose from {before:.6} to {after:.6}: {remedy}")
 }
 
-/// Returns a remark on the improvement of the worst triangles.
-fn worst_improved(improved: &Improved) -> String {
+/// Returns a remark on the improvement of the worst elements of a mesh.
+fn worst_improved(improved: &Improved, mesh: &Mesh) -> String {
+    let [one, many] = nouns(mesh);
     let Improved { by, vertices, worst, stuck, f } = *improved;
     let name = match by {
         WorstBy::Imr => "worst imr".to_owned(),
@@ -273,21 +272,29 @@ fn worst_improved(improved: &Improved) -> String {
     let (moved, cost) = (numbered(vertices, "vertex", "vertices"), cost(f));
     let text = match WorstEffect::of(vertices, worst) {
         WorstEffect::Nothing => {
-            format!("the {name} of movable triangles, {after}, could not be improved")
+            format!("the {name} of movable {many}, {after}, could not be improved")
         }
         WorstEffect::Worst => format!(
-            "the {name} of movable triangles was improved from {before} to {after} by {moved}, which {cost}"
+            "the {name} of movable {many} was improved from {before} to {after} by {moved}, which {cost}"
         ),
         WorstEffect::Others => format!(
-            "the {name} of movable triangles stays {after}. Others were improved by {moved}, which {cost}"
+            "the {name} of movable {many} stays {after}. Others were improved by {moved}, which {cost}"
         ),
     };
     let worse = match stuck {
         0 => String::new(),
-        1 => ". 1 triangle is worse, and all its corners are fixed".to_owned(),
-        n => format!(". {n} triangles are worse, and all their corners are fixed"),
+        1 => format!(". 1 {one} is worse, and all its corners are fixed"),
+        n => format!(". {n} {many} are worse, and all their corners are fixed"),
     };
     format!("improve_worst: {text}{worse}")
+}
+
+/// Returns the words for one and for several elements of a mesh.
+fn nouns(mesh: &Mesh) -> [&'static str; 2] {
+    match mesh.quadrilaterals.is_empty() {
+        true => ["triangle", "triangles"],
+        false => ["element", "elements"],
+    }
 }
 
 /// Describes the change of f, as the end of a sentence.

@@ -80,7 +80,7 @@ impl Smoother {
             let adapted = plan.adapted(smoother, layout, options)?;
             adapted.into_iter().for_each(|adapted| remarks.adapted(adapted));
             let outcome = plan.run(smoother, &observer)?;
-            remarks.outcome(&outcome);
+            remarks.outcome(&outcome, smoother.mesh());
             Ok((outcome, remarks.into_texts()))
         })?;
         let (outcome, remarks) = finished(py, &observer, done)?;

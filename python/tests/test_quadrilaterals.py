@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import pickle
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -163,6 +164,14 @@ def test_a_result_has_the_quadrilaterals_and_their_quality() -> None:
     moved = points * 2.0
     again = smoother.run(moved)
     np.testing.assert_allclose(again.points, 2.0 * result.points, atol=0.05)
+
+
+def test_remarks_are_on_elements() -> None:
+    points, (triangles, quadrilaterals) = bent(), mixed(12)
+    result = gpu_smooth.run(points, triangles, quadrilaterals=quadrilaterals, only_bad=1.2, improve_worst=True)
+    first, last = result.remarks
+    assert re.match(r"only_bad: \d\d elements are above an inverse mean ratio of 1.2", first)
+    assert last.startswith("improve_worst: the worst imr of movable elements was improved from")
 
 
 def test_the_worst_element_is_named_with_its_kind() -> None:
