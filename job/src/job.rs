@@ -46,21 +46,15 @@ impl<'f> Job<'f> {
     }
 
     /// Prepares the mesh of a file whose x and y are longitude and latitude in degrees. Runs move vertices on the sphere, with
-    /// lengths in kilometers on a sphere of the size of the earth. Third coordinates are data. In a mesh that reaches across the
-    /// date line or has a pole, the vertices of quadrilaterals stay, unless the mesh has quadrilaterals alone, which is an error.
+    /// lengths in kilometers on a sphere of the size of the earth. Third coordinates are data.
     ///
     /// # Errors
-    /// [`JobError::Smooth`] if a latitude is not from -90 to 90, or if a pole is inside a triangle or on an edge.
+    /// [`JobError::Smooth`] if a latitude is not from -90 to 90, or if a pole is inside an element or on an edge.
     pub fn on_sphere(file: &'f MeshFile) -> Result<Self, JobError> {
         let mut job = Self::with(file, Domain::of_elements(file));
         job.target.surface = Surface::Sphere;
         let stored = smoother_precision(file.precision());
-        let mut laid_out = job.domain.lay_out_on_sphere(stored);
-        if matches!(laid_out, Err(MeshError::TrianglesAlone { .. })) && !file.triangles().is_empty()
-        {
-            job.domain.keep_quadrilaterals(file);
-            laid_out = job.domain.lay_out_on_sphere(stored);
-        }
+        let laid_out = job.domain.lay_out_on_sphere(stored);
         laid_out.map_err(|error| job.error(error))?;
         Ok(job)
     }

@@ -39,7 +39,6 @@ mod checkpoint;
 mod domain;
 mod error;
 mod facts;
-mod halves;
 mod job;
 mod moved;
 pub mod options;
@@ -55,7 +54,6 @@ pub use facts::{
     Adapted, RiseReason, WorstEffect, WorstRise, cost_in_percent, is_at_wall, look_like_degrees,
     overlooks_boundary, overlooks_wall, vertices_in_rows,
 };
-pub use halves::halves_of_quadrilaterals;
 pub use job::{Job, Smoothed};
 pub use moved::moved_fixed_vertex;
 pub use plane::{plane_of_file, points_in_space, z_field};

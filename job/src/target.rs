@@ -4,8 +4,6 @@ use gpu_smooth::front_ends::Chart;
 use gpu_smooth::targets::{OutsideReport, Surface};
 use gpu_smooth::{Mesh, MeshError, Metric, Smoother, TargetField, Targets};
 
-use crate::halves::halves_of_quadrilaterals;
-
 /// The desired shape and size of elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -178,17 +176,13 @@ impl TargetRequest {
         let surface = if is_shape { Surface::Plane } else { self.surface };
         let has_weight = self.kind == TargetKind::KeepSize && metric.has_size_weight();
         let size_weight = has_weight.then(|| targets.size_weight());
-        let (points, triangles) = (&smoother.mesh().points, smoother.topology().triangles());
         if is_of_places {
-            // A field is linear in triangles.
-            let others = smoother.topology().quadrilaterals();
-            let halves = halves_of_quadrilaterals(points, others);
-            let (points, triangles) = (points.clone(), [triangles, &halves].concat());
-            let mesh = Mesh { points, triangles, ..Mesh::default() };
+            let mesh = Mesh { fixed: Vec::new(), ..smoother.mesh().clone() };
             let field = TargetField::new(&mesh, &targets)?.seen_on(surface);
             smoother.set_target_field(field)?;
         } else {
-            let targets = targets.seen_on(surface, points, smoother.topology().corners())?;
+            let (points, topology) = (&smoother.mesh().points, smoother.topology());
+            let targets = targets.seen_on(surface, points, topology.corners())?;
             smoother.set_targets(&targets)?;
         }
         Ok(TargetFacts { outside: None, size_weight })

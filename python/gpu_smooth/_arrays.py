@@ -150,9 +150,8 @@ def interpolate(
 ) -> Doubles:
     """Return data of vertices at new positions of the vertices.
 
-    The data are linear in each triangle of the mesh before the move, and in the two triangles into which the shorter diagonal
-    cuts a quadrilateral. A vertex that has not moved keeps the bits of its
-    data.
+    The data are linear in each triangle of the mesh before the move, and bilinear in each quadrilateral. A vertex that
+    has not moved keeps the bits of its data.
 
     Parameters
     ----------

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gpu_smooth import _native
 from gpu_smooth._ends import between_regions, boundary_of
-from gpu_smooth._errors import MeshError, MeshWarning, OptionError
+from gpu_smooth._errors import MeshError, OptionError
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -105,25 +104,14 @@ class Cells(NamedTuple):
             regions=None if self.regions is None else self.regions[is_kept],
         )
 
-    def choosing(self, word: Any, points: Any, surface: Any) -> Cells:
-        """Return the cells with quadrilaterals that move or stay, as the option `quadrilaterals` says.
-
-        By default, those of a mesh stay that needs a chart of the sphere, which has triangles alone.
-        """
+    def choosing(self, word: Any) -> Cells:
+        """Return the cells with quadrilaterals that move or stay, as the option `quadrilaterals` says."""
         if not isinstance(word, (str, type(None))) or word not in ("keep", "move", None):
             raise OptionError(
                 f"quadrilaterals: the value is {word!r:.40}, and must be \"keep\" or \"move\" for a mesh, which has its own. Pass arrays to "
                 "pass others"
             )
         if word == "keep":
-            return self.kept()
-        if word is None and surface == "sphere" and len(self.triangles) and self._needs_chart(points):
-            warnings.warn(
-                "quadrilaterals: their vertices stay, as the mesh is across the date line or has a pole. Pass "
-                "quadrilaterals=\"keep\" if this is wanted",
-                MeshWarning,
-                stacklevel=5,
-            )
             return self.kept()
         return self
 
@@ -134,17 +122,6 @@ class Cells(NamedTuple):
             anchored=np.concatenate([self.anchored, self.quadrilaterals.ravel()]),
             regions=None if self.regions is None else self.regions[: len(self.triangles)],
         )
-
-    def _needs_chart(self, points: Any) -> bool:
-        """Return whether there are quadrilaterals, and an element is across the date line or has a pole."""
-        xy = np.asarray(points)[:, :2]
-        for corners in (self.triangles, self.quadrilaterals):
-            # Wrong vertices are reported later.
-            if len(self.quadrilaterals) and len(corners) and 0 <= corners.min() and corners.max() < len(xy):
-                longitudes, latitudes = xy[corners, 0], xy[corners, 1]
-                if (np.ptp(longitudes, axis=1) >= 180.0).any() or (np.abs(latitudes) == 90.0).any():
-                    return True
-        return False
 
 
 def of_faces(faces: Integers, surface: Surface | None = None) -> Cells:

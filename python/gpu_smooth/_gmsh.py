@@ -66,7 +66,7 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
     rows = np.full(int(tags.max(initial=0)) + 1, -1)
     rows[tags] = np.arange(len(tags))
     given = with_groups(dict(options), lambda: _groups(gmsh, rows))
-    cells = _cells(gmsh, rows).proper().choosing(given.pop("quadrilaterals", None), points, given.get("surface"))
+    cells = _cells(gmsh, rows).proper().choosing(given.pop("quadrilaterals", None))
     given = cells.options(given, len(points))
     if np.ptp(points[np.union1d(cells.triangles, cells.quadrilaterals), 2]) == 0.0:
         # Nodes that no element has, such as centers of arcs, may have another z.

@@ -38,7 +38,7 @@ def arrays_of(mesh: Any, options: dict[str, Any]) -> MeshArrays:
     points = package.points_of(mesh)
     cells = package.cells_of(mesh).proper()
     word = options.pop("quadrilaterals", None)
-    cells = cells.choosing(word, points, options.get("surface") or cells.surface)
+    cells = cells.choosing(word)
     if options.get("slide"):
         cells = cells._replace(ends=package.ends_of(mesh, cells))
     options = cells.options(options, len(points))

@@ -175,8 +175,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         Vertices of each triangle, numbered from 0, in either winding. An empty list for a mesh of quadrilaterals alone.
     quadrilaterals : array_like of int, shape (k, 4), or {"keep", "move"}, optional
         Vertices of each quadrilateral, around it in either direction. It must be convex, unless `untangle` is set. For a mesh in
-        place of the arrays, whether the vertices of its quadrilaterals move, or all stay. They move by default, except on a
-        sphere across the date line or with a pole. Quadrilaterals that list a vertex twice stay anyway.
+        place of the arrays, whether the vertices of its quadrilaterals move, or all stay. They move by default. Quadrilaterals
+        that list a vertex twice stay anyway.
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
         Vertices that neither move nor slide. For a mesh with named groups, also the name of a group, or a list of names.
     lines : array_like of int, shape (k, 2), optional

@@ -3,9 +3,7 @@
 use gpu_smooth::interpolate::Interpolation;
 use gpu_smooth::measure::{Change, Distribution};
 use gpu_smooth::targets::Surface;
-use gpu_smooth::topology::BadQuadrilateral;
 use gpu_smooth::{Mesh, MeshError, Quality as MeshQuality, Topology, Untangle};
-use gpu_smooth_job::halves_of_quadrilaterals;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -85,55 +83,19 @@ pub(crate) fn interpolate<'py>(
     let moved = likewise("moved", moved, &mesh, &form)?.xy;
     let count = mesh.points.len();
     let values = arrays::per_vertex("values", values, count)?;
-    let split = Split::of(mesh);
-    let mesh = &split.mesh;
     let taken = threads::detached(py, || {
-        let Some(chart) = measures::chart(mesh, surface, form.precision())? else {
-            return interpolated(mesh, &moved, &values.numbers, values.each);
+        let Some(chart) = measures::chart(&mesh, surface, form.precision())? else {
+            return interpolated(&mesh, &moved, &values.numbers, values.each);
         };
         let numbers = chart.extended(&values.numbers, values.each);
         let taken = interpolated(chart.mesh(), &chart.continued(&moved), &numbers, values.each);
         // The copies of vertices come last.
         taken.map(|taken| taken[..count * values.each].to_vec())
     })?;
-    let taken = taken.map_err(|error| error::of_mesh(py, &split.named(error)))?;
+    let taken = taken.map_err(|error| error::of_mesh(py, &error))?;
     match values.is_flat {
         true => Ok(PyArray1::from_vec(py, taken).into_any()),
         false => arrays::matrix(py, taken, [count, values.each]),
-    }
-}
-
-/// A mesh whose quadrilaterals are cut in two triangles each, along the shorter diagonal. The cut triangles come last.
-struct Split {
-    mesh: Mesh,
-    quadrilaterals: Vec<[u32; 4]>,
-}
-
-impl Split {
-    fn of(mut mesh: Mesh) -> Self {
-        let quadrilaterals = std::mem::take(&mut mesh.quadrilaterals);
-        let halves = halves_of_quadrilaterals(&mesh.points, quadrilaterals.iter().copied());
-        mesh.triangles.extend(halves);
-        Self { mesh, quadrilaterals }
-    }
-
-    /// Returns an error of the cut mesh in terms of the mesh before: an inverted triangle of a quadrilateral is a concave corner.
-    fn named(&self, error: MeshError) -> MeshError {
-        let MeshError::Infeasible { mut triangles, mut quadrilaterals } = error else {
-            return error;
-        };
-        let count = self.mesh.triangles.len() - 2 * self.quadrilaterals.len();
-        let first = triangles.partition_point(|bad| bad.triangle < count);
-        for bad in triangles.split_off(first) {
-            let quadrilateral = (bad.triangle - count) / 2;
-            let vertices = self.quadrilaterals[quadrilateral];
-            // The vertex that is not on the diagonal.
-            let apex = self.mesh.triangles[bad.triangle][1];
-            let corner = vertices.iter().position(|&v| v == apex).unwrap_or_default();
-            let flat = bad.flat;
-            quadrilaterals.push(BadQuadrilateral { quadrilateral, vertices, corner, flat });
-        }
-        MeshError::Infeasible { triangles, quadrilaterals }
     }
 }
 

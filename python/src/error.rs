@@ -320,9 +320,6 @@ fn explained(error: &MeshError) -> String {
             "{error}: all are on the boundary, fixed, on lines or between regions. Pass free_lines=True if lines hold them, \
              pass slide=True, fix fewer vertices, or refine the mesh"
         ),
-        MeshError::TrianglesAlone { .. } => {
-            format!("quadrilaterals: {error}. Fix their vertices, and pass the triangles alone")
-        }
         MeshError::PointCount { .. } => format!("points: {error}. Pass one row per vertex"),
         MeshError::ValueCount { .. } => format!("{error}. Pass one row per vertex"),
         other => other.to_string(),

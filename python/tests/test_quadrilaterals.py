@@ -159,8 +159,8 @@ def test_a_result_has_the_quadrilaterals_and_their_quality() -> None:
         np.testing.assert_allclose(quality.min_angle, angles.min(), rtol=1e-9)
         assert pickle.loads(pickle.dumps(quality)).worst_element == quality.worst_element
     assert result.quality_after.f("imr") < result.quality_before.f("imr")
-    of_edges = gpu_smooth.quality(points, triangles, "flow-link", quadrilaterals=quadrilaterals)
-    assert np.isfinite(of_edges[:144]).all() and np.isnan(of_edges[144:]).all()
+    of_triangles = gpu_smooth.quality(points, triangles, "schism-skewness", quadrilaterals=quadrilaterals)
+    assert np.isfinite(of_triangles[:144]).all() and np.isnan(of_triangles[144:]).all()
     moved = points * 2.0
     again = smoother.run(moved)
     np.testing.assert_allclose(again.points, 2.0 * result.points, atol=0.05)
@@ -228,40 +228,36 @@ def test_a_vertex_between_two_elements_is_refused() -> None:
     assert refused.value.vertex == 4 and refused.value.quadrilaterals == (0, 1)
 
 
-def test_data_are_linear_in_halves_of_quadrilaterals() -> None:
+def test_data_are_bilinear_in_quadrilaterals() -> None:
     points, (triangles, quadrilaterals) = bent(), mixed(12)
     moved = gpu_smooth.smooth(points, triangles, quadrilaterals=quadrilaterals)
     taken = gpu_smooth.interpolate(
         points, triangles, moved, 2 * points[:, 0] - points[:, 1], quadrilaterals=quadrilaterals
     )
     np.testing.assert_allclose(taken, 2 * moved[:, 0] - moved[:, 1], atol=1e-12)
-    # The shorter diagonal leads from vertex 0 to vertex 2.
-    square = np.array([[0.0, 0], [2, -1], [2, 1], [0, 2]])
+    # A product of coordinates is bilinear in a square.
+    square = np.array([[0.0, 0], [2, 0], [2, 2], [0, 2]])
     at = square.copy()
-    at[1] = [1.5, 0]
-    halves = gpu_smooth.interpolate(square, [[0, 1, 2], [0, 2, 3]], at, [0, 1, 0, 7])
-    whole = gpu_smooth.interpolate(square, [], at, [0, 1, 0, 7], quadrilaterals=[[1, 2, 3, 0]])
-    assert np.array_equal(whole, halves) and 0 < whole[1] < 1
-    # Vertex 2 is on the other side of the shorter diagonal, which leads from vertex 1 to vertex 3.
-    square[[1, 3]], square[2] = [[1, 0], [0, 1]], [-2.0, -2.0]
-    with pytest.raises(MeshError, match=r"^quadrilaterals\[0\]: quadrilateral 0 is concave at vertex [02]\.") as refused:
+    at[1] = [1.5, 0.5]
+    taken = gpu_smooth.interpolate(square, [], at, square[:, 0] * square[:, 1], quadrilaterals=[[1, 2, 3, 0]])
+    assert taken.tolist() == [0.0, 0.75, 4.0, 0.0]
+    square[2] = [-2.0, -2.0]
+    with pytest.raises(MeshError, match=r"^quadrilaterals\[0\]: quadrilateral 0 is concave at vertex [0-3]\.") as refused:
         gpu_smooth.interpolate(square, [], at, [0, 1, 0, 7], quadrilaterals=[[0, 1, 2, 3]])
     assert refused.value.quadrilaterals == (0,) and refused.value.triangles == ()
 
 
-def test_quadrilaterals_across_the_date_line_stay() -> None:
+def test_quadrilaterals_across_the_date_line_move() -> None:
     points, (triangles, quadrilaterals) = bent(), mixed(12)
     degrees = points * [0.2, 0.2] + [178.9, 1.0]
-    degrees[degrees[:, 0] > 180, 0] -= 360
-    with pytest.raises(MeshError, match="quadrilaterals: a chart across the date line or at a pole takes meshes of triangles alone"):
-        gpu_smooth.smooth(degrees, triangles, quadrilaterals=quadrilaterals, surface="sphere")
+    expected = gpu_smooth.smooth(degrees, triangles, quadrilaterals=quadrilaterals, surface="sphere")
+    across = degrees[:, 0] > 180
+    degrees[across, 0] -= 360
     given = meshio.Mesh(degrees, [("triangle", triangles), ("quad", quadrilaterals)])
-    with pytest.warns(MeshWarning, match="quadrilaterals: their vertices stay"):
-        smoothed = gpu_smooth.smooth(given, surface="sphere")
-    moved = (smoothed.points != degrees).any(axis=1)
-    assert not moved[quadrilaterals].any() and moved.sum() > 40
-    kept = gpu_smooth.smooth(given, surface="sphere", quadrilaterals="keep")
-    assert np.array_equal(kept.points, smoothed.points)
+    moved = gpu_smooth.smooth(given, surface="sphere").points
+    moved = np.where(moved[:, :1] < 0, moved + [360, 0], moved)
+    np.testing.assert_allclose(moved, expected, atol=1e-6)
+    assert (moved != degrees).any(axis=1)[quadrilaterals].sum() > 40
 
 
 def test_meshes_of_meshio_move_their_quadrilaterals(cells: Cells) -> None:
@@ -388,6 +384,6 @@ def test_matplotlib_draws_quadrilaterals(cells: Cells) -> None:
         assert axes.get_xlim()[0] <= 0 and axes.get_xlim()[1] >= 12
     with_norm = result.plot("after", norm=colors.LogNorm(10, 90))
     assert with_norm.axes[0].collections[0].norm.vmax == 90
-    with pytest.raises(OptionError, match="measure: quadrilaterals have no flow-link"):
-        result.plot(measure="flow-link")
+    with pytest.raises(OptionError, match="measure: quadrilaterals have no schism-skewness"):
+        result.plot(measure="schism-skewness")
     pyplot.close("all")

@@ -11,7 +11,7 @@ use gpu_smooth::{
     targets::{OutsideReport, Surface},
 };
 use gpu_smooth_job::{TargetFacts, TargetKind, TargetSource as Numbers};
-use mesh_io::{GmshView, MeditSolution, MeshFile, ReadError};
+use mesh_io::{GmshView, MeditSolution, ReadError, ReadOptions};
 
 use crate::load::{explain, lay_out};
 use crate::request::{GivenTargets, TargetRequest, TargetSource, ThirdCoordinate};
@@ -87,14 +87,15 @@ fn field_of_mesh(
     kind: TargetKind,
     surface: Surface,
 ) -> Result<TargetField, CliError> {
-    let read = MeshFile::read(path).map_err(|error| match error {
+    let options = ReadOptions::new().allow_quadrilaterals_alone(true);
+    let read = options.read(path).map_err(|error| match error {
         // No option allows a background mesh to refer to files elsewhere.
         ReadError::Outside { .. } => {
             of_background(CliError::from(error).with_remedy("Move the file beside the mesh"))
         }
         error => of_background(error.into()),
     })?;
-    let mut background = LoadedMesh::new(read);
+    let mut background = LoadedMesh::of_elements(read);
     lay_out(&mut background, surface, ThirdCoordinate::Data)?;
     if file.plane().is_some() {
         file.lay_out_likewise(&mut background)?;

@@ -144,7 +144,7 @@ fn pictures_color_quadrilaterals_that_move() {
     assert_eq!(folder.line(line).code, Some(0));
     let text = folder.text("p.svg");
     assert!(!text.contains("quadrilateral") && text.contains("96 elements"), "{}", &text[..2000]);
-    let line = format!("{line} --picture-measure size-ratio");
+    let line = format!("{line} --picture-measure schism-skewness");
     assert_eq!(folder.line(&line).code, Some(0));
     assert_holds(&folder.text("p.svg"), &["quadrilateral", "worst elements"]);
 }
@@ -168,7 +168,7 @@ fn quality_measures_and_lists_quadrilaterals() {
         &["81 vertices (49 free), 64 quadrilaterals", "75 to 80", "worst elements by shape"],
     );
     assert_holds(&run.out, &["  quadrilateral ", "med-aspect-frobenius", "inverted or concave"]);
-    assert!(!run.out.contains("size-ratio"), "{}", run.out);
+    assert!(!run.out.contains("schism-skewness"), "{}", run.out);
 
     let run = folder.line("quality mixed.vtk --json --quadrilaterals keep");
     assert_eq!(serde_json::from_str::<serde_json::Value>(&run.out).unwrap()["triangles"], 64);
@@ -204,7 +204,10 @@ fn quality_measures_and_lists_quadrilaterals() {
         assert!(limit["worst"]["triangle"].is_u64(), "{limit}");
     }
     let run = folder.line("quality block.vtk --for fea");
-    assert_holds(&run.out, &["the limits of elements are of triangles: 64 quadrilaterals have no verdict"]);
+    assert_holds(
+        &run.out,
+        &["the limits of elements are of triangles: 64 quadrilaterals have no verdict"],
+    );
     // Each vertex inside of `block.vtk` is in four quadrilaterals.
     let run = folder.line("quality block.vtk --threshold neighbors>4 --threshold neighbors<4 -q");
     assert_eq!((run.code, run.out), (Some(0), String::new()));
