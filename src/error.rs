@@ -3,7 +3,7 @@
 use crate::mesh::Element;
 
 /// Error of an unsuitable mesh, or of arguments that do not match the mesh. Indices are zero-based, as in
-/// [`Mesh`].
+/// [`Mesh`](crate::Mesh).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
