@@ -24,7 +24,7 @@ fn angle_penalties(cotangent: f32) -> vec3<f32> {
 #if QUADRILATERALS
 // The penalty on the angle at a corner of a quadrilateral, with its first two derivatives by the cotangent.
 fn right_angle_penalty(cotangent: f32) -> vec3<f32> {
-    return 100.0 * vec3(cotangent * cotangent, 2.0 * cotangent, 2.0);
+    return 40.0 * vec3(cotangent * cotangent, 2.0 * cotangent, 2.0);
 }
 
 #endif

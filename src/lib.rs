@@ -1,10 +1,10 @@
-//! Moves the interior vertices of 2D triangle meshes so that their triangles get better shapes, and never
-//! inverts a triangle. Sweeps visit the vertices, one color at a time, with feasible Newton steps, in wgpu
+//! Moves the interior vertices of 2D meshes so that their triangles and quadrilaterals get better shapes, and never
+//! inverts one. Sweeps visit the vertices, one color at a time, with feasible Newton steps, in wgpu
 //! compute shaders or on the CPU.
 //!
 //! The method is that of J. Park and S. M. Shontz, *An Alternating Mesh Quality Metric Scheme for
 //! Efficient Mesh Quality Improvement*, Procedia Computer Science 4 (2011) 292-301: the objective
-//! f = (1/n) Σ q² over all triangles is lowered vertex by vertex, the boundary held fixed, and the
+//! f = (1/n) Σ q² over all elements is lowered vertex by vertex, the boundary held fixed, and the
 //! metric q may change from sweep to sweep.
 //!
 //! ```

@@ -1,4 +1,4 @@
-//! Reads 2D triangle meshes in many file formats, rewrites files with moved vertices and no other change, and converts
+//! Reads 2D meshes in many file formats, rewrites files with moved vertices and no other change, and converts
 //! meshes.
 //!
 //! [`MeshFile::read`] detects the format by the content of a file. A [`MeshFile`] never changes: it reports points,

@@ -13,7 +13,7 @@ const SMALL: Hinge = Hinge { limit: 1.3, ramp: 0.2 };
 const SMALL_WEIGHT: f64 = 30.0;
 
 /// Factor of the squared cotangent of the angle at a corner of a quadrilateral.
-const OF_RIGHT_ANGLE: f64 = 100.0;
+const OF_RIGHT_ANGLE: f64 = 40.0;
 
 /// Returns the penalties on the three angles of a triangle, or on the angle at a corner of a quadrilateral.
 #[inline(always)]

@@ -11,8 +11,8 @@ use crate::args::{
     BenchArgs, FieldArgs, FormArgs, MoveArgs, QualityArgs, ReadArgs, SideArgs, SmoothArgs, TryArgs,
 };
 
-/// Smooths a 2D triangle mesh: moves interior vertices until element quality is optimal, and never inverts a triangle.
-/// OUT differs from IN in the coordinates of moved vertices only.
+/// Smooths a 2D mesh of triangles and quadrilaterals: moves interior vertices so that elements get better shapes, and
+/// never inverts one. OUT differs from IN in the coordinates of moved vertices only.
 #[derive(Parser)]
 #[command(
     name = "gpu-smooth",
