@@ -9,6 +9,7 @@ use crate::load::{LoadedMesh, lay_out};
 use crate::report::FileHash;
 use crate::request::{FieldsRequest, MovableRequest, ReadRequest, SlideRequest, ThirdCoordinate};
 use crate::run::proof::{self, MeshVersion, Proof};
+use crate::terminal::numbers::counted;
 use crate::terminal::shell_words::quoted;
 use crate::terminal::tell;
 use std::ffi::OsStr;
@@ -170,10 +171,12 @@ fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof, is_converted:
     let farthest = moved.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     let triangles = after.mesh().triangles.len();
     let elements = match (triangles, after.mesh().quadrilaterals.len()) {
-        (triangles, 0) => format!("none of {triangles} triangles is inverted or flat"),
-        (0, count) => format!("each of {count} quadrilaterals is convex"),
+        (triangles, 0) => format!("none of {} is inverted or flat", counted(triangles, "triangle")),
+        (0, count) => format!("each of {} is convex", counted(count, "quadrilateral")),
         (triangles, count) => format!(
-            "none of {triangles} triangles is inverted or flat, and each of {count} quadrilaterals is convex"
+            "none of {} is inverted or flat, and each of {} is convex",
+            counted(triangles, "triangle"),
+            counted(count, "quadrilateral")
         ),
     };
     let mut text = format!(

@@ -9,7 +9,7 @@ use crate::load::explain;
 use crate::load::layers::keep_layers;
 use crate::load::named::{named, refusal};
 use crate::request::{MovableRequest, NearBad, SlideRequest};
-use crate::terminal::numbers::sig6;
+use crate::terminal::numbers::{counted, sig6};
 
 /// The effect on a mesh of the options that select movable vertices.
 #[derive(Default)]
@@ -231,11 +231,6 @@ impl<'f> SelectionResolver<'f> {
     fn groups(&self) -> Result<Groups, CliError> {
         Ok(self.file.source.groups()?)
     }
-}
-
-/// Formats a count with its noun in the singular or plural: `1 ring`, `2 rings`.
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Describes the effect of an option: `count` fixed vertices, of which `free` would otherwise be free and `sliding` would

@@ -10,7 +10,7 @@ use crate::report::{
     ChangeReport, FaultReport, MeshReport, QualityReport, Report, Seconds, SlideReport,
     TargetReport, UntangleReport, spacing_sentences,
 };
-use crate::terminal::numbers::{percent, rough, sig6};
+use crate::terminal::numbers::{counted, percent, rough, sig6};
 
 /// The message of a run ended by a sweep whose objective was infinite or NaN.
 const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a defect of this program or of the GPU driver; the mesh has the positions of the last finite state";
@@ -411,9 +411,11 @@ pub(crate) fn change_of(factor: f64) -> String {
 /// Returns the numbers of triangles and of quadrilaterals that may move, each only if the mesh has some.
 pub(crate) fn elements(triangles: usize, quadrilaterals: usize) -> String {
     match (triangles, quadrilaterals) {
-        (triangles, 0) => format!("{triangles} triangles"),
-        (0, count) => format!("{count} quadrilaterals"),
-        (triangles, count) => format!("{triangles} triangles, {count} quadrilaterals"),
+        (triangles, 0) => counted(triangles, "triangle"),
+        (0, count) => counted(count, "quadrilateral"),
+        (triangles, count) => {
+            format!("{}, {}", counted(triangles, "triangle"), counted(count, "quadrilateral"))
+        }
     }
 }
 
@@ -432,5 +434,11 @@ mod tests {
         for (factor, text) in cases {
             assert_eq!(change_of(factor), text);
         }
+    }
+
+    #[test]
+    fn one_element_is_singular() {
+        assert_eq!(elements(1, 2), "1 triangle, 2 quadrilaterals");
+        assert_eq!([elements(2, 0), elements(0, 1)], ["2 triangles", "1 quadrilateral"]);
     }
 }

@@ -15,6 +15,7 @@ use crate::load::explain;
 use crate::load::streams;
 use crate::report::SmoothJob;
 use crate::terminal::interrupt;
+use crate::terminal::numbers::counted;
 
 /// An untangled mesh, with counts of the work.
 pub(crate) struct UntangledInput {
@@ -127,7 +128,7 @@ fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     CliError::run(format!(
         "{place}: after {} of untangling no triangle is inverted, but those around vertex {vertex} wind more than once around \
          it{PERHAPS}{KEPT}",
-        counted(sweeps)
+        counted(sweeps as usize, "sweep")
     ))
 }
 
@@ -139,7 +140,7 @@ fn concave(file: &LoadedMesh, untangled: &Untangled) -> Option<CliError> {
             (bad, "cannot become convex, as none of their three vertices is free".to_owned())
         }
         None => {
-            let sweeps = counted(untangled.sweeps);
+            let sweeps = counted(untangled.sweeps as usize, "sweep");
             (left.first()?, format!("are not convex after {sweeps} of untangling"))
         }
     };
@@ -172,7 +173,7 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
     let (shown, count, why) = match hopeless.len() {
         0 => {
             let perhaps = if was_ended { "" } else { PERHAPS };
-            let sweeps = counted(sweeps);
+            let sweeps = counted(sweeps as usize, "sweep");
             let why =
                 format!("stayed inverted or flat after {sweeps} of untangling{perhaps}{KEPT}");
             (left, left.len(), why)
@@ -187,7 +188,7 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
         }
     };
     let (triangles, first) = (
-        if count == 1 { "1 triangle".to_owned() } else { format!("{count} triangles") },
+        counted(count, "triangle"),
         explain::bad_triangles(file, &shown[..count.min(explain::TOLD)]),
     );
     CliError::run(format!("{name}: {triangles} {why}")).with_details(explain::list(
@@ -195,10 +196,6 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
         count,
         "gpu-smooth quality --json",
     ))
-}
-
-fn counted(sweeps: u32) -> String {
-    if sweeps == 1 { "1 sweep".to_owned() } else { format!("{sweeps} sweeps") }
 }
 
 /// Returns whether untangling may help: the mesh was refused for inverted or flat triangles, or has movable triangles

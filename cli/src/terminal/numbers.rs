@@ -13,6 +13,11 @@ pub(crate) fn sig6(x: f64) -> String {
     }
 }
 
+/// Formats a count with its noun in the singular or plural: `1 ring`, `2 rings`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Formats a number with the digits of single precision, which hides rounding errors of double precision.
 pub(crate) fn short(number: f64) -> String {
     (number as f32).to_string()

@@ -62,7 +62,14 @@ fn vertices_of_mixed_meshes_move_or_stay_and_compare_knows() {
     let cut = |k: usize| k % 10 < 5;
     let folder = Folder::new(&[("in.vtk", &vtk(10, cut, |_| 1))]);
     folder.line("in.vtk kept.vtk --engine cpu --quiet --quadrilaterals keep").clean();
-    folder.line("in.vtk moved.vtk --engine cpu --quiet").clean();
+    folder.line("in.vtk moved.vtk --engine cpu --quiet --html p.html").clean();
+    assert_holds(
+        &folder.text("p.html"),
+        &[
+            "0 of 100 triangles are inverted or flat and 0 of 50 quadrilaterals are not convex, by exact",
+            "All 100 triangles and 50 quadrilaterals.",
+        ],
+    );
     let kept = folder.line("compare in.vtk kept.vtk --quadrilaterals keep");
     assert_holds(&kept.out, &["36 of 121 vertices have moved", "none of 100 triangles"]);
     let moved = folder.line("compare in.vtk moved.vtk");

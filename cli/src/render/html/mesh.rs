@@ -21,6 +21,7 @@ use crate::render::html::worst::WorstTriangle;
 use crate::render::picture::{
     BAD, Extent, FixedFaces, NEUTRAL, Outlines, PALE, VIRIDIS, picture_of,
 };
+use crate::terminal::numbers::counted;
 
 /// The measures by which each page can color the mesh.
 const SHOWN: [Measure; 4] =
@@ -64,10 +65,11 @@ const MOST_EDGES: usize = 200_000;
 
 /// Describes in one or two sentences how the page shows a mesh.
 fn caption(triangles: usize, faces: &FixedFaces, is_whole: bool) -> String {
-    let elements = match (faces.name(), faces.count) {
-        (None, _) => format!("{triangles} triangles"),
-        (Some(name), 1) => format!("{triangles} triangles and 1 {name}"),
-        (Some(name), n) => format!("{triangles} triangles and {n} {name}s"),
+    let of_triangles = counted(triangles, "triangle");
+    let elements = match (faces.name(), triangles) {
+        (None, _) => of_triangles,
+        (Some(name), 0) => counted(faces.count, name),
+        (Some(name), _) => format!("{of_triangles} and {}", counted(faces.count, name)),
     };
     match is_whole {
         true => format!("All {elements}."),

@@ -1,5 +1,6 @@
 //! The section on the run: command, versions, engine, and the checks of the result.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::time::SystemTime;
 
@@ -46,7 +47,21 @@ pub(crate) fn run(task: &SmoothJob<'_>, done: &Done<'_>) -> Result<String, CliEr
 fn certificate(done: &Done<'_>) -> Result<String, CliError> {
     let topology = done.smoother.topology();
     let (old, new) = (&done.file.mesh().points, &done.outcome.points);
-    let bad = topology.bad_triangles(new)?.len();
+    let concave: BTreeSet<usize> =
+        topology.bad_quadrilaterals(new)?.iter().map(|bad| bad.quadrilateral).collect();
+    let kinds = [
+        (
+            topology.bad_triangles(new)?.len(),
+            topology.triangles().len(),
+            "triangles are inverted or flat",
+        ),
+        (concave.len(), topology.quadrilaterals().len(), "quadrilaterals are not convex"),
+    ];
+    let bad: Vec<String> = kinds
+        .iter()
+        .filter(|(_, count, _)| *count > 0)
+        .map(|(bad, count, problem)| format!("{bad} of {count} {problem}"))
+        .collect();
     let bits = |point: &[f64; 2]| point.map(f64::to_bits);
     let moved: Vec<usize> = (0..old.len()).filter(|&v| bits(&old[v]) != bits(&new[v])).collect();
     let held = topology.free().iter().filter(|free| !**free).count();
@@ -57,11 +72,11 @@ fn certificate(done: &Done<'_>) -> Result<String, CliError> {
     let distance = |&v: &usize| (new[v][0] - old[v][0]).hypot(new[v][1] - old[v][1]);
     let farthest = moved.iter().map(distance).fold(0.0, f64::max);
     Ok(format!(
-        "<h3>Certificate</h3><ul><li>{bad} of {} triangles are inverted or flat, by exact predicates on the coordinates as \
-         they were written.</li><li>{kept} of {held} vertices that must stay have the same bits.</li><li>{} of {} vertices \
-         have moved, the farthest by {}.</li><li>{} vertices were put back because rounding had inverted a triangle.</li></ul>\
+        "<h3>Certificate</h3><ul><li>{}, by exact predicates on the coordinates as they were written.</li><li>{kept} of \
+         {held} vertices that must stay have the same bits.</li><li>{} of {} vertices have moved, the farthest by {}.</li>\
+         <li>{} vertices were put back because rounding had inverted an element.</li></ul>\
          <p><code>gpu-smooth compare</code> of both files proves this again.</p>",
-        topology.triangles().len(),
+        bad.join(" and "),
         moved.len(),
         old.len(),
         sig6(farthest),
