@@ -31,6 +31,13 @@ fn set_role(role: u32) {
     edge_slopes = slopes_of_metrics(plane_slopes);
 }
 
+// Makes a corner of a quadrilateral the present corner, with its own vertex first. Returns the places of the three vertices in the
+// list of quadrilaterals.
+fn own_corner(quadrilateral: u32, k: u32) -> vec3<u32> {
+    set_role(OWN);
+    return 4u * quadrilateral + vec3(k, (k + 1u) % 4u, (k + 3u) % 4u);
+}
+
 // Returns slopes of the edges that metrics see, from slopes of the edges in the plane.
 fn slopes_of_metrics(plane: vec2<f32>) -> vec2<f32> {
     if is_right {

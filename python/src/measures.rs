@@ -99,8 +99,8 @@ pub(crate) fn chart(
     }
 }
 
-/// Returns the value of a measure for each triangle, then for each quadrilateral. NaN for quadrilaterals if they do not have the
-/// measure.
+/// Returns the value of a measure for each triangle, then for each quadrilateral. The value of a quadrilateral is NaN if
+/// quadrilaterals lack the measure.
 #[pyfunction]
 pub(crate) fn quality<'py>(
     py: Python<'py>,

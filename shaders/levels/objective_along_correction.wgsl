@@ -28,12 +28,8 @@ fn objective_along_correction(
     for (var t = id.x; t < op.rows; t += stride) {
 #if QUADRILATERALS
         for (var k = 0u; k < 4u; k++) {
-        let corners = vec3(
-            triangles[4u * t + k],
-            triangles[4u * t + (k + 1u) % 4u],
-            triangles[4u * t + (k + 3u) % 4u],
-        );
-        set_role(OWN);
+        let places = own_corner(t, k);
+        let corners = vec3(triangles[places.x], triangles[places.y], triangles[places.z]);
 #else
         let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
 #endif

@@ -20,16 +20,12 @@ fn depth_of(area: f32) -> f32 {
 fn look_at(t: u32) {
 #if QUADRILATERALS
     for (var k = 0u; k < 4u; k++) {
-        look_at_corner(vec3(
-            triangles[4u * t + k],
-            triangles[4u * t + (k + 1u) % 4u],
-            triangles[4u * t + (k + 3u) % 4u],
-        ));
+        look_at_corner(own_corner(t, k));
     }
 }
 
-fn look_at_corner(corners: vec3<u32>) {
-    set_role(OWN);
+fn look_at_corner(places: vec3<u32>) {
+    let corners = vec3(triangles[places.x], triangles[places.y], triangles[places.z]);
 #else
     let corners = vec3(triangles[3u * t], triangles[3u * t + 1u], triangles[3u * t + 2u]);
 #endif

@@ -269,8 +269,8 @@ impl<'m> Topology<'m> {
         self.free.iter().filter(|&&f| f).count()
     }
 
-    /// Returns the indices of the corners at a vertex: a corner for each element with the vertex. A corner of a quadrilateral is
-    /// at its first vertex. Around a free vertex, corners are in counter-clockwise order and start with
+    /// Returns the indices of the corners at a vertex: a corner for each element with the vertex. A quadrilateral has
+    /// the corner whose first vertex is the vertex. Around a free vertex, corners are in counter-clockwise order and start with
     /// the least index; around other vertices, indices ascend. Empty if the mesh has no such vertex.
     pub fn star(&self, vertex: u32) -> &[u32] {
         match self.free.get(vertex as usize) {

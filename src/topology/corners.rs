@@ -87,6 +87,15 @@ impl<'m> Corners<'m> {
         }
     }
 
+    /// Returns the number of the element of a corner: triangles are numbered first.
+    #[inline]
+    pub(crate) fn number(&self, corner: u32) -> usize {
+        match (corner as usize).checked_sub(self.triangles) {
+            None => corner as usize,
+            Some(of_quadrilaterals) => self.triangles + of_quadrilaterals / 4,
+        }
+    }
+
     /// Returns the first corner of the element of a corner: equal for all corners of an element, and ascending in the order of
     /// elements.
     pub(crate) fn first(&self, corner: u32) -> u32 {

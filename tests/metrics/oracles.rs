@@ -7,6 +7,8 @@ use gpu_smooth::{
     metric::{Corner, Ideal},
 };
 
+/// Half a unit in the last place of a float close to 1.
+pub(crate) const ULP: f64 = 1.0 / 16_777_216.0;
 /// Binary logarithm of the exponent of EDGE's p-norm.
 pub(crate) const SHARPNESS: u32 = 4;
 

@@ -10,11 +10,9 @@ use gpu_smooth::{
 use support::SplitMix64;
 
 use crate::device::{Device, probe};
-use crate::oracles::{SHARPNESS, Scales, scales};
+use crate::oracles::{SHARPNESS, Scales, ULP, scales};
 use crate::triangles::{next_corner, random, thin};
 
-/// Half a unit in the last place of a float close to 1.
-const ULP: f64 = 1.0 / 16_777_216.0;
 /// Bound on errors in units of their scales, as for triangles. Software adapters stay below 3.
 const BOUND: f64 = 16.0;
 

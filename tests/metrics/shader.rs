@@ -2,7 +2,7 @@
 //! on equal single-precision input.
 
 use crate::device::{Device, probe};
-use crate::oracles::{SHARPNESS, Scales, mistakes, scales};
+use crate::oracles::{SHARPNESS, Scales, ULP, mistakes, scales};
 use crate::triangles::*;
 use gpu_smooth::{
     Metric,
@@ -12,9 +12,6 @@ use gpu_smooth::{
     options::Derivatives,
 };
 use support::SplitMix64;
-
-/// Half a unit in the last place of a float close to 1.
-const ULP: f64 = 1.0 / 16_777_216.0;
 
 /// Input of an invocation: the triangle, its ideal (the mean area and the size weight), and the width of differences.
 type Row = [f32; 7];

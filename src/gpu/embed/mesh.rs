@@ -230,9 +230,7 @@ impl DeviceMesh {
     /// Returns the numbers of vertices, including vertices of no element, and of triangles, with four triangles for each
     /// quadrilateral.
     pub fn size(&self) -> MeshSize {
-        let corners = self.problem.corners();
-        let triangles = corners.triangles().len() + 4 * corners.quadrilateral_count();
-        MeshSize { vertices: self.vertex_count, triangles }
+        MeshSize { vertices: self.vertex_count, triangles: self.problem.corners().all().len() }
     }
 
     /// Binds an application's vertex buffer to the mesh, so that encoding a frame creates no resources. Several buffers

@@ -48,7 +48,7 @@ const EACH: u32 = 8;
 /// [`ObjectiveValues::inverted`](crate::gpu::ObjectiveValues::inverted) counts the triangles that are left. Sweeps and
 /// values count areas that are not positive in single precision as inverted.
 pub struct UntanglingSweeps {
-    /// The search in each part of the elements.
+    /// The pipelines that search for inverted elements, in the order of the parts of elements.
     find: Vec<Pipeline>,
     regularize: Pipeline,
     untangle: Pipeline,

@@ -34,7 +34,7 @@ pub(crate) struct Dispatches {
     /// Bind groups by part of the mesh; see [`Parts`].
     bind_groups: Vec<wgpu::BindGroup>,
     sweeps: Vec<(Metric, Derivatives, Pipeline)>,
-    /// The evaluation of each part of the elements.
+    /// The pipelines that evaluate the objective, in the order of the parts of elements.
     objectives: Vec<Pipeline>,
     finish: Pipeline,
     keep_best: Option<Pipeline>,

@@ -167,7 +167,7 @@ impl<'g> Listing<'g> {
         self.step_in(self.form, &kernel, bound, groups, op)
     }
 
-    /// Lists the dispatch of a kernel that goes over a part of the elements.
+    /// Lists the dispatch of a kernel whose invocations go over a part of the elements.
     pub(super) fn step_on(
         &mut self,
         elements: &ElementPart,

@@ -17,8 +17,9 @@ const CHUNK: usize = 1 << 12;
 /// the mean latitude of its two ends.
 ///
 /// In place of the circumcenter, a quadrilateral has a point near the perpendicular bisectors of its edges with neighbors: the
-/// result of 100 steps from the mean of the vertices, each by a tenth of the ways to all bisectors. If the vertices are on a
-/// circle, this is the circumcenter. A quadrilateral with fewer than two such edges has the mean of its vertices as center.
+/// result of 100 steps from the mean of the vertices, each by a tenth of the ways to all bisectors. The point is the
+/// circumcenter if the vertices are on a circle. A quadrilateral with fewer than two edges with neighbors has the mean of its
+/// vertices as center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct InnerEdge {

@@ -117,7 +117,18 @@ impl<'g> List<'g> {
         groups: Groups,
         op: Op,
     ) -> Result<Dispatch, GpuError> {
-        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, self.form)?;
+        self.dispatch_in(self.form, kernel, bound, groups, op).await
+    }
+
+    async fn dispatch_in(
+        &mut self,
+        form: MeshForm,
+        kernel: Kernel,
+        bound: Bound,
+        groups: Groups,
+        op: Op,
+    ) -> Result<Dispatch, GpuError> {
+        let pipeline = self.gpu.pipelines.get(&self.gpu.device, &kernel, form)?;
         pause().await;
         let number = self.listed;
         self.listed += 1;
@@ -289,15 +300,13 @@ impl<'g> List<'g> {
         let whole = Groups::Just(partials / WORKGROUP);
         let movement = FineOp { rows: self.step.vertices, ..fine };
         let begin = self.of_trials(Kernel::BeginTrials).await?;
-        let form = self.form;
         let mut evaluation = Vec::new();
         // Each list of elements is one part, as a Hessian that fits one binding is larger.
         for (part, bound) in elements.iter().zip([Bound::Fine, Bound::FineOfQuadrilaterals]) {
             let kernel = Kernel::ObjectiveAlongCorrection(metric);
             let op = Op::Fine(FineOp { rows: part.count(), first: part.first, ..fine });
-            self.form = part.form(form);
-            evaluation.push(self.dispatch(kernel, bound, whole, op).await?);
-            self.form = form;
+            let form = part.form(self.form);
+            evaluation.push(self.dispatch_in(form, kernel, bound, whole, op).await?);
         }
         let kernel = Kernel::SumAlongCorrection;
         evaluation
