@@ -36,7 +36,7 @@ pub(crate) struct ProfileReport {
     /// The metric by which runs for the solver smooth meshes.
     scheme: Option<Metric>,
     pub(crate) limits: Vec<LimitReport>,
-    /// Number of quadrilaterals. All limits concern triangles.
+    /// Number of quadrilaterals that limits leave out, as limits of elements and of vertices concern triangles.
     quadrilaterals: usize,
     /// The edges beyond limits of edges, by the reason that no move of free vertices mends them.
     reasons: Vec<Reason>,
@@ -70,12 +70,15 @@ impl ProfileReport {
         // A listed quantity that no part has, such as the time step without depths, has no line.
         let is_shown =
             |limit: &LimitReport| limit.listed.as_ref().is_none_or(|listed| listed.total > 0);
+        let leaves_out =
+            |limit: &Limit| matches!(limit.quantity.part(), Part::Triangle | Part::Vertex);
+        let is_complete = !profile.limits.iter().any(leaves_out);
         Self {
             name: profile.name.clone(),
             title: profile.title.clone(),
             scheme: profile.scheme,
             limits: profile.limits.iter().map(compared).filter(is_shown).collect(),
-            quadrilaterals: quantities.quadrilaterals(),
+            quadrilaterals: if is_complete { 0 } else { quantities.quadrilaterals() },
             reasons: reasons(profile, quantities),
         }
     }

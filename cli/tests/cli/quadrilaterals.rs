@@ -215,6 +215,10 @@ fn quality_measures_and_lists_quadrilaterals() {
         &run.out,
         &["the limits of elements are of triangles: 64 quadrilaterals have no verdict"],
     );
+    // All limits of D-Flow FM are of edges and of holes.
+    let run = folder.line("quality block.vtk --for dflowfm");
+    assert_holds(&run.out, &["orthogonality", "hole-edges"]);
+    assert!(!run.out.contains("no verdict"), "{}", run.out);
     // Each vertex inside of `block.vtk` is in four quadrilaterals.
     let run = folder.line("quality block.vtk --threshold neighbors>4 --threshold neighbors<4 -q");
     assert_eq!((run.code, run.out), (Some(0), String::new()));
