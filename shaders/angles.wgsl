@@ -22,9 +22,33 @@ fn angle_penalties(cotangent: f32) -> vec3<f32> {
 }
 
 #if QUADRILATERALS
-// The penalty on the angle at a corner of a quadrilateral, with its first two derivatives by the cotangent.
-fn right_angle_penalty(cotangent: f32) -> vec3<f32> {
-    return 40.0 * vec3(cotangent * cotangent, 2.0 * cotangent, 2.0);
+// ψ with another ramp.
+fn angle_hinge_of(x: f32, ramp: f32) -> vec3<f32> {
+    let scale = ANGLE_RAMP / ramp;
+    let hinge = angle_hinge(x * scale);
+    return vec3(hinge.x / (scale * scale), hinge.y / scale, hinge.z);
+}
+
+// The functions of an angle: the penalties on an angle of a triangle, on the angle at a corner of a quadrilateral and on an angle
+// between a side and a diagonal of a quadrilateral, and the cotangent itself.
+const ANGLE_OF_TRIANGLE: u32 = 0u;
+const ANGLE_AT_CORNER: u32 = 1u;
+const ANGLE_AT_DIAGONAL: u32 = 2u;
+const ANGLE_ITSELF: u32 = 3u;
+
+// A function of an angle, with its first two derivatives by the cotangent.
+fn function_of_angle(kind: u32, cotangent: f32) -> vec3<f32> {
+    if kind == ANGLE_AT_CORNER {
+        return 420.0 * vec3(cotangent * cotangent, 2.0 * cotangent, 2.0);
+    }
+    if kind == ANGLE_AT_DIAGONAL {
+        let large = angle_hinge_of(0.1 - cotangent, 0.1);
+        return 600.0 * vec3(large.x, -large.y, large.z);
+    }
+    if kind == ANGLE_ITSELF {
+        return vec3(cotangent, 1.0, 0.0);
+    }
+    return angle_penalties(cotangent);
 }
 
 #endif
@@ -32,7 +56,12 @@ fn right_angle_penalty(cotangent: f32) -> vec3<f32> {
 fn angles_value(t: Corner, area: f32) -> f32 {
 #if QUADRILATERALS
     if is_right {
-        return right_angle_penalty(HEIGHT * dot(t.a, before_shear(t)) / area).x;
+        let b = before_shear(t);
+        let c = b - t.a;
+        let seen = HEIGHT * vec3(dot(t.a, b), -dot(t.a, c), dot(b, c)) / area;
+        return function_of_angle(ANGLE_AT_CORNER, seen.x).x
+            + function_of_angle(ANGLE_AT_DIAGONAL, seen.y).x
+            + function_of_angle(ANGLE_AT_DIAGONAL, seen.z).x;
     }
 #endif
     let c = t.b - t.a;
@@ -45,6 +74,9 @@ fn angles_value(t: Corner, area: f32) -> f32 {
 // `curvature` times the identity, and the area the gradient `area_slope`.
 fn with_angle(
     sum: Derivatives,
+#if QUADRILATERALS
+    kind: u32,
+#endif
     unit: f32,
     area_slope: vec2<f32>,
     n: f32,
@@ -53,10 +85,7 @@ fn with_angle(
 ) -> Derivatives {
     let cotangent = n * unit;
 #if QUADRILATERALS
-    var penalties = right_angle_penalty(cotangent);
-    if !is_right {
-        penalties = angle_penalties(cotangent);
-    }
+    let penalties = function_of_angle(kind, cotangent);
 #else
     let penalties = angle_penalties(cotangent);
 #endif
@@ -73,24 +102,27 @@ fn with_angle(
 // Adds the penalties on the angles of a triangle to a function of the triangle. `unit` is 1 over the doubled area.
 fn with_angles(start: Derivatives, t: Corner, unit: f32) -> Derivatives {
 #if QUADRILATERALS
-    let s = edge_slopes;
-    let of_area = area_slope(t);
+    let s = plane_slopes;
+    let a = t.a;
+    var b = t.b;
+    var per_area = unit;
+    var of_area = area_slope(t);
+    var kinds = vec2(ANGLE_OF_TRIANGLE);
     if is_right {
-        // The shear multiplies areas by √3/2. In the plane, the edges are a and b.
-        let b = before_shear(t);
-        let plane = vec2(s.x, (s.y - 0.5 * s.x) / HEIGHT);
-        let slope = plane.x * b + plane.y * t.a;
-        let bend = 2.0 * plane.x * plane.y;
-        return with_angle(start, unit * HEIGHT, of_area / HEIGHT, dot(t.a, b), slope, bend);
+        // Angles are those before the shear, which multiplies areas by √3/2.
+        b = before_shear(t);
+        per_area *= HEIGHT;
+        of_area /= HEIGHT;
+        kinds = vec2(ANGLE_AT_CORNER, ANGLE_AT_DIAGONAL);
     }
-    let c = t.b - t.a;
+    let c = b - a;
     let third = s.y - s.x;
-    let one = s.x * t.b + s.y * t.a;
-    let two = -(s.x * c + third * t.a);
-    let three = s.y * c + third * t.b;
-    var sum = with_angle(start, unit, of_area, dot(t.a, t.b), one, 2.0 * s.x * s.y);
-    sum = with_angle(sum, unit, of_area, -dot(t.a, c), two, -2.0 * s.x * third);
-    return with_angle(sum, unit, of_area, dot(t.b, c), three, 2.0 * s.y * third);
+    let one = s.x * b + s.y * a;
+    let two = -(s.x * c + third * a);
+    let three = s.y * c + third * b;
+    var sum = with_angle(start, kinds.x, per_area, of_area, dot(a, b), one, 2.0 * s.x * s.y);
+    sum = with_angle(sum, kinds.y, per_area, of_area, -dot(a, c), two, -2.0 * s.x * third);
+    return with_angle(sum, kinds.y, per_area, of_area, dot(b, c), three, 2.0 * s.y * third);
 #else
     // If the vertex moves by d, the edges a and b change by -d, and c does not change.
     let c = t.b - t.a;

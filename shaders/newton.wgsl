@@ -30,6 +30,11 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
             return vec2(0.0, 0.0);
         }
         sum += metric_model(t);
+#if OPPOSITE_ANGLES
+        if at.role == OWN {
+            sum += opposite_angles(p, quadrilateral_from(p, at.entry), d);
+        }
+#endif
 #if !QUADRILATERALS
         a = b;
 #endif
@@ -68,7 +73,14 @@ fn newton_step(vertex: u32, p: Patch, omega: f32) -> vec2<f32> {
         if part.shape_guard < NO_GUARD {
             limit = max(limit, inverse_mean_ratio(t));
         }
+#if OPPOSITE_ANGLES
+        var d = pulled_back(metric_derivatives(t, width), map);
+        if at.role == OWN {
+            d = with_opposite_angles(d, p, quadrilateral_from(p, at.entry));
+        }
+#else
         let d = pulled_back(metric_derivatives(t, width), map);
+#endif
         value += d.value;
         gradient += d.gradient;
         hessian += d.hessian;

@@ -52,7 +52,21 @@ fn objective(
 #else
         let corner = transformed(Corner(a, b, ideal), map_of(corners));
 #endif
+#if OPPOSITE_ANGLES
+        let across = opposite_corner(t, k);
+        let around = vec3(triangles[across.x], triangles[across.y], triangles[across.z]);
+        let o = position(around.x);
+        let c = edge(o, position(around.y));
+        let d = edge(o, position(around.z));
+        let opposite = transformed(metric_form(Corner(c, d, ideal)), map_of(around));
+        let values = with_shares_of_opposite_angles(
+            tracked_values(corner),
+            corner,
+            opposite,
+        );
+#else
         let values = tracked_values(corner);
+#endif
         let seen = edge_is_finite(a) && edge_is_finite(b);
         for (var i = 0u; i < TRACKED; i++) {
             sums[i] = pair_accumulate(sums[i], select(NOT_FINITE, values[i], seen));

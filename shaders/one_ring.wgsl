@@ -50,6 +50,12 @@ fn others_of(p: Patch, at: Around) -> vec2<u32> {
     return vec2(select(at.entry, last, at.role == LAST), select(last, opposite, at.role == LAST));
 }
 
+// Returns the other vertices, counter-clockwise, of the quadrilateral that begins at an entry.
+fn quadrilateral_from(p: Patch, entry: u32) -> vec3<u32> {
+    let last = select(entry + 2u, p.start, entry + 2u >= p.end);
+    return vec3(vertex_at(entry), vertex_at(entry + 1u), vertex_at(last));
+}
+
 // Returns a corner of the plane around the vertex, with the vertex moved by d, and makes it the present corner.
 fn corner_around(p: Patch, at: Around, d: vec2<f32>) -> Corner {
     let others = others_of(p, at);

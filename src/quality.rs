@@ -2,7 +2,7 @@
 
 use crate::error::MeshError;
 use crate::mesh::Element;
-use crate::metric::{Corner, Ideal, Metric};
+use crate::metric::{Corner, Ideal, Metric, opposite_angles};
 use crate::parallel::pace::now;
 use crate::parallel::paced;
 use crate::targets::Surface;
@@ -134,10 +134,17 @@ impl Quality {
         let tallies = paced::map_parts(right.chunks(1024), |chunk, part| {
             let first = triangles.len() + chunk * 1024;
             let element = |(k, four): (usize, &[[u32; 3]])| {
-                let at = |(c, corner)| right_corner(corner, first + 4 * k + c);
-                let mut tally =
-                    four.iter().enumerate().map(at).fold(Tally::EMPTY, |a, b| a.and(&b));
+                let at = |c: usize| right_corner(&four[c], first + 4 * k + c);
+                let parts = [0, 1, 2, 3].map(at);
+                let mut tally = parts.iter().fold(Tally::EMPTY, |a, b| a.and(b));
                 tally.sums.iter_mut().for_each(|sum| *sum *= 0.25);
+                let joined =
+                    opposite_angles::of_cotangents(parts.each_ref().map(|part| part.cotangents[0]));
+                for (sum, metric) in tally.sums.iter_mut().zip(Metric::ALL) {
+                    if metric.joins_opposite_angles() && sum.is_finite() {
+                        *sum = (*sum + joined).min(f64::MAX);
+                    }
+                }
                 tally.inverted = tally.inverted.min(1);
                 tally
             };
@@ -161,7 +168,7 @@ impl Quality {
     }
 
     /// Returns the objective f = (1/n) Σ q² over all n elements (Park & Shontz, equation 1), with q² of a
-    /// quadrilateral the mean over its corners. Infinite if an element is inverted or flat and the metric has a barrier.
+    /// quadrilateral the mean over its corners, and the term that joins opposite angles by ACUTE. Infinite if an element is inverted or flat and the metric has a barrier.
     pub fn f(&self, metric: Metric) -> f64 {
         self.f[metric as usize]
     }

@@ -21,13 +21,18 @@ fn derivatives_around(p: Patch) -> Derivatives {
     for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
         let map = map_of_corner(p, at);
         let t = transformed(metric_form(corner_around(p, at, vec2(0.0))), map);
-        let one = pulled_back(metric_derivatives(t, 0.0), map);
+        var one = pulled_back(metric_derivatives(t, 0.0), map);
 #else
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {
         let b = ring_edge(p, i);
         let map = map_around(p, i);
         let one = pulled_back(metric_derivatives(transformed(Corner(a, b, p.ideal), map), 0.0), map);
+#endif
+#if OPPOSITE_ANGLES
+        if at.role == OWN {
+            one = with_opposite_angles(one, p, quadrilateral_from(p, at.entry));
+        }
 #endif
         sum.gradient += one.gradient;
         sum.hessian += one.hessian;

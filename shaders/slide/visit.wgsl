@@ -49,6 +49,11 @@ fn role_of(i: u32) -> u32 {
     return (corners[i].x >> 31u) + 2u * (corners[i].y >> 31u);
 }
 
+// Returns the other vertices, counter-clockwise, of the quadrilateral whose first corner has this index.
+fn quadrilateral_from(i: u32) -> vec3<u32> {
+    return vec3(corners[i].x, corners[i + 1u].y, corners[i].y) & vec3(~OPPOSITE);
+}
+
 // Returns the sum of the weights of the corners of a patch.
 fn weight_of(p: Patch) -> f32 {
     var sum = 0.0;
@@ -83,7 +88,14 @@ fn along_curve() -> AlongCurve {
             if part.shape_guard < NO_GUARD {
                 found.limit = max(found.limit, inverse_mean_ratio(t));
             }
+#if OPPOSITE_ANGLES
+            var d = pulled_back(metric_derivatives(t, 0.0), map);
+            if role_of(i) == OWN {
+                d = with_opposite_angles(d, p, quadrilateral_from(i));
+            }
+#else
             let d = pulled_back(metric_derivatives(t, 0.0), map);
+#endif
             value += d.value;
             gradient += d.gradient;
             hessian += d.hessian;
@@ -190,6 +202,11 @@ fn objective_at(to: vec2<f32>, limit: f32) -> vec2<f32> {
                 return vec2(0.0);
             }
             sum += metric_model(t);
+#if OPPOSITE_ANGLES
+            if role_of(i) == OWN {
+                sum += opposite_angles(p, quadrilateral_from(i), d);
+            }
+#endif
         }
     }
     return vec2(sum, 1.0);

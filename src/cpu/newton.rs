@@ -82,7 +82,8 @@ impl<S: Simd, P: LanePatch<S>, F: Formulas> Objective<Lanes<S>> for SweepObjecti
         let MetricObjective { patch, formulas, smoothing, .. } = self.metric;
         match self.derivatives {
             Derivatives::FiniteDifference => {
-                differences::derivatives(patch, formulas, at, smoothing)
+                let corners = differences::derivatives(patch, formulas, at, smoothing);
+                self.metric.with_opposite_angles(corners, at)
             }
             Derivatives::Analytic => self.metric.expansion(at),
         }

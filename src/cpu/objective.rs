@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::cpu::along::Along;
 use crate::layout::{CornerPart, Problem};
-use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap};
+use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap, opposite_angles};
 use crate::parallel::paced;
 use crate::patch::lanes::{
     LANES, Lanes, Mask, Points, points, vertex_maps, with_instructions, with_lanes,
@@ -157,6 +157,7 @@ fn excess_along<S: Simd, const MAPPED: bool, const RIGHT: bool>(
     let guard = step.shape_guard;
     let (fours, rest) = corners.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
+    let mut joined = 0.0;
     let mut borne = Mask::splat(simd, true);
     for four in fours {
         let [t, u, v, w] = four;
@@ -175,8 +176,11 @@ fn excess_along<S: Simd, const MAPPED: bool, const RIGHT: bool>(
             borne &= kept;
         }
         sum += formulas.model(&now, step.smoothing());
+        if RIGHT {
+            joined += joined_angles(formulas, &now);
+        }
     }
-    let mut last = 0.0;
+    let mut last = joined;
     for t in rest {
         let now = problem.corner_of(RIGHT, t, |v| along.to(v));
         borne &= Mask::splat(simd, along.keeps(problem, RIGHT, t, guard));
@@ -221,6 +225,17 @@ fn corner<S: Simd, const RIGHT: bool>(
     }
 }
 
+/// Returns the term of opposite angles of the quadrilateral whose corners are in the lanes, in the weight of corners; zero if the
+/// metric has no such term.
+#[inline(always)]
+fn joined_angles<S: Simd>(formulas: impl Formulas, corners: &Corner<Lanes<S>>) -> f64 {
+    if !formulas.metric().joins_opposite_angles() {
+        return 0.0;
+    }
+    let cotangents = opposite_angles::cotangent(corners);
+    4.0 * opposite_angles::of_cotangents([0, 1, 2, 3].map(|lane| cotangents[lane]))
+}
+
 /// Returns the sum of q² - ideal² over corners, or of its smooth model if `smoothing` is given. `RIGHT` tells whether the
 /// corners are of quadrilaterals.
 #[inline(always)]
@@ -237,6 +252,7 @@ fn excess<S: Simd, const MAPPED: bool, const RIGHT: bool>(
     let smoothing = smoothing.filter(|_| !formulas.metric().is_smooth());
     let (fours, rest) = corners.as_chunks::<LANES>();
     let mut sum = Lanes::splat(simd, 0.0);
+    let mut joined = 0.0;
     for four in fours {
         let [t, u, v, w] = four;
         let map = if MAPPED { map_of::<_, RIGHT>(simd, problem, four) } else { None };
@@ -248,8 +264,11 @@ fn excess<S: Simd, const MAPPED: bool, const RIGHT: bool>(
             Some(smoothing) => formulas.model(&corner, smoothing),
             None => formulas.excess(&corner),
         };
+        if RIGHT {
+            joined += joined_angles(formulas, &corner);
+        }
     }
-    let mut last = 0.0;
+    let mut last = joined;
     for t in rest {
         let corner = problem.corner_of(RIGHT, t, |v| positions[v as usize]);
         last += match smoothing {

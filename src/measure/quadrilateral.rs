@@ -7,7 +7,7 @@ use crate::measure::edges::WorstEdges;
 use crate::measure::triangle::{
     Triangle, difference, dot, largest, length, power_of_two, scaled, unbounded,
 };
-use crate::metric::Metric;
+use crate::metric::{Metric, opposite_angles};
 use crate::topology::predicates::orientation;
 
 /// The quantities of a quadrilateral from which measures are computed. Lengths are divided by a power of two near the size of
@@ -161,9 +161,14 @@ impl Quadrilateral {
         (self.conditions().iter().sum::<f64>() / 4.0).max(1.0)
     }
 
-    /// Returns the root of the mean of q² over the corners, infinite if the metric has a barrier and a corner is not positive.
+    /// Returns the root of the mean of q² over the corners, with the term of opposite angles if the metric has it; infinite if the metric has a barrier and a corner is not positive.
     pub(crate) fn metric(&self, metric: Metric) -> f64 {
         let squares = self.corners.each_ref().map(|corner| corner.squared_metric(metric, true));
-        (squares.iter().sum::<f64>() / 4.0).sqrt()
+        let mut squared = squares.iter().sum::<f64>() / 4.0;
+        if metric.joins_opposite_angles() && squared.is_finite() {
+            let cotangent = |corner: &Triangle| opposite_angles::cotangent(&corner.corner(true));
+            squared += opposite_angles::of_cotangents(self.corners.each_ref().map(cotangent));
+        }
+        squared.sqrt()
     }
 }

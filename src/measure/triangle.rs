@@ -229,6 +229,18 @@ impl Triangle {
         if metric.properties().barrier && !is_positive {
             return f64::INFINITY;
         }
+        let corner = self.corner(is_right);
+        let squared = metric.excess(&corner) + metric.ideal_squared();
+        match squared.is_nan() {
+            true => f64::INFINITY,
+            false => squared.max(0.0),
+        }
+    }
+
+    /// Returns the triangle as metrics see it; see [`squared_metric`](Self::squared_metric).
+    #[inline]
+    pub(super) fn corner(&self, is_right: bool) -> Corner<f64> {
+        let is_positive = self.doubled_area > 0.0;
         let [a, b, _] = self.edges;
         let mean_area = self.mean_area * self.per_unit * self.per_unit;
         let mut corner = Corner { a, b, ideal: Ideal::of_area(mean_area) };
@@ -239,14 +251,7 @@ impl Triangle {
             corner.a = [length, 0.0];
             corner.b = [dot(a, b) / length, self.doubled_area / length];
         }
-        if is_right {
-            corner = corner.of_right_angle();
-        }
-        let squared = metric.excess(&corner) + metric.ideal_squared();
-        match squared.is_nan() {
-            true => f64::INFINITY,
-            false => squared.max(0.0),
-        }
+        if is_right { corner.of_right_angle() } else { corner }
     }
 }
 

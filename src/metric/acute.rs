@@ -26,17 +26,25 @@ pub(super) const PROPERTIES: Properties = Properties {
     wgsl: include_str!("acute.wgsl"),
 };
 
+/// Factor of imr² - 1 at a corner of a quadrilateral, so that shapes give way to orthogonal edges.
+const SHAPE_OF_RIGHT: f64 = 0.3;
+
 /// Returns q² - 1.
 #[inline(always)]
 pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
-    imr::value(&t.invariants()) + angles::value(t)
+    let shape = imr::value(&t.invariants());
+    let shape = if t.ideal.is_right { shape * SHAPE_OF_RIGHT } else { shape };
+    shape + angles::value(t)
 }
 
 /// Returns value, gradient and Hessian of [`excess`] with respect to the visited vertex. `edges` has the slopes of the
 /// edges by the position of the vertex.
 #[inline(always)]
-pub(super) fn expansion<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes) -> Dual<T> {
-    t.expansion(edges, &imr::slopes(&t.invariants())) + angles::expansion(t, edges)
+pub(super) fn expansion<T: Real, E: EdgeSlopes>(t: &Corner<T>, edges: E) -> Dual<T> {
+    let shape = t.expansion(edges, &imr::slopes(&t.invariants()));
+    let is_right = !E::IS_OWN && t.ideal.is_right;
+    let shape = if is_right { shape * SHAPE_OF_RIGHT } else { shape };
+    shape + angles::expansion(t, edges)
 }
 
 #[cfg(test)]

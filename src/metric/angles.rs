@@ -12,18 +12,25 @@ const LARGE_WEIGHT: f64 = 300.0;
 const SMALL: Hinge = Hinge { limit: 1.3, ramp: 0.2 };
 const SMALL_WEIGHT: f64 = 30.0;
 
-/// Factor of the squared cotangent of the angle at a corner of a quadrilateral.
-const OF_RIGHT_ANGLE: f64 = 40.0;
+/// Factor of the squared cotangent of the angle at a corner of a quadrilateral. With the products of the cotangents of opposite
+/// angles (src/metric/opposite_angles.rs), 400 of the factor form squares of sums.
+const OF_RIGHT_ANGLE: f64 = 420.0;
+/// The penalty on the negative cotangents of angles above 84.3 degrees between a side and a diagonal of a quadrilateral, and its
+/// weight.
+const AT_DIAGONAL: Hinge = Hinge { limit: -0.1, ramp: 0.1 };
+const WEIGHT_AT_DIAGONAL: f64 = 600.0;
 
 /// Returns the penalties on the three angles of a triangle, or on the angle at a corner of a quadrilateral.
 #[inline(always)]
 pub(super) fn value<T: Real>(t: &Corner<T>) -> T {
     if t.ideal.is_right {
-        let [cotangent, _, _] = t.before_shear().cotangents();
-        return cotangent * cotangent * OF_RIGHT_ANGLE;
+        let [own, b, c] = t.before_shear().cotangents();
+        let ([own, ..], [b, ..], [c, ..]) =
+            (of_right_angle(own), of_angle_at_diagonal(b), of_angle_at_diagonal(c));
+        return own + b + c;
     }
     let [a, b, c] = t.cotangents();
-    let ([a, _, _], [b, _, _], [c, _, _]) = (penalties(a), penalties(b), penalties(c));
+    let ([a, ..], [b, ..], [c, ..]) = (penalties(a), penalties(b), penalties(c));
     a + b + c
 }
 
@@ -39,38 +46,56 @@ fn penalties<T: Real>(cotangent: T) -> [T; 3] {
     ]
 }
 
+/// Returns value, first and second derivative of the penalty on the angle at a corner of a quadrilateral, by its cotangent.
+#[inline(always)]
+fn of_right_angle<T: Real>(cotangent: T) -> [T; 3] {
+    let slope = cotangent * OF_RIGHT_ANGLE;
+    [cotangent * slope, slope * 2.0, cotangent.constant(2.0 * OF_RIGHT_ANGLE)]
+}
+
+/// Returns value, first and second derivative of the penalty on an angle between a side and a diagonal of a quadrilateral, by
+/// its cotangent.
+#[inline(always)]
+fn of_angle_at_diagonal<T: Real>(cotangent: T) -> [T; 3] {
+    let [value, first, second] = AT_DIAGONAL.at(cotangent * -1.0);
+    [value * WEIGHT_AT_DIAGONAL, first * -WEIGHT_AT_DIAGONAL, second * WEIGHT_AT_DIAGONAL]
+}
+
 /// Returns value, gradient and Hessian of [`value`] with respect to the visited vertex. `edges` has the slopes of the
 /// edges by the position of the vertex.
 #[inline(always)]
 pub(super) fn expansion<T: Real, E: EdgeSlopes>(t: &Corner<T>, edges: E) -> Dual<T> {
     if !E::IS_OWN && t.ideal.is_right {
-        return of_right_angle(&t.before_shear(), Given::before_shear(edges));
+        let (t, edges) = (t.before_shear(), Given::before_shear(edges));
+        let [own, b, c] = angles_of(&t, edges);
+        let (b, c) = (b.expansion(of_angle_at_diagonal), c.expansion(of_angle_at_diagonal));
+        return own.expansion(of_right_angle) + b + c;
     }
+    let [a, b, c] = angles_of(t, edges);
+    a.expansion(penalties) + b.expansion(penalties) + c.expansion(penalties)
+}
+
+/// Returns the cotangent of the angle between the edges a and b of a corner, with its derivatives by the visited vertex.
+#[inline(always)]
+pub(super) fn cotangent<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes) -> Dual<T> {
+    let [own, ..] = angles_of(t, edges);
+    own.expansion(|cotangent| [cotangent, cotangent.constant(1.0), cotangent.constant(0.0)])
+}
+
+/// Returns the three angles of a triangle, from the one at its first vertex on. Their cotangents are a·b, -a·c and b·c, divided
+/// by the doubled area, with c = b - a.
+#[inline(always)]
+fn angles_of<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes) -> [Angle<T>; 3] {
     let (a, b) = (t.a, t.b);
     let c = [b[0] - a[0], b[1] - a[1]];
     let (alpha, beta, gamma) = (edges.alpha(), edges.beta(), edges.third());
     let inverse_area = a[0].constant(1.0) / t.doubled_area();
     let area = [b[1] * alpha - a[1] * beta, a[0] * beta - b[0] * alpha];
-    // The cotangents are a·b, -a·c and b·c, divided by the doubled area.
-    let one = Angle { u: a, v: b, slopes: [alpha, beta], sign: 1.0 };
-    let two = Angle { u: a, v: c, slopes: [alpha, gamma], sign: -1.0 };
-    let three = Angle { u: b, v: c, slopes: [beta, gamma], sign: 1.0 };
-    let (one, two) = (one.expansion(inverse_area, area), two.expansion(inverse_area, area));
-    one + two + three.expansion(inverse_area, area)
-}
-
-/// Returns the penalty on the angle at a corner of a quadrilateral, which is not sheared, with its derivatives.
-#[inline(always)]
-fn of_right_angle<T: Real>(t: &Corner<T>, edges: Given) -> Dual<T> {
-    let (a, b, alpha, beta) = (t.a, t.b, edges.alpha(), edges.beta());
-    let inverse_area = a[0].constant(1.0) / t.doubled_area();
-    let area = [b[1] * alpha - a[1] * beta, a[0] * beta - b[0] * alpha];
-    let angle = Angle { u: a, v: b, slopes: [alpha, beta], sign: 1.0 };
-    let square = |cotangent: T| {
-        let slope = cotangent * OF_RIGHT_ANGLE;
-        [cotangent * slope, slope * 2.0, cotangent.constant(2.0 * OF_RIGHT_ANGLE)]
-    };
-    angle.expansion_by(inverse_area, area, square)
+    [
+        Angle { u: a, v: b, slopes: [alpha, beta], sign: 1.0, inverse_area, area },
+        Angle { u: a, v: c, slopes: [alpha, gamma], sign: -1.0, inverse_area, area },
+        Angle { u: b, v: c, slopes: [beta, gamma], sign: 1.0, inverse_area, area },
+    ]
 }
 
 /// An angle between two edges u and v, which change by `slopes` times the move of the visited vertex. The cotangent of
@@ -80,24 +105,17 @@ struct Angle<T> {
     v: [T; 2],
     slopes: [f64; 2],
     sign: f64,
+    /// 1 over the doubled area.
+    inverse_area: T,
+    /// The gradient of the doubled area, which is linear.
+    area: [T; 2],
 }
 
 impl<T: Real> Angle<T> {
-    /// Returns the penalties on the angle. `area` is the gradient of the doubled area, which is linear.
-    #[inline(always)]
-    fn expansion(&self, inverse_area: T, area: [T; 2]) -> Dual<T> {
-        self.expansion_by(inverse_area, area, penalties)
-    }
-
     /// Returns a function of the cotangent of the angle, given the function with its first two derivatives.
     #[inline(always)]
-    fn expansion_by(
-        &self,
-        inverse_area: T,
-        area: [T; 2],
-        function: impl FnOnce(T) -> [T; 3],
-    ) -> Dual<T> {
-        let Self { u, v, slopes: [of_u, of_v], sign } = *self;
+    fn expansion(&self, function: impl FnOnce(T) -> [T; 3]) -> Dual<T> {
+        let Self { u, v, slopes: [of_u, of_v], sign, inverse_area, area } = *self;
         let (of_u, of_v) = (of_u * sign, of_v * sign);
         let cotangent = (u[0] * v[0] + u[1] * v[1]) * inverse_area * sign;
         let [value, first, second] = function(cotangent);

@@ -13,6 +13,7 @@ mod edge;
 mod edge_slopes;
 mod hinge;
 mod imr;
+pub(crate) mod opposite_angles;
 mod properties;
 mod rms;
 mod scheme;

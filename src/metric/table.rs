@@ -474,6 +474,13 @@ impl Metric {
         matches!(self.formulas(), AnyFormulas::Invariants(_))
     }
 
+    /// Returns whether q² of a quadrilateral has a term that joins opposite angles, beside the mean over the corners; see
+    /// src/metric/opposite_angles.rs. True for ACUTE and ACUTE-SIZE.
+    #[inline(always)]
+    pub(crate) const fn joins_opposite_angles(self) -> bool {
+        matches!(self.formulas(), AnyFormulas::Cotangents(_))
+    }
+
     /// Returns q² - ideal². Sums of this difference keep their digits on good meshes.
     #[doc(hidden)]
     pub fn excess<T: Real>(self, corner: &Corner<T>) -> T {

@@ -2,7 +2,7 @@
 
 use std::ops::Mul;
 
-use crate::metric::{Corner, Dual, EdgeSlopes, Formulas, Real, Smoothing};
+use crate::metric::{Corner, Dual, EdgeSlopes, Formulas, Given, Real, Smoothing, opposite_angles};
 use crate::patch::acceptance::{is_positive, is_within};
 use crate::patch::direction::{Direction, newton_direction};
 use crate::patch::newton_step::Objective;
@@ -34,6 +34,19 @@ pub(crate) trait Corners<T: Numbers> {
     #[inline(always)]
     fn total_weight(&self) -> f64 {
         self.count() as f64
+    }
+
+    /// Returns the number of quadrilaterals.
+    #[inline(always)]
+    fn quadrilaterals(&self) -> usize {
+        0
+    }
+
+    /// Returns a quadrilateral: the index of its first corner, and its corner opposite the visited vertex, transformed by its
+    /// target map. The first corner is at the visited vertex, and the next two are at the next and at the last vertex.
+    #[inline(always)]
+    fn quadrilateral(&self, _: usize) -> (usize, Corner<T>) {
+        unreachable!("a patch of triangles has no quadrilaterals")
     }
 
     /// Converts derivatives by the visited vertex in the coordinates of a corner's target map to those of the plane.
@@ -85,6 +98,54 @@ pub(crate) struct MetricObjective<'a, P, F> {
     pub(crate) shape_guard: f64,
 }
 
+impl<P, F: Formulas> MetricObjective<'_, P, F> {
+    /// Adds the terms of opposite angles of the quadrilaterals of the patch to the sum over its corners, with the visited
+    /// vertex at `at`.
+    #[inline(always)]
+    pub(crate) fn with_opposite_angles<T: Numbers>(&self, mut sum: Dual<T>, at: [T; 2]) -> Dual<T>
+    where
+        P: Corners<T>,
+    {
+        for k in 0..self.joined::<T>() {
+            let (first, opposite) = self.patch.quadrilateral(k);
+            let cotangent = |i: usize| {
+                let (corner, slopes) = (self.patch.corner(i, at), self.patch.slopes(i));
+                self.patch.pull_back(i, opposite_angles::cotangent_expansion(&corner, slopes))
+            };
+            let opposite = opposite_angles::cotangent_expansion(&opposite, Given(0.0, 0.0));
+            let [own, next, last] = [cotangent(first), cotangent(first + 1), cotangent(first + 2)];
+            sum = sum + opposite_angles::of_cotangents([own, next, opposite, last]);
+        }
+        sum
+    }
+
+    /// Returns the sum of the terms of opposite angles of the quadrilaterals of the patch, with the visited vertex at `at`.
+    #[inline(always)]
+    pub(crate) fn opposite_angles<T: Numbers>(&self, at: [T; 2]) -> T
+    where
+        P: Corners<T>,
+    {
+        let mut sum = at[0].constant(0.0);
+        for k in 0..self.joined::<T>() {
+            let (first, opposite) = self.patch.quadrilateral(k);
+            let cotangent = |i| opposite_angles::cotangent(&self.patch.corner(i, at));
+            let [own, next, last] = [cotangent(first), cotangent(first + 1), cotangent(first + 2)];
+            let opposite = opposite_angles::cotangent(&opposite);
+            sum = sum + opposite_angles::of_cotangents([own, next, opposite, last]);
+        }
+        sum
+    }
+
+    /// Returns the number of quadrilaterals with a term of opposite angles.
+    #[inline(always)]
+    fn joined<T: Numbers>(&self) -> usize
+    where
+        P: Corners<T>,
+    {
+        if self.formulas.metric().joins_opposite_angles() { self.patch.quadrilaterals() } else { 0 }
+    }
+}
+
 impl<T: Numbers, P: Corners<T>, F: Formulas> Objective<T> for MetricObjective<'_, P, F> {
     #[inline(always)]
     fn expansion(&self, at: [T; 2]) -> Dual<T> {
@@ -96,7 +157,7 @@ impl<T: Numbers, P: Corners<T>, F: Formulas> Objective<T> for MetricObjective<'_
                 self.formulas.expansion(&corner, self.patch.slopes(i), self.smoothing);
             sum = sum + self.patch.weighted(i, self.patch.pull_back(i, transformed));
         }
-        sum
+        self.with_opposite_angles(sum, at)
     }
 
     #[inline(always)]
@@ -112,7 +173,7 @@ impl<T: Numbers, P: Corners<T>, F: Formulas> Objective<T> for MetricObjective<'_
             }
             sum = sum + self.patch.weighted(i, self.formulas.model(&corner, self.smoothing));
         }
-        (sum, feasible)
+        (sum + self.opposite_angles(to), feasible)
     }
 
     #[inline(always)]

@@ -21,6 +21,8 @@ pub(crate) struct Fan {
     corners: Vec<[u32; 3]>,
     /// The place of the common vertex in each corner.
     roles: Vec<Role>,
+    /// The corner opposite the common vertex of each quadrilateral.
+    opposites: Vec<[u32; 3]>,
 }
 
 impl Fan {
@@ -32,12 +34,17 @@ impl Fan {
             ([vertex, a, b], role)
         };
         let (corners, roles) = topology.corners_with(vertex).map(own_first).unzip();
-        Self { corners, roles }
+        let list = topology.corner_list();
+        let opposite = |&own: &u32| Some(list.all()[list.opposite_corner(own)? as usize]);
+        let opposites = topology.star(vertex).iter().filter_map(opposite).collect();
+        Self { corners, roles, opposites }
     }
 
     /// Replaces every vertex index `v` by `number[v]`.
     pub(crate) fn renumber(&mut self, number: &[u32]) {
-        self.corners.as_flattened_mut().iter_mut().for_each(|v| *v = number[*v as usize]);
+        let lists = [&mut self.corners, &mut self.opposites];
+        let vertices = lists.into_iter().flat_map(|list| list.as_flattened_mut());
+        vertices.for_each(|v| *v = number[*v as usize]);
     }
 
     /// Returns the vertices of the corners, each with the common vertex first.
@@ -74,8 +81,10 @@ impl Fan {
             role,
         };
         let corners = self.corners.iter().zip(&self.roles).map(corner).collect();
+        let opposite = |t| problem.corner_of(true, t, |v| positions[v as usize]);
+        let opposites = self.opposites.iter().map(opposite).collect();
         let (ideal, coordinates) = (problem.ideal(), problem.coordinates());
-        FanPatch { corners, ideal, coordinates, min_altitude }
+        FanPatch { corners, opposites, ideal, coordinates, min_altitude }
     }
 }
 
@@ -107,12 +116,21 @@ impl FanCorner {
         let corner = self.edges(at, ideal);
         if self.role.is_right() { corner.of_right_angle() } else { corner }
     }
+
+    /// Returns [`in_plane`](Self::in_plane), transformed by the target map.
+    pub(crate) fn seen(&self, at: DVec2, ideal: Ideal) -> Corner<f64> {
+        let corner = self.in_plane(at, ideal);
+        self.map.map_or(corner, |map| map.transform(&corner))
+    }
 }
 
 /// The corners around one vertex in coordinates, for any position of the vertex.
 #[derive(Clone, Debug)]
 pub(crate) struct FanPatch {
     pub(crate) corners: Vec<FanCorner>,
+    /// The corner opposite the common vertex of each quadrilateral, transformed by its target map. Empty in patches whose
+    /// objectives lack terms of opposite angles.
+    pub(crate) opposites: Vec<Corner<f64>>,
     pub(crate) ideal: Ideal,
     /// Coordinates in which altitudes are measured.
     pub(crate) coordinates: MeshCoordinates,
@@ -139,9 +157,18 @@ impl Corners<f64> for FanPatch {
         self.corners.iter().map(|corner| corner.role.weighted(1.0)).sum()
     }
 
+    fn quadrilaterals(&self) -> usize {
+        self.opposites.len()
+    }
+
+    fn quadrilateral(&self, k: usize) -> (usize, Corner<f64>) {
+        let is_own = |corner: &&FanCorner| corner.role == Role::Own;
+        let first = self.corners.iter().enumerate().filter(|(_, c)| is_own(c)).nth(k);
+        (first.map_or(0, |(i, _)| i), self.opposites[k])
+    }
+
     fn corner(&self, i: usize, at: [f64; 2]) -> Corner<f64> {
-        let corner = self.corners[i].in_plane(at.into(), self.ideal);
-        self.corners[i].map.map_or(corner, |map| map.transform(&corner))
+        self.corners[i].seen(at.into(), self.ideal)
     }
 
     fn pull_back(&self, i: usize, transformed: Dual) -> Dual {

@@ -20,7 +20,9 @@ pub(crate) struct MixedRings<'a, S: Simd> {
     /// quadrilaterals.
     ring: &'a [Points<S>],
     corners: &'a [RingCorner],
-    /// Target map of each corner. Empty without targets and local maps.
+    quadrilaterals: &'a [RingQuadrilateral],
+    /// Target map of each corner, then of the corner of each quadrilateral opposite the visited vertex. Empty without targets
+    /// and local maps.
     maps: &'a [TargetMap<Lanes<S>>],
     /// Inverse of the target map or local map of each visited vertex. `None` without maps.
     inverse_map: Option<TargetMap<Lanes<S>>>,
@@ -36,20 +38,36 @@ struct RingCorner {
     others: [u32; 2],
 }
 
+/// A quadrilateral of the visited vertex.
+#[derive(Clone, Copy)]
+struct RingQuadrilateral {
+    /// The index of its first corner.
+    first: usize,
+    /// The vertices of its corner opposite the visited vertex, as indices in the ring.
+    opposite: [u32; 3],
+}
+
 /// Memory for [`MixedRings`], reused by one visit after another.
 pub(crate) struct MixedScratch<S: Simd> {
     ring: Vec<Points<S>>,
     /// The mark of each vertex of the ring that `corners` lists the corners of. Successive visits mostly have equal marks.
     marks: Vec<u32>,
     corners: Vec<RingCorner>,
+    quadrilaterals: Vec<RingQuadrilateral>,
     total_weight: f64,
     maps: Vec<TargetMap<Lanes<S>>>,
 }
 
 impl<S: Simd> MixedScratch<S> {
     pub(crate) fn new() -> Self {
-        let (marks, corners) = (Vec::new(), Vec::new());
-        Self { ring: Vec::with_capacity(16), marks, corners, total_weight: 0.0, maps: Vec::new() }
+        Self {
+            ring: Vec::with_capacity(16),
+            marks: Vec::new(),
+            corners: Vec::new(),
+            quadrilaterals: Vec::new(),
+            total_weight: 0.0,
+            maps: Vec::new(),
+        }
     }
 }
 
@@ -63,7 +81,7 @@ impl<'a, S: Simd> MixedRings<'a, S> {
         vertices: [u32; LANES],
         scratch: &'a mut MixedScratch<S>,
     ) -> Self {
-        let MixedScratch { ring, marks, corners, total_weight, maps } = scratch;
+        let MixedScratch { ring, marks, corners, quadrilaterals, total_weight, maps } = scratch;
         let [a, b, c, d] = vertices;
         let a = problem.ring_of(a);
         let length = a.len();
@@ -82,6 +100,8 @@ impl<'a, S: Simd> MixedRings<'a, S> {
             marks.extend(a.iter().map(|k| k & OPPOSITE));
             corners.clear();
             list_corners(a, corners);
+            quadrilaterals.clear();
+            quadrilaterals.extend(quadrilaterals_of(corners));
             *total_weight = corners.iter().map(|corner| corner.role.weighted(1.0)).sum();
         }
         maps.clear();
@@ -93,10 +113,31 @@ impl<'a, S: Simd> MixedRings<'a, S> {
                 let [p, q] = corner.others.map(|i| of(at(i as usize)));
                 TargetMap::mean([own, p, q])
             }));
+            let opposites = quadrilaterals.iter().map(|of| of.opposite);
+            maps.extend(
+                opposites.map(|places| TargetMap::mean(places.map(|i| of(at(i as usize))))),
+            );
             inverse_map = Some(TargetMap(vertex_maps(simd, problem.maps(), vertices)).inverse());
         }
         let (total_weight, ideal) = (*total_weight, problem.ideal());
-        Self { ring, corners, maps, inverse_map, total_weight, ideal }
+        Self { ring, corners, quadrilaterals, maps, inverse_map, total_weight, ideal }
+    }
+}
+
+impl<S: Simd> MixedRings<'_, S> {
+    /// Returns a corner with the given vertices, transformed by the map of an index if there are maps.
+    #[inline(always)]
+    fn corner_of(&self, is_right: bool, [p, q, r]: [Points<S>; 3], map: usize) -> Corner<Lanes<S>> {
+        // Differences come first: a general form that is linear in the vertex would cancel for small elements.
+        let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+        let mut corner = Corner { a, b, ideal: self.ideal };
+        if is_right {
+            corner = corner.of_right_angle();
+        }
+        match self.maps.get(map) {
+            Some(map) => map.transform(&corner),
+            None => corner,
+        }
     }
 }
 
@@ -115,6 +156,15 @@ fn list_corners(ring: &[u32], corners: &mut Vec<RingCorner>) {
             add(Role::Triangle, i, i + 1);
         }
     }
+}
+
+/// Returns the quadrilaterals of a list of corners.
+fn quadrilaterals_of(corners: &[RingCorner]) -> impl Iterator<Item = RingQuadrilateral> + '_ {
+    let own = (0..corners.len()).filter(|&i| corners[i].role == Role::Own);
+    own.map(|first| {
+        let ([next, last], [_, opposite]) = (corners[first].others, corners[first + 1].others);
+        RingQuadrilateral { first, opposite: [opposite, last, next] }
+    })
 }
 
 impl<S: Simd> LanePatch<S> for MixedRings<'_, S> {
@@ -145,17 +195,19 @@ impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
 
     #[inline(always)]
     fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
-        let [p, q, r] = self.vertices(i, at);
-        // Differences come first: a general form that is linear in the vertex would cancel for small elements.
-        let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-        let mut corner = Corner { a, b, ideal: self.ideal };
-        if self.corners[i].role.is_right() {
-            corner = corner.of_right_angle();
-        }
-        match self.maps.get(i) {
-            Some(map) => map.transform(&corner),
-            None => corner,
-        }
+        self.corner_of(self.corners[i].role.is_right(), self.vertices(i, at), i)
+    }
+
+    #[inline(always)]
+    fn quadrilaterals(&self) -> usize {
+        self.quadrilaterals.len()
+    }
+
+    #[inline(always)]
+    fn quadrilateral(&self, k: usize) -> (usize, Corner<Lanes<S>>) {
+        let RingQuadrilateral { first, opposite } = self.quadrilaterals[k];
+        let vertices = opposite.map(|i| self.ring[i as usize]);
+        (first, self.corner_of(true, vertices, self.corners.len() + k))
     }
 
     #[inline(always)]

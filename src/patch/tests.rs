@@ -36,7 +36,7 @@ fn fan(problem: &Problem) -> FanPatch {
     };
     let corners = ring.iter().zip(next).map(corner).collect();
     let (ideal, coordinates) = (problem.ideal(), problem.coordinates());
-    FanPatch { corners, ideal, coordinates, min_altitude: 0.0 }
+    FanPatch { corners, opposites: Vec::new(), ideal, coordinates, min_altitude: 0.0 }
 }
 
 /// Returns positions of the vertex: well inside the hexagon, and so near an edge that first trials are lengthened.
@@ -141,9 +141,16 @@ impl Corners<f64> for Quadrilaterals {
         let vertex = |k: usize| self.ring[(2 * (i / 3) + k) % 8];
         let (first, across, last) = (vertex(0), vertex(1), vertex(2));
         let at = DVec2::from(at);
-        let [p, q, r] = [[at, first, last], [first, across, at], [last, at, across]][i % 3];
-        let [x, y] = [0, 1].map(|axis| from_right_angle([q[axis] - p[axis], r[axis] - p[axis]]));
-        Corner { a: [x[0], y[0]], b: [x[1], y[1]], ideal: Ideal::of_area(0.5 * 0.75f64.sqrt()) }
+        right_corner([[at, first, last], [first, across, at], [last, at, across]][i % 3])
+    }
+
+    fn quadrilaterals(&self) -> usize {
+        4
+    }
+
+    fn quadrilateral(&self, i: usize) -> (usize, Corner<f64>) {
+        let [first, across, last] = [0, 1, 2].map(|k| self.ring[(2 * i + k) % 8]);
+        (3 * i, right_corner([across, last, first]))
     }
 
     fn slopes(&self, i: usize) -> Given {
@@ -158,6 +165,13 @@ impl Corners<f64> for Quadrilaterals {
     fn total_weight(&self) -> f64 {
         3.0
     }
+}
+
+/// Returns the corner of a quadrilateral at p, with edges to q and r, as metrics see it.
+fn right_corner([p, q, r]: [DVec2; 3]) -> Corner<f64> {
+    let [x, y] = [0, 1].map(|axis| from_right_angle([q[axis] - p[axis], r[axis] - p[axis]]));
+    let ideal = Ideal { is_right: true, ..Ideal::of_area(0.5 * 0.75f64.sqrt()) };
+    Corner { a: [x[0], y[0]], b: [x[1], y[1]], ideal }
 }
 
 fn quadrilaterals(shift: f64) -> Quadrilaterals {

@@ -1,7 +1,9 @@
 //! The penalties that bring triangles back within limits of angle and inverse mean ratio.
 
-use crate::metric::{Corner, Dual, EdgeSlopes, Given, Hinge, OfEdges, Real};
-use crate::patch::{FanCorner, FanPatch, Objective, Role, is_acceptable};
+use crate::metric::{
+    Corner, Dual, EdgeSlopes, Formulas, Given, Hinge, Metric, OfEdges, Real, Smoothing,
+};
+use crate::patch::{FanCorner, FanPatch, MetricObjective, Objective, Role, is_acceptable};
 use crate::slide::OfPatch;
 use crate::worst::shapes::WorstShapes;
 
@@ -36,6 +38,8 @@ pub(crate) struct Penalties {
     weight: f64,
     /// Factor of the penalty on small angles.
     small_share: f64,
+    /// Whether quadrilaterals have the function of ACUTE instead.
+    has_acute_quadrilaterals: bool,
 }
 
 impl Penalties {
@@ -49,10 +53,12 @@ impl Penalties {
             square: hinge(1.0 + SQUARE_RESERVE * (worst.imr * worst.imr - 1.0)),
             weight: FIRST_WEIGHT,
             small_share: 1.0,
+            has_acute_quadrilaterals: false,
         }
     }
 
-    /// Returns penalties on angles above 78.7 degrees, as in ACUTE, and on angles whose cotangent is above `small`.
+    /// Returns penalties on angles of triangles above 78.7 degrees, as in ACUTE, and on those whose cotangent is above `small`.
+    /// Quadrilaterals have the function of ACUTE, so that they remain orthogonal to their neighbors.
     pub(crate) fn on_large_angles(small: f64, weight: f64) -> Self {
         Self {
             small: Hinge { limit: small, ramp: SMALL_RAMP },
@@ -60,6 +66,7 @@ impl Penalties {
             square: Hinge::NONE,
             weight,
             small_share: SMALL_SHARE,
+            has_acute_quadrilaterals: true,
         }
     }
 
@@ -88,33 +95,39 @@ impl Penalties {
         list.into_iter().take(count)
     }
 
-    /// Returns the penalty on large angles of a corner. The right angles of quadrilaterals are not large.
-    fn large_of<T>(&self, corner: &Corner<T>) -> Hinge {
-        if corner.ideal.is_right { Hinge::NONE } else { self.large }
+    /// Returns whether the function of a corner is that of ACUTE.
+    fn is_acute<T>(&self, corner: &Corner<T>) -> bool {
+        self.has_acute_quadrilaterals && corner.ideal.is_right
     }
 
     fn of(&self, corner: &Corner<f64>) -> f64 {
+        if self.is_acute(corner) {
+            return Metric::Acute.excess(corner) + 1.0;
+        }
         let cotangents = corner.cotangents();
         let square = Self::square(cotangents);
         let angles = || Self::angles(corner, cotangents);
         let small: f64 = angles().map(|x| self.small.of(x)).sum();
-        let large: f64 = angles().map(|x| self.large_of(corner).of(-x)).sum();
+        let large: f64 = angles().map(|x| self.large.of(-x)).sum();
         square + self.weight * (small * self.small_share + large + self.square.of(square))
     }
 
     /// Returns the function with its derivatives by the visited vertex. `edges` has the slopes of the edges by the position of
     /// the vertex.
     fn expansion(&self, corner: &Corner<f64>, edges: Given) -> Dual {
+        if self.is_acute(corner) {
+            return Metric::Acute.formulas().expansion(corner, edges, Smoothing::of(0)) + 1.0;
+        }
         let vertex =
             |edge: [f64; 2], slope| [0, 1].map(|axis| Dual::variable(edge[axis], axis, slope));
         let (a, b) = (vertex(corner.a, edges.alpha()), vertex(corner.b, edges.beta()));
         let corner = Corner { a, b, ideal: corner.ideal };
         let cotangents = corner.cotangents();
         let square = Self::square(cotangents);
-        let (angles, large) = (Self::angles(&corner, cotangents), self.large_of(&corner));
+        let angles = Self::angles(&corner, cotangents);
         let penalties = angles.fold(self.square.expansion(square), |sum, x| {
             let small = self.small.expansion(x) * self.small_share;
-            sum + small + large.expansion(x * -1.0)
+            sum + small + self.large.expansion(x * -1.0)
         });
         square + penalties * self.weight
     }
@@ -140,6 +153,14 @@ impl PenaltyObjective<'_> {
         };
         patch.corners.iter().enumerate().map(of)
     }
+
+    /// Returns the objective whose terms of opposite angles belong to the sum; `None` if there are none.
+    fn joined(&self) -> Option<MetricObjective<'_, FanPatch, impl Formulas>> {
+        self.penalties.has_acute_quadrilaterals.then(|| {
+            let (formulas, smoothing) = (Metric::Acute.formulas(), Smoothing::of(0));
+            MetricObjective { patch: self.patch, formulas, smoothing, shape_guard: f64::INFINITY }
+        })
+    }
 }
 
 impl Objective<f64> for PenaltyObjective<'_> {
@@ -147,13 +168,15 @@ impl Objective<f64> for PenaltyObjective<'_> {
         let add = |sum, (corner, penalties, role): (_, Penalties, Role)| {
             sum + role.weighted(penalties.expansion(&corner, role.slopes()))
         };
-        self.corners(at).fold(Dual::default(), add)
+        let sum = self.corners(at).fold(Dual::default(), add);
+        self.joined().map_or(sum, |joined| joined.with_opposite_angles(sum, at))
     }
 
     fn trial(&self, to: [f64; 2], _: f64) -> (f64, bool) {
         let of =
             |(corner, penalties, role): (_, Penalties, Role)| role.weighted(penalties.of(&corner));
-        (self.corners(to).map(of).sum(), true)
+        let joined = self.joined().map_or(0.0, |joined| joined.opposite_angles(to));
+        (self.corners(to).map(of).sum::<f64>() + joined, true)
     }
 }
 

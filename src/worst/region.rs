@@ -57,6 +57,9 @@ struct PatchCorner {
     is_heavy: bool,
 }
 
+/// The vertices of the corner opposite a vertex in a quadrilateral, and the target map of the corner.
+type OppositeCorner = ([u32; 3], Option<TargetMap<f64>>);
+
 /// Free vertices that move together, with the corners around each. Indices within the region begin with the moving
 /// vertices, and their fixed neighbors follow.
 pub(crate) struct Region<'a> {
@@ -65,6 +68,8 @@ pub(crate) struct Region<'a> {
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
     stars: Vec<Vec<PatchCorner>>,
+    /// For each moving vertex, the corner opposite the vertex in each of its quadrilaterals, with the target map.
+    opposites: Vec<Vec<OppositeCorner>>,
     /// For each moving vertex, the circle that limits its coordinates of the mesh.
     bounds: Vec<Circle>,
     ideal: Ideal,
@@ -81,6 +86,7 @@ impl<'a> Region<'a> {
         let mut places: Vec<DVec2> = vertices.iter().map(|&v| positions[v as usize]).collect();
         let mut number: HashMap<u32, u32> = vertices.iter().copied().zip(0..).collect();
         let mut stars = Vec::new();
+        let mut opposites = Vec::new();
         for &v in &vertices {
             let corner = |(corner, is_right): ([u32; 3], bool)| {
                 let (role, ends) = Role::of(corner, is_right, v);
@@ -93,7 +99,16 @@ impl<'a> Region<'a> {
                 let is_heavy = rules.heavy.is_some_and(|heavy| heavy.contains(&sorted(corner)));
                 PatchCorner { ends, map: problem.target_map(&corner), role, is_heavy }
             };
-            stars.push(problem.corners_around(v).map(corner).collect());
+            let star: Vec<PatchCorner> = problem.corners_around(v).map(corner).collect();
+            let corners: Vec<_> = problem.corners_around(v).collect();
+            let own = (0..star.len()).filter(|&i| star[i].role == Role::Own);
+            let opposite = |i: usize| {
+                let ([_, next, last], [_, opposite, _]) = (corners[i].0, corners[i + 1].0);
+                let ([n, l], [_, o]) = (star[i].ends, star[i + 1].ends);
+                ([o, l, n], problem.target_map(&[opposite, last, next]))
+            };
+            opposites.push(own.map(opposite).collect());
+            stars.push(star);
         }
         let coordinates = problem.coordinates();
         let bound = |&v: &u32| {
@@ -102,7 +117,7 @@ impl<'a> Region<'a> {
         };
         let bounds = vertices.iter().map(bound).collect();
         let ideal = problem.ideal();
-        Self { rules, vertices, positions: places, stars, bounds, ideal, coordinates }
+        Self { rules, vertices, positions: places, stars, opposites, bounds, ideal, coordinates }
     }
 
     /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
@@ -175,7 +190,12 @@ impl<'a> Region<'a> {
         };
         let corners = self.stars[v].iter().map(corner).collect();
         let Self { ideal, coordinates, rules, .. } = *self;
-        FanPatch { corners, ideal, coordinates, min_altitude: rules.floor }
+        let opposite = |&(vertices, map): &OppositeCorner| {
+            let [at, ends @ ..] = vertices.map(|v| self.positions[v as usize]);
+            FanCorner { ends, map, role: Role::Own }.seen(at, ideal)
+        };
+        let opposites = self.opposites[v].iter().map(opposite).collect();
+        FanPatch { corners, opposites, ideal, coordinates, min_altitude: rules.floor }
     }
 
     /// Returns the badness of the worst triangle of the region.

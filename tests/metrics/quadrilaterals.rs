@@ -123,6 +123,39 @@ fn derivatives_at_corners_of_quadrilaterals_are_those_of_dual_numbers() {
     }
 }
 
+/// The term of ACUTE on opposite angles is a sum of products of these cotangents.
+#[test]
+fn derivatives_of_cotangents_at_corners_are_those_of_dual_numbers() {
+    let body = "    set_role(u32(x[6]));
+    let plane = Corner(vec2(x[0], x[1]), vec2(x[2], x[3]), Ideal(vec2(x[4], 0.0), x[5]));
+    let d = cotangent_derivatives(metric_form(plane));
+    y = array<f32, 7>(d.value, d.gradient.x, d.gradient.y, d.hessian.x, d.hessian.y, d.hessian.z,
+        cotangent_of(metric_form(plane)));";
+    let kernel = Kernel::Sweep(Metric::Acute, Derivatives::Analytic);
+    let (device, mut rows) = (Device::open(), rows());
+    rows.retain(|row| row[6] > 0.0);
+    let source = kernel.wgsl_for_quadrilaterals() + &probe(7, 7, body);
+    let found: Vec<[f32; 7]> = device.run(&source, &rows);
+    let mut worst = 0.0f64;
+    for (row, found) in rows.iter().zip(found) {
+        let [ax, ay, bx, by, _, _, role] = row.map(f64::from);
+        let [alpha, beta] = SLOPES[role as usize];
+        let edge =
+            |[x, y]: [f64; 2], slope| [Dual::variable(x, 0, slope), Dual::variable(y, 1, slope)];
+        let (a, b) = (edge([ax, ay], alpha), edge([bx, by], beta));
+        let cotangent = (a[0] * b[0] + a[1] * b[1]) / (a[0] * b[1] - a[1] * b[0]);
+        let Dual { value, gradient: [x, y], hessian: [xx, xy, yy] } = cotangent;
+        let ([a, b], sine) = ([ax.hypot(ay), bx.hypot(by)], 1.0 / (1.0 + value * value).sqrt());
+        let (shortest, canceled) = (a.min(b), 1.0 + a / b);
+        for (i, exact) in [value, x, y, xx, xy, yy, value].into_iter().enumerate() {
+            let order = [0, 1, 1, 2, 2, 2, 0][i];
+            let size = (sine * shortest).powi(-order) / sine * (canceled / sine);
+            worst = worst.max((f64::from(found[i]) - exact).abs() / (size * ULP));
+        }
+    }
+    assert!(worst < BOUND, "{worst:.1}");
+}
+
 #[test]
 fn wrong_slopes_of_corners_are_detected() {
     let (device, rows) = (Device::open(), rows());

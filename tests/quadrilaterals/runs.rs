@@ -49,7 +49,7 @@ fn the_objective_is_the_mean_over_elements() {
 fn runs_converge_to_a_minimum_by_each_smooth_metric() {
     for lattice in [squares(14), mixed(14)] {
         let mesh = perturbed(&lattice, 0.25);
-        for metric in [Metric::Imr, Metric::Rms, Metric::ShapeSize, Metric::Tmop80] {
+        for metric in [Metric::Imr, Metric::Rms, Metric::ShapeSize, Metric::Tmop80, Metric::Acute] {
             let options = Options::default().scheme(metric.into()).max_sweeps(200);
             let [outcome, of_device] = runs(&mesh, &options);
             let smoother = prepared(&mesh);
@@ -209,6 +209,46 @@ fn default_runs_keep_small_angles_and_the_worst_corner() {
             assert!(after.min_angle >= before.min_angle.min(60.0) - 1e-6, "{before:?} {after:?}");
             assert!(after.worst_imr <= before.worst_imr * (1.0 + 1e-8), "{before:?} {after:?}");
         }
+    }
+}
+
+/// ACUTE of a quadrilateral with the corner angles A to D is 1 + 0.3 (mean imr² - 1) + 105 Σ cot² + 200 (cot A cot C + cot B cot D)
+/// + 150 Σ ψ(0.1 - cot) over the angles between its sides and diagonals.
+#[test]
+fn acute_of_quadrilaterals_joins_opposite_angles() {
+    let mesh = perturbed(&squares(6), 0.3);
+    let cotangent = |[p, q, r]: [u32; 3]| {
+        let [p, q, r] = [p, q, r].map(|v| mesh.points[v as usize]);
+        let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+        1.0 / (b[1].atan2(b[0]) - a[1].atan2(a[0])).tan()
+    };
+    let penalty = |x: f64| match x {
+        ..=0.0 => 0.0,
+        ..=0.1 => x.powi(3) / 0.3,
+        _ => 0.01 / 3.0 + (x - 0.1) * x,
+    };
+    let of = |&[p, q, r, s]: &[u32; 4]| {
+        let corners = [[p, q, s], [q, r, p], [r, s, q], [s, p, r]];
+        let [a, b, c, d] = corners.map(cotangent);
+        let imr = corners.map(|corner| squared_imr(&mesh.points, corner, true));
+        let shape = imr.iter().sum::<f64>() / 4.0;
+        let right = a * a + b * b + c * c + d * d;
+        let at_diagonals = corners.map(|[p, q, r]| {
+            penalty(0.1 - cotangent([q, r, p])) + penalty(0.1 - cotangent([r, p, q]))
+        });
+        let large: f64 = at_diagonals.iter().sum();
+        1.0 + 0.3 * (shape - 1.0) + 105.0 * right + 200.0 * (a * c + b * d) + 150.0 * large
+    };
+    let values = mesh.quadrilaterals.iter().map(of);
+    let expected = values.sum::<f64>() / mesh.quadrilaterals.len() as f64;
+    let smoother = prepared(&mesh);
+    let quality = Quality::of(&mesh.points, smoother.topology()).unwrap();
+    assert!((quality.f(Metric::Acute) / expected - 1.0).abs() < 1e-12);
+    assert!((smoother.f(Metric::Acute, &mesh.points).unwrap() / expected - 1.0).abs() < 1e-11);
+    let options = Options::default().scheme(Metric::Acute.into()).max_sweeps(0);
+    for outcome in on_both(&smoother, &options) {
+        let told = outcome.history[0].of(Metric::Acute).unwrap();
+        assert!((told / expected - 1.0).abs() < 1e-5, "{told} {expected}");
     }
 }
 

@@ -36,6 +36,7 @@ const NO_BOUNDS: &str = include_str!("../../../shaders/no_bounds.wgsl");
 const BOUNDS: &str = include_str!("../../../shaders/bounds.wgsl");
 const INVARIANTS: &str = include_str!("../../../shaders/invariants.wgsl");
 const ANGLES: &str = include_str!("../../../shaders/angles.wgsl");
+const OPPOSITE_ANGLES: &str = include_str!("../../../shaders/opposite_angles.wgsl");
 const PENALTY_SOURCE: &str = include_str!("../../../shaders/penalty.wgsl");
 const QUADRILATERALS: &str = include_str!("../../../shaders/quadrilaterals.wgsl");
 const FINITE_DIFFERENCE: &str = include_str!("../../../shaders/finite_difference.wgsl");
@@ -119,19 +120,26 @@ impl Kernel {
                 Source::UntanglingEnergy => source.push_str(&untangling_energy()),
             }
         }
-        chosen(&source, has_quadrilaterals)
+        chosen(&source, has_quadrilaterals, joins_opposite_angles(&composition))
     }
 }
 
+/// Returns whether a metric of a kernel has a term of opposite angles of quadrilaterals.
+fn joins_opposite_angles(composition: &Composition) -> bool {
+    let joins = |metric: &Metric| metric.joins_opposite_angles();
+    composition.has_quadrilaterals && composition.metrics.iter().any(joins)
+}
+
 /// Returns a source with the lines for meshes with quadrilaterals, or for meshes without, from the lines between `#if QUADRILATERALS`
-/// or `#if !QUADRILATERALS`, `#else` and `#endif`.
-fn chosen(source: &str, has_quadrilaterals: bool) -> String {
+/// or `#if !QUADRILATERALS`, `#else` and `#endif`. `#if OPPOSITE_ANGLES` selects lines for metrics that join opposite angles.
+fn chosen(source: &str, has_quadrilaterals: bool, joins_opposite_angles: bool) -> String {
     let mut text = String::with_capacity(source.len());
     let mut is_chosen = true;
     for line in source.split_inclusive('\n') {
         match line.trim_end() {
             "#if QUADRILATERALS" => is_chosen = has_quadrilaterals,
             "#if !QUADRILATERALS" => is_chosen = !has_quadrilaterals,
+            "#if OPPOSITE_ANGLES" => is_chosen = joins_opposite_angles,
             "#else" => is_chosen = !is_chosen,
             "#endif" => is_chosen = true,
             _ if is_chosen => text.push_str(line),
@@ -231,6 +239,15 @@ fn formulas(metrics: &[Metric]) -> String {
     text
 }
 
+/// Returns [`formulas`], with the term of opposite angles if a metric has the term and the kernel sees quadrilaterals.
+fn formulas_of(composition: &Composition) -> String {
+    let mut text = formulas(&composition.metrics);
+    if joins_opposite_angles(composition) {
+        text.push_str(OPPOSITE_ANGLES);
+    }
+    text
+}
+
 /// Returns the functions of the metric that a sweep minimizes, under the names that newton.wgsl calls.
 fn active_metric(composition: &Composition) -> String {
     let Composition { metrics, derivatives, has_quadrilaterals } = composition;
@@ -238,7 +255,7 @@ fn active_metric(composition: &Composition) -> String {
     let Some(&metric) = metrics.first() else { return String::new() };
     let properties = metric.properties();
     let name = wgsl_name(metric);
-    let mut text = formulas(&[metric]);
+    let mut text = formulas_of(composition);
     let (model, derivatives_of) = match (metric.is_of_invariants(), metric.is_smooth()) {
         (true, _) => (
             format!("{name}_value(invariants(t))"),
@@ -323,7 +340,7 @@ fn untangling_energy() -> String {
 /// is not positive, and `shape_excess`, which gives imr² - 1.
 fn tracked_metrics(composition: &Composition) -> String {
     let Composition { metrics, has_quadrilaterals, .. } = composition;
-    let mut text = formulas(metrics);
+    let mut text = formulas_of(composition);
     let weight = if *has_quadrilaterals { "corner_weight * " } else { "" };
     let call = |&metric: &Metric| {
         let name = wgsl_name(metric);
@@ -351,6 +368,25 @@ fn shape_excess(t: Corner) -> f32 {{
         count = calls.len(),
         calls = calls.join(", ")
     );
+    if joins_opposite_angles(composition) {
+        let joins = |(i, metric): (usize, &Metric)| metric.joins_opposite_angles().then_some(i);
+        let _ = writeln!(
+            text,
+            "
+// Adds the shares of a corner in the terms of opposite angles to the values of the metrics that have the term.
+fn with_shares_of_opposite_angles(
+    values: array<f32, TRACKED>,
+    t: Corner,
+    opposite: Corner,
+) -> array<f32, TRACKED> {{
+    var sums = values;
+    let share = share_of_opposite_angles(t, opposite);"
+        );
+        for i in metrics.iter().enumerate().filter_map(joins) {
+            let _ = writeln!(text, "    sums[{i}] += share;");
+        }
+        text.push_str("    return sums;\n}\n");
+    }
     text
 }
 
@@ -396,7 +432,9 @@ mod tests {
     fn lines_are_chosen_between_directives() {
         let source =
             "a\n#if QUADRILATERALS\nb\n#else\nc\n#endif\nd\n#if !QUADRILATERALS\ne\n#endif\n";
-        assert_eq!(chosen(source, true), "a\nb\nd\n");
-        assert_eq!(chosen(source, false), "a\nc\nd\ne\n");
+        assert_eq!(chosen(source, true, false), "a\nb\nd\n");
+        assert_eq!(chosen(source, false, false), "a\nc\nd\ne\n");
+        let source = "#if OPPOSITE_ANGLES\na\n#else\nb\n#endif\n";
+        assert_eq!([true, false].map(|joins| chosen(source, true, joins)), ["a\n", "b\n"]);
     }
 }
