@@ -2,12 +2,14 @@
 """Minimizes the same objective on the same mesh by gpu-smooth and by MFEM's TMOP, and compares the minima and the times.
 
     pip install mfem numpy                      # tried with 4.10: its wheel contains the C++ library, which does the work
-    python3 benches/against_mfem.py target/release/gpu-smooth [CELLS]
+    python3 benches/against_mfem.py target/release/gpu-smooth [CELLS] [quadrilaterals]
 
-The mesh is a square of CELLS x CELLS cells, halved along random diagonals. Its vertices are moved by up to 0.3 cells along each
-axis. The target is the equilateral triangle of the mean area (IDEAL_SHAPE_EQUAL_SIZE), and the boundary is fixed. A linear
-triangle has a constant T, so a quadrature of one point is exact. MFEM takes Newton steps with MINRES, as its mesh-optimizer
-does. MFEM and gpu-smooth each use one thread of the CPU.
+The mesh is a square of CELLS x CELLS cells. Cells are halved along random diagonals, and vertices are moved by up to 0.3 cells
+along each axis. Quadrilaterals are not halved, their vertices are moved by up to 0.2 cells, and the sides of the square are bent,
+so that no lattice of squares is the minimum. The target is the equilateral triangle of the mean area, or the square
+(IDEAL_SHAPE_EQUAL_SIZE), and the boundary is fixed. A linear triangle has a constant T, so a quadrature of one point is exact.
+Quadrilaterals have the Gauss-Lobatto points of order 1, which are their corners. MFEM takes Newton steps with MINRES, as its
+mesh-optimizer does. MFEM and gpu-smooth each use one thread of the CPU.
 """
 
 import json
@@ -20,6 +22,19 @@ import time
 import numpy as np
 import mfem.ser as mfem
 from mfem._ser import tmop, tmop_tools
+
+
+def quadrilaterals(cells, seed=1):
+    rng = np.random.default_rng(seed)
+    side = cells + 1
+    x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float))
+    points = np.stack([x.ravel(), y.ravel()], axis=1)
+    inner = ((points > 0) & (points < cells)).all(axis=1)
+    points[inner] += rng.uniform(-0.2, 0.2, (inner.sum(), 2))
+    x, y = (points / cells).T
+    bent = np.stack([x + 0.1 * np.sin(np.pi * y), y + 0.15 * np.sin(2 * np.pi * x) * (1 - 0.5 * y)], axis=1)
+    corner = (np.arange(cells) + side * np.arange(cells)[:, None]).ravel()
+    return bent, np.stack([corner, corner + 1, corner + side + 1, corner + side], axis=1)
 
 
 def made(cells, seed=1):
@@ -41,21 +56,23 @@ def made(cells, seed=1):
     return points / cells, np.array(triangles)
 
 
-def write(folder, points, triangles, cells):
+def write(folder, points, elements, cells):
     side = cells + 1
     rows = [f"{x!r} {y!r}" for x, y in points.tolist()]
     with open(f"{folder}/in.mesh", "w") as out:
         print(f"MeshVersionFormatted 2\nDimension 2\nVertices\n{len(rows)}", file=out)
         print(*(row + " 0" for row in rows), sep="\n", file=out)
-        print(f"Triangles\n{len(triangles)}", file=out)
-        print(*(f"{a + 1} {b + 1} {c + 1} 1" for a, b, c in triangles), sep="\n", file=out)
+        kind = "Triangles" if elements.shape[1] == 3 else "Quadrilaterals"
+        print(f"{kind}\n{len(elements)}", file=out)
+        print(*(" ".join(map(str, element + 1)) + " 1" for element in elements), sep="\n", file=out)
         print("End", file=out)
     line = np.arange(cells)
     edges = [(line, line + 1), (line + cells * side, line + 1 + cells * side)]
     edges += [(line * side, (line + 1) * side), (line * side + cells, (line + 1) * side + cells)]
     with open(f"{folder}/mfem.mesh", "w") as out:
-        print("MFEM mesh v1.0\n\ndimension\n2\n\nelements", len(triangles), sep="\n", file=out)
-        print(*(f"1 2 {a} {b} {c}" for a, b, c in triangles), sep="\n", file=out)
+        print("MFEM mesh v1.0\n\ndimension\n2\n\nelements", len(elements), sep="\n", file=out)
+        geometry = {3: 2, 4: 3}[elements.shape[1]]
+        print(*(f"1 {geometry} " + " ".join(map(str, element)) for element in elements), sep="\n", file=out)
         print("\nboundary", 4 * cells, sep="\n", file=out)
         for a, b in edges:
             print(*(f"1 1 {p} {q}" for p, q in zip(a, b)), sep="\n", file=out)
@@ -63,17 +80,20 @@ def write(folder, points, triangles, cells):
         print(*rows, sep="\n", file=out)
 
 
-def by_mfem(folder, metric, count, tolerance):
+def by_mfem(folder, metric, elements, tolerance):
     mesh = mfem.Mesh(f"{folder}/mfem.mesh", 1, 1)
     space = mfem.FiniteElementSpace(mesh, mfem.H1_FECollection(1, 2), 2)
     mesh.SetNodalFESpace(space)
     x = mfem.GridFunction(space)
     mesh.SetNodalGridFunction(x)
-    area = 1.0 / count
+    count = len(elements)
+    of_triangles = elements.shape[1] == 3
+    area = sum(mesh.GetElementVolume(e) for e in range(count)) / count
     target = tmop.TargetConstructor(tmop.TargetConstructor.IDEAL_SHAPE_EQUAL_SIZE)
     target.SetNodes(x)
     # MFEM takes the mean area as the determinant of W, which is twice the area of a triangle.
-    target.SetVolumeScale(2.0)
+    if of_triangles:
+        target.SetVolumeScale(2.0)
     integrator = tmop.TMOP_Integrator(metric, target)
     rules = mfem.IntegrationRules(0, mfem.Quadrature1D.GaussLobatto)
     integrator.SetIntegrationRules(rules, 1)
@@ -87,7 +107,8 @@ def by_mfem(folder, metric, count, tolerance):
     linear.SetMaxIter(100)
     linear.SetRelTol(1e-12)
     linear.SetAbsTol(0.0)
-    solver = tmop_tools.TMOPNewtonSolver(rules.Get(mfem.Geometry.TRIANGLE, 1))
+    geometry = mfem.Geometry.TRIANGLE if of_triangles else mfem.Geometry.SQUARE
+    solver = tmop_tools.TMOPNewtonSolver(rules.Get(geometry, 1))
     solver.SetIntegrationRules(rules, 1)
     solver.SetOperator(form)
     solver.SetPreconditioner(linear)
@@ -112,11 +133,13 @@ def by_gpu_smooth(program, folder, name):
 
 def main():
     program, cells = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 100
-    points, triangles = made(cells)
-    metrics = [("shape-size", tmop.TMOP_Metric_007()), ("tmop-94", tmop.TMOP_Metric_094()), ("tmop-80", tmop.TMOP_Metric_080(0.5))]
+    of_triangles = "quadrilaterals" not in sys.argv
+    points, elements = (made if of_triangles else quadrilaterals)(cells)
+    metrics = [("tmop-2", tmop.TMOP_Metric_002()), ("shape-size", tmop.TMOP_Metric_007())]
+    metrics += [("tmop-94", tmop.TMOP_Metric_094()), ("tmop-80", tmop.TMOP_Metric_080(0.5))]
     with tempfile.TemporaryDirectory() as folder:
-        write(folder, points, triangles, cells)
-        print(f"{len(points)} vertices, {len(triangles)} triangles")
+        write(folder, points, elements, cells)
+        print(f"{len(points)} vertices, {len(elements)} {'triangles' if of_triangles else 'quadrilaterals'}")
         for name, metric in metrics:
             report = by_gpu_smooth(program, folder, name)
             took = report["seconds"]["prepare"] + report["seconds"]["smooth"]
@@ -124,7 +147,7 @@ def main():
             print(f"{name}: f {start:.10f} at the start")
             print(f"  gpu-smooth: {end:.10f}, {report['sweeps']} sweeps, {took:.3f} s")
             for tolerance in (1e-3, 1e-8):
-                other, lower, steps, seconds = by_mfem(folder, metric, len(triangles), tolerance)
+                other, lower, steps, seconds = by_mfem(folder, metric, elements, tolerance)
                 assert abs(other / start - 1) < 1e-9, f"f is {other} there"
                 print(f"  MFEM to {tolerance:g} of the gradient: {lower:.10f}, {steps} steps, {seconds:.2f} s; ", end="")
                 print(f"f of gpu-smooth {end / lower - 1:+.1e} against it, time {seconds / took:.0f} : 1")

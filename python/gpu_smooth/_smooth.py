@@ -232,7 +232,7 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         CPU.
     scheme : str or sequence of str, optional
         The metric to minimize, or several in turn, sweep by sweep until corrections begin, as in edge+imr; the first
-        judges convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94, acute,
+        judges convergence. Metrics: edge, area, rms, imr, ar, shape-size, soft-size, tmop-80, tmop-94, tmop-2, acute,
         acute-size. Several metrics may also be a list. `metrics` describes each. The default is imr, tmop-94 for
         `target="keep-size"`, and soft-size for given sizes.
     engine : {"auto", "gpu", "cpu"}, default "auto"

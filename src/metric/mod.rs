@@ -23,6 +23,7 @@ pub(crate) mod smoothing;
 mod soft_size;
 mod table;
 mod target;
+mod tmop_2;
 mod tmop_80;
 mod tmop_94;
 

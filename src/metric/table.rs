@@ -9,7 +9,7 @@ use crate::metric::edge_slopes::{EdgeSlopes, Own};
 use crate::metric::properties::Properties;
 use crate::metric::smoothing::Smoothing;
 use crate::metric::{
-    acute, acute_size, ar, area, edge, imr, rms, shape_size, soft_size, tmop_80, tmop_94,
+    acute, acute_size, ar, area, edge, imr, rms, shape_size, soft_size, tmop_2, tmop_80, tmop_94,
 };
 
 /// Generates the enum, the table and the formulas from one row per metric. Metrics in braces are rare: they take less
@@ -179,6 +179,9 @@ metrics! {
     /// TMOP-94, √(μ₂ + 1.5 μ₅₆), of shape, μ₂ = |T|² / 2τ - 1, and size, μ₅₆ = (τ - 1)² / 2τ, with T as in SHAPE-SIZE
     /// and τ = det T (Knupp et al., SIAM J. Sci. Comp. 41, 2019, metric 94).
     Tmop94 = tmop_94 of invariants;
+    /// TMOP-2, √μ₂, of shape alone, μ₂ = |T|² / 2τ - 1, with T and τ as in TMOP-94 (Knupp et al., SIAM J. Sci. Comp. 41,
+    /// 2019, metric 2). μ₂ is the inverse mean ratio less one.
+    Tmop2 = tmop_2 of invariants;
     }
     => {
     /// ACUTE, the inverse mean ratio with penalties on angles above 78.7 and below 37.6 degrees: √(imr² + 300 Σ ψ(0.2 -

@@ -98,6 +98,8 @@ fn runs_by_differences_end_near_the_optimum_on_both_engines() {
             let (missed, bound) = match (is_reached, metric) {
                 (true, _) => (((near - exact) / (start - exact)).abs(), 2e-2),
                 (false, Metric::Acute | Metric::AcuteSize) => (near / exact - 1.0, 0.1),
+                // f of TMOP-2 lacks the 1 of IMR, so that the same miss is a larger share.
+                (false, Metric::Tmop2) => (near / exact - 1.0, 5e-3),
                 (false, Metric::Edge) => (near / exact - 1.0, 5e-3),
                 (false, _) => (near / exact - 1.0, 1e-3),
             };

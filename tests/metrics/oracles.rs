@@ -34,6 +34,7 @@ pub(crate) fn quality(metric: Metric, [a, b, c]: [f64; 3], area: f64, ideal: Ide
         Metric::Tmop80 => root(0.5 * (shape + square)),
         Metric::Tmop94 => root(shape + 1.5 * linear),
         Metric::SoftSize => root(shape + 0.4 * linear),
+        Metric::Tmop2 => root(shape),
         Metric::Acute => {
             let sides = [a, b, c].map(|side| side * side);
             let cotangent = |k: usize| {
@@ -72,6 +73,7 @@ pub(crate) fn is_linear_in_size(metric: Metric) -> bool {
         | Metric::Ar
         | Metric::ShapeSize
         | Metric::Tmop80
+        | Metric::Tmop2
         | Metric::Acute => false,
         _ => {
             panic!("{metric}: say here whether q² of a large triangle is nearly linear in the area")
@@ -119,6 +121,7 @@ pub(crate) fn mistakes(metric: Metric) -> [[&'static str; 2]; 2] {
             ["t.size_weight - e)", "t.size_weight + e)"],
             ["2.0 * (e + weight", "2.0 * (1.01 * e + weight"],
         ],
+        Metric::Tmop2 => [["1.0, -m, 0.0", "1.01, -m, 0.0"], ["2.0 * m)", "2.01 * m)"]],
         Metric::Acute | Metric::AcuteSize => [
             ["penalties.y * unit * area_slope", "penalties.y * unit * 1.01 * area_slope"],
             ["dot(t.b, c), -c, 0.0", "dot(t.b, c), c, 0.0"],
@@ -160,7 +163,9 @@ pub(crate) fn scales(metric: Metric, t: &Corner<f64>) -> Scales {
             let sizes = [1.0 + squares / t.ideal.area, (a + b) / t.ideal.area, 1.0 / t.ideal.area];
             Scales { sizes, conditions: [1.0; 3] }
         }
-        Metric::Imr | Metric::Ar => {
+        Metric::Imr | Metric::Ar | Metric::Tmop2 => {
+            // TMOP-2 is the ratio itself, without the square, and less one.
+            let q = if metric == Metric::Tmop2 { 1.0 + q * q } else { q };
             let per_length = c / doubled + (a + b) / (q * doubled);
             let bend = 6.0 * q * q * per_length * per_length + 2.0 * q / doubled;
             // The area is a difference of products of the edges.
