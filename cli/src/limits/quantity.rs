@@ -62,6 +62,11 @@ impl Quantity {
         }
     }
 
+    /// Returns whether quadrilaterals have the quantity themselves, not only their edges and vertices.
+    pub(crate) fn is_of_quadrilaterals(self) -> bool {
+        self.measure().is_some_and(|measure| measure.of_quadrilateral() && !measure.is_of_edges())
+    }
+
     /// Returns the measure; `None` for other quantities.
     pub(crate) fn measure(self) -> Option<Measure> {
         match self {

@@ -82,7 +82,7 @@ impl ProfileSource {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profiles::Limit;
+    use crate::profiles::{Elements, Limit};
 
     #[test]
     fn each_limit_of_the_program_has_a_source_and_is_in_the_document() {
@@ -95,7 +95,7 @@ mod tests {
             assert_eq!(&profile.name, name);
             assert!(!profile.title.is_empty() && !profile.limits.is_empty(), "{name}");
             assert!(document.contains(&format!("`{name}`")), "docs/solvers.md lacks `{name}`");
-            for Limit { quantity, warn, fail, source } in &profile.limits {
+            for Limit { quantity, elements, warn, fail, source } in &profile.limits {
                 if warn.is_none() && fail.is_none() {
                     let row = format!("| `{quantity}` | | | listed |");
                     assert!(document.contains(&row), "docs/solvers.md lacks the row\n{row}");
@@ -105,8 +105,12 @@ mod tests {
                 let range = |range: &Option<crate::limits::Threshold>| {
                     range.as_ref().map(|range| format!("`{}`", range.range())).unwrap_or_default()
                 };
+                let of = match elements {
+                    Elements::Triangles => "",
+                    Elements::Quadrilaterals => " of quadrilaterals",
+                };
                 let row =
-                    format!("| `{quantity}` | {} | {} | {source} |", range(warn), range(fail));
+                    format!("| `{quantity}`{of} | {} | {} | {source} |", range(warn), range(fail));
                 let row = row.replace("|  |", "| |");
                 assert!(document.contains(&row), "docs/solvers.md lacks the row\n{row}");
             }

@@ -4,4 +4,4 @@ mod built_in;
 mod profile;
 
 pub(crate) use built_in::{ProfileSource, names};
-pub(crate) use profile::{Limit, Profile};
+pub(crate) use profile::{Elements, Limit, Profile};

@@ -26,12 +26,32 @@ pub(crate) struct Profile {
 #[serde(try_from = "GivenLimit")]
 pub(crate) struct Limit {
     pub(crate) quantity: Quantity,
+    /// The elements that a limit of elements concerns. Limits of edges concern edges of all elements.
+    pub(crate) elements: Elements,
     /// Values of which users should know.
     pub(crate) warn: Option<Threshold>,
     /// Values with which the solver does not run, or that it or its users refuse.
     pub(crate) fail: Option<Threshold>,
     /// The document or the source file that states the limit.
     pub(crate) source: String,
+}
+
+/// A kind of elements, as other values are good for quadrilaterals than for triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Elements {
+    #[default]
+    Triangles,
+    Quadrilaterals,
+}
+
+impl Elements {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangles",
+            Self::Quadrilaterals => "quadrilaterals",
+        }
+    }
 }
 
 /// A problem of the text of a profile.
@@ -74,6 +94,8 @@ impl TryFrom<String> for Listed {
 #[serde(deny_unknown_fields)]
 struct GivenLimit {
     quantity: String,
+    #[serde(default)]
+    elements: Elements,
     warn: Option<String>,
     fail: Option<String>,
     #[serde(default)]
@@ -123,7 +145,8 @@ impl TryFrom<GivenProfile> for Profile {
             return Err("a profile needs a limit, as in [[limits]]".into());
         }
         for Listed(quantity) in listed {
-            limits.push(Limit { quantity, warn: None, fail: None, source: String::new() });
+            let (elements, source) = (Elements::default(), String::new());
+            limits.push(Limit { quantity, elements, warn: None, fail: None, source });
         }
         Ok(Self { name, title, scheme, limits })
     }
@@ -133,8 +156,11 @@ impl TryFrom<GivenLimit> for Limit {
     type Error = String;
 
     fn try_from(given: GivenLimit) -> Result<Self, String> {
-        let GivenLimit { quantity, warn, fail, source } = given;
+        let GivenLimit { quantity, elements, warn, fail, source } = given;
         let quantity: Quantity = quantity.parse()?;
+        if elements == Elements::Quadrilaterals && !quantity.is_of_quadrilaterals() {
+            return Err(format!("quadrilaterals have no limit of {quantity} of their own"));
+        }
         let threshold = |key: &str, range: Option<String>| {
             let range = range.map(|range| Threshold::of(quantity, &range));
             range.transpose().map_err(|problem| format!("{key} of {quantity}: {problem}"))
@@ -156,7 +182,7 @@ impl TryFrom<GivenLimit> for Limit {
             }
             _ => {}
         }
-        Ok(Self { quantity, warn, fail, source })
+        Ok(Self { quantity, elements, warn, fail, source })
     }
 }
 
@@ -171,9 +197,11 @@ mod tests {
     fn the_ranges_of_a_file_are_thresholds_of_its_quantities() {
         let Profile { name, title, scheme, limits } = Profile::parse(OWN).unwrap();
         assert_eq!((&*name, &*title, scheme), ("ours", "", Some(Metric::Acute)));
-        let [Limit { quantity, warn, fail, source }] = &limits[..] else { panic!("{limits:?}") };
+        let [Limit { quantity, elements, warn, fail, source }] = &limits[..] else {
+            panic!("{limits:?}")
+        };
         let written = |threshold: &Option<Threshold>| threshold.as_ref().unwrap().to_string();
-        assert_eq!(quantity.name(), "min-angle");
+        assert_eq!((quantity.name(), *elements), ("min-angle", Elements::Triangles));
         assert_eq!([written(warn), written(fail)], ["min-angle<30", "min-angle<20"]);
         assert_eq!(source, "");
     }
@@ -194,6 +222,13 @@ mod tests {
             ),
             ("name = \"ours\"\n", "", 1, "missing field `name`"),
             ("\"< 20\"", "20", 7, "expected a string"),
+            ("warn", "elements = \"hexagons\"\nwarn", 6, "unknown variant `hexagons`"),
+            (
+                "quantity = \"min-angle\"\nwarn = \"< 30\"\nfail = \"< 20\"",
+                "quantity = \"neighbors\"\nelements = \"quadrilaterals\"\nfail = \"> 9\"",
+                4,
+                "quadrilaterals have no limit of neighbors of their own",
+            ),
             ("\"< 20\"", "\"< twenty\"", 4, "fail of min-angle: 'twenty' is not a number"),
             ("[[limits]]", "[limits", 4, ""),
             ("\"< 20\"", "\"< 40\"", 4, "fail of min-angle must be beyond warn"),

@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use crate::limits::{Part, Quantity, Threshold};
-use crate::profiles::{Limit, Profile};
+use crate::profiles::{Elements, Limit, Profile};
 use crate::report::quantities::{Finding, Quantities, Worst, written};
 use crate::report::reasons::{Reason, reasons};
 
@@ -36,7 +36,7 @@ pub(crate) struct ProfileReport {
     /// The metric by which runs for the solver smooth meshes.
     scheme: Option<Metric>,
     pub(crate) limits: Vec<LimitReport>,
-    /// Number of quadrilaterals that limits leave out, as limits of elements and of vertices concern triangles.
+    /// Number of quadrilaterals that limits leave out, if all limits of elements and of vertices concern triangles.
     quadrilaterals: usize,
     /// The edges beyond limits of edges, by the reason that no move of free vertices mends them.
     reasons: Vec<Reason>,
@@ -52,33 +52,46 @@ pub(crate) struct LimitReport {
     listed: Option<Finding>,
 }
 
-/// Widths of the columns in front of the numbers, in characters.
+/// Widths of the columns in front of the numbers, in characters. Long names widen the first.
 const QUANTITY: usize = 18;
 const RANGE: usize = 10;
 
 impl ProfileReport {
     /// Compares a mesh with the limits of a profile.
     pub(crate) fn new(profile: &Profile, quantities: &Quantities<'_>) -> Self {
-        let of_triangles = |range: &Threshold| quantities.finding_of_triangles(range);
-        let compared = |limit: &Limit| LimitReport {
-            limit: limit.clone(),
-            warn: limit.warn.as_ref().map(of_triangles),
-            fail: limit.fail.as_ref().map(of_triangles),
-            listed: (limit.warn.is_none() && limit.fail.is_none())
-                .then(|| of_triangles(&Threshold::none(limit.quantity))),
+        let compared = |limit: &Limit| {
+            let found = |range: &Threshold| quantities.finding_among(range, limit.elements);
+            LimitReport {
+                limit: limit.clone(),
+                warn: limit.warn.as_ref().map(found),
+                fail: limit.fail.as_ref().map(found),
+                listed: (limit.warn.is_none() && limit.fail.is_none())
+                    .then(|| found(&Threshold::none(limit.quantity))),
+            }
+        };
+        let is_of_elements = |limit: &Limit| limit.quantity.part() == Part::Triangle;
+        let judges = |limit: &Limit| limit.elements == Elements::Quadrilaterals;
+        let judges_quadrilaterals = profile.limits.iter().any(judges);
+        // A mesh of one kind of elements needs no limits of the other kind.
+        let concerns = |limit: &&Limit| {
+            !(judges_quadrilaterals && is_of_elements(limit))
+                || quantities.count(limit.elements) > 0
         };
         // A listed quantity that no part has, such as the time step without depths, has no line.
         let is_shown =
             |limit: &LimitReport| limit.listed.as_ref().is_none_or(|listed| listed.total > 0);
         let leaves_out =
             |limit: &Limit| matches!(limit.quantity.part(), Part::Triangle | Part::Vertex);
-        let is_complete = !profile.limits.iter().any(leaves_out);
+        let is_complete = judges_quadrilaterals || !profile.limits.iter().any(leaves_out);
         Self {
             name: profile.name.clone(),
             title: profile.title.clone(),
             scheme: profile.scheme,
-            limits: profile.limits.iter().map(compared).filter(is_shown).collect(),
-            quadrilaterals: if is_complete { 0 } else { quantities.quadrilaterals() },
+            limits: profile.limits.iter().filter(concerns).map(compared).filter(is_shown).collect(),
+            quadrilaterals: match is_complete {
+                true => 0,
+                false => quantities.count(Elements::Quadrilaterals),
+            },
             reasons: reasons(profile, quantities),
         }
     }
@@ -102,11 +115,12 @@ impl ProfileReport {
 
     /// Returns a table with a line for each limit, and the reasons of edges beyond limits.
     pub(crate) fn table(&self) -> String {
+        let width = self.width();
         let mut text = format!("limits of {}", self.heading());
-        let _ = write!(text, "\n{}", ranges("quantity", ["warn", "fail"]));
+        let _ = write!(text, "\n{}", ranges("quantity", width, ["warn", "fail"]));
         let _ = write!(text, "{}  worst", LimitReport::HEAD);
         for limit in &self.limits {
-            let _ = write!(text, "\n{}{}", limit.ranges(), limit.numbers());
+            let _ = write!(text, "\n{}{}", limit.ranges(width), limit.numbers());
             if let Some(worst) = limit.worst() {
                 let quantity = limit.limit.quantity;
                 let value = written(quantity, worst.value);
@@ -119,16 +133,17 @@ impl ProfileReport {
 
     /// Returns a table of the mesh before and after a run, where `self` is the mesh after.
     fn table_after(&self, before: &Self) -> String {
+        let quantity = self.width();
         let width = LimitReport::HEAD.len() + 2 + VALUE;
         let name = format!("limits of {}", self.name);
-        let start = QUANTITY + 2 * RANGE;
+        let start = quantity + 2 * RANGE;
         let mut text = format!("{name:<start$}{:>width$}{:>width$}", "before", "after");
-        let _ = write!(text, "\n{}", ranges("quantity", ["warn", "fail"]));
+        let _ = write!(text, "\n{}", ranges("quantity", quantity, ["warn", "fail"]));
         for _ in 0..2 {
             let _ = write!(text, "  {:>VALUE$}{}", "worst", LimitReport::HEAD);
         }
         for (before, after) in before.limits.iter().zip(&self.limits) {
-            let _ = write!(text, "\n{}", after.ranges());
+            let _ = write!(text, "\n{}", after.ranges(quantity));
             for limit in [before, after] {
                 let worst = limit.worst();
                 let worst = worst.map(|worst| written(limit.limit.quantity, worst.value));
@@ -136,6 +151,12 @@ impl ProfileReport {
             }
         }
         self.explained(&text)
+    }
+
+    /// Returns the width of the column of quantities, in characters.
+    fn width(&self) -> usize {
+        let names = self.limits.iter().map(|limit| limit.name().len() + 2);
+        names.fold(QUANTITY, usize::max)
     }
 
     fn heading(&self) -> String {
@@ -172,9 +193,9 @@ fn range(threshold: &Option<Threshold>) -> Option<String> {
     threshold.as_ref().map(Threshold::range)
 }
 
-/// Returns the columns of a quantity and its ranges.
-fn ranges(quantity: &str, [warn, fail]: [&str; 2]) -> String {
-    format!("{quantity:<QUANTITY$}{warn:<RANGE$}{fail:<RANGE$}")
+/// Returns the columns of a quantity, in a column of a width, and its ranges.
+fn ranges(quantity: &str, width: usize, [warn, fail]: [&str; 2]) -> String {
+    format!("{quantity:<width$}{warn:<RANGE$}{fail:<RANGE$}")
 }
 
 impl LimitReport {
@@ -212,10 +233,19 @@ impl LimitReport {
         self.finding()?.worst.as_ref()
     }
 
-    fn ranges(&self) -> String {
-        let Limit { quantity, warn, fail, .. } = &self.limit;
-        let [warn, fail] = [warn, fail].map(range);
-        ranges(quantity.name(), [&warn, &fail].map(|range| range.as_deref().unwrap_or_default()))
+    /// Returns the name of the quantity, with the elements if they are quadrilaterals.
+    fn name(&self) -> String {
+        let Limit { quantity, elements, .. } = &self.limit;
+        match elements {
+            Elements::Triangles => quantity.name().to_owned(),
+            Elements::Quadrilaterals => format!("{quantity} of {}", elements.name()),
+        }
+    }
+
+    fn ranges(&self, width: usize) -> String {
+        let [warn, fail] = [&self.limit.warn, &self.limit.fail].map(range);
+        let [warn, fail] = [&warn, &fail].map(|range| range.as_deref().unwrap_or_default());
+        ranges(&self.name(), width, [warn, fail])
     }
 
     fn numbers(&self) -> String {
@@ -247,16 +277,20 @@ impl LimitReport {
     }
 
     fn json(&self) -> Value {
-        let Limit { quantity, warn, fail, source } = &self.limit;
+        let Limit { quantity, elements, warn, fail, source } = &self.limit;
         let worst = self.worst().map(|Worst { place, value }| {
             let mut object = place.json();
             object.insert("value".into(), json!(value));
             object
         });
         let total = self.finding().map(|finding| finding.total);
+        let parts = match elements {
+            Elements::Triangles => quantity.part().noun(false),
+            Elements::Quadrilaterals => elements.name(),
+        };
         json!({
             "quantity": quantity.name(), "warn": range(warn), "fail": range(fail), "source": source,
-            quantity.part().noun(false): total, "warned": self.warned(), "failed": self.failed(),
+            parts: total, "warned": self.warned(), "failed": self.failed(),
             "verdict": self.judged(), "worst": worst,
         })
     }

@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use gpu_smooth::Element;
 use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
@@ -12,6 +13,7 @@ use crate::limits::{Part, Quantity, Threshold};
 use crate::load::LoadedMesh;
 use crate::load::Place;
 use crate::load::remarks::degrees;
+use crate::profiles::Elements;
 use crate::terminal::numbers::fit8;
 
 /// A mesh with the values of all quantities of its elements, edges and vertices.
@@ -48,8 +50,8 @@ pub(crate) struct Worst {
 /// The kinds of elements that a search for the worst part visits.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Among {
-    Elements,
-    Triangles,
+    All,
+    Only(Elements),
 }
 
 /// The value of an element, an edge or a vertex.
@@ -100,25 +102,32 @@ impl<'m> Quantities<'m> {
 
     /// Counts the elements, or other parts, with a value in the range of a threshold, and locates the worst part.
     pub(crate) fn finding(&self, threshold: &Threshold) -> Finding {
-        self.find(threshold, Among::Elements)
+        self.find(threshold, Among::All)
     }
 
-    /// Does the work of [`finding`](Self::finding) for a limit of a solver. Such limits are of triangles, so that quadrilaterals are
-    /// left out: other values are good for quadrilaterals.
-    pub(crate) fn finding_of_triangles(&self, threshold: &Threshold) -> Finding {
-        self.find(threshold, Among::Triangles)
+    /// Does the work of [`finding`](Self::finding) for a limit of a solver, among the elements of a kind: other values are good
+    /// for quadrilaterals than for triangles.
+    pub(crate) fn finding_among(&self, threshold: &Threshold, elements: Elements) -> Finding {
+        self.find(threshold, Among::Only(elements))
     }
 
-    /// Returns the number of quadrilaterals.
-    pub(crate) fn quadrilaterals(&self) -> usize {
-        self.measured.topology().quadrilaterals().len()
+    /// Returns the number of elements of a kind.
+    pub(crate) fn count(&self, elements: Elements) -> usize {
+        let topology = self.measured.topology();
+        match elements {
+            Elements::Triangles => topology.triangles().len(),
+            Elements::Quadrilaterals => topology.quadrilaterals().len(),
+        }
     }
 
-    /// Counts the visited elements that have a measure.
-    fn count_with(&self, measure: Measure, among: Among) -> usize {
+    /// Returns the range of the visited elements that have a measure. Triangles come first.
+    fn range_with(&self, measure: Measure, among: Among) -> Range<usize> {
+        let all = self.measured.count_with(measure);
+        let triangles = self.count(Elements::Triangles);
         match among {
-            Among::Elements => self.measured.count_with(measure),
-            Among::Triangles => self.measured.topology().triangles().len(),
+            Among::All => 0..all,
+            Among::Only(Elements::Triangles) => 0..triangles,
+            Among::Only(Elements::Quadrilaterals) => triangles..all,
         }
     }
 
@@ -126,7 +135,8 @@ impl<'m> Quantities<'m> {
     fn find(&self, threshold: &Threshold, among: Among) -> Finding {
         let (count, total, worst);
         let of_elements = threshold.quantity.measure().filter(|measure| !measure.is_of_edges());
-        let is_of_all = |m: &Measure| self.count_with(*m, among) == self.measured.count_with(*m);
+        let is_of_all =
+            |m: &Measure| self.range_with(*m, among) == (0..self.measured.count_with(*m));
         if let Some(measure) = of_elements.filter(is_of_all) {
             // Measures of all elements need no list of values.
             count = self.measured.count_where(measure, |value| threshold.is_met(value)).0;
@@ -147,9 +157,13 @@ impl<'m> Quantities<'m> {
             let place = self.place(threshold.quantity.part(), index);
             Worst { place, value }
         });
-        let triangles = self.measured.topology().triangles().len();
-        let has_others = of_elements.is_some_and(|m| self.count_with(m, among) > triangles);
-        let parts = if has_others { "elements" } else { threshold.quantity.part().noun(false) };
+        let triangles = self.count(Elements::Triangles);
+        let has_others = of_elements.is_some_and(|m| self.range_with(m, among).end > triangles);
+        let parts = match among {
+            Among::Only(Elements::Quadrilaterals) => Elements::Quadrilaterals.name(),
+            _ if has_others => "elements",
+            _ => threshold.quantity.part().noun(false),
+        };
         Finding { threshold: threshold.clone(), parts, count, total, worst }
     }
 
@@ -164,8 +178,9 @@ impl<'m> Quantities<'m> {
                 values.enumerate().map(valued).collect()
             }
             Quantity::Measure(measure) => {
+                let range = self.range_with(measure, among);
                 let values = self.measured.values(measure).into_iter().enumerate();
-                values.take(self.count_with(measure, among)).map(valued).collect()
+                values.take(range.end).skip(range.start).map(valued).collect()
             }
             Quantity::BoundaryCorners => {
                 let is_on_boundary = self.is_on_boundary();
@@ -195,7 +210,7 @@ impl<'m> Quantities<'m> {
                 let is_on_boundary = self.is_on_boundary();
                 let is_triangle = |&c: &u32| matches!(topology.element(c), Element::Triangle(_));
                 let is_of_triangles = |v: usize| {
-                    among == Among::Elements || topology.star(v as u32).iter().all(is_triangle)
+                    among == Among::All || topology.star(v as u32).iter().all(is_triangle)
                 };
                 let is_counted = |&(v, count): &(usize, usize)| {
                     count > 0 && !(threshold.is_below && is_on_boundary[v]) && is_of_triangles(v)

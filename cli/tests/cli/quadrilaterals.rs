@@ -166,6 +166,7 @@ fn quality_measures_and_lists_quadrilaterals() {
         ("mixed.vtk", &vtk(8, cut, |k| k % 2)),
         ("concave.vtk", &concave),
         ("few.toml", few),
+        ("own.toml", "name = \"own\"\n\n[[limits]]\nquantity = \"min-angle\"\nwarn = \"< 30\"\n"),
     ]);
     // A mesh without triangles needs no option.
     let run = folder.line("quality block.vtk --worst 2 --html p.html --picture p.png");
@@ -203,14 +204,20 @@ fn quality_measures_and_lists_quadrilaterals() {
     };
     assert_eq!([corners("triangle", 3), corners("quadrilateral", 4)], [64, 32]);
 
-    // Limits of solvers are of triangles.
+    // Each kind of elements has limits of its own, and a mesh of one kind has no line for the other.
     let run = folder.line("quality mixed.vtk --for fea --json");
     let told: serde_json::Value = serde_json::from_str(&run.out).unwrap();
-    for limit in told["profile"]["limits"].as_array().unwrap() {
-        assert_eq!(limit["triangles"], 64, "{limit}");
-        assert!(limit["worst"]["triangle"].is_u64(), "{limit}");
+    let limits = told["profile"]["limits"].as_array().unwrap();
+    assert_eq!(limits.len(), 10);
+    for (i, limit) in limits.iter().enumerate() {
+        let [parts, part] = [["triangles", "triangle"], ["quadrilaterals", "quadrilateral"]][i / 5];
+        assert_eq!(limit[parts], if i < 5 { 64 } else { 32 }, "{limit}");
+        assert!(limit["worst"][part].is_u64(), "{limit}");
     }
     let run = folder.line("quality block.vtk --for fea");
+    assert_holds(&run.out, &["min-angle of quadrilaterals", "quadrilateral "]);
+    assert!(!run.out.contains("triangle ") && !run.out.contains("no verdict"), "{}", run.out);
+    let run = folder.line("quality block.vtk --for own.toml");
     assert_holds(
         &run.out,
         &["the limits of elements are of triangles: 64 quadrilaterals have no verdict"],
