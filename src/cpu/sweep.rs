@@ -1,16 +1,16 @@
 //! Loops over all free vertices: sweeps, gradients and stiffness.
 
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::newton;
 use crate::cpu::within::LaneBounds;
 use crate::layout::{DEGREE_BLOCK, Problem};
-use crate::metric::{Dual, Formulas, Metric, OfInvariants, Real, Smoothing};
+use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
-use crate::patch::lanes::{Lanes, Points, points, with_instructions, with_lanes};
+use crate::patch::lanes::{Lanes, Points, points, with_lanes};
 use crate::patch::{
     LanePatch, MetricObjective, MixedRings, MixedScratch, Objective, Rings, Scratch, VertexBatch,
     batch_at,
@@ -162,23 +162,12 @@ async fn visit<T: VisitOutput>(
     sought: VertexQuantity,
     found: &mut [T],
 ) {
+    let bounded = T::STEPS && problem.is_bounded();
     if problem.has_quadrilaterals() {
-        let bounded = T::STEPS && problem.is_bounded();
-        // The default metric has a copy of its own, as in `with_lanes`.
-        if step.metric == Metric::Imr && problem.maps().is_none() && !bounded {
-            paced::for_each_chunk(found, CHUNK, |at, found| {
-                let (imr, first) = (OfInvariants::Imr, first + at);
-                with_instructions!(Level::new(), simd => {
-                    visit_mixed::<_, _, false>(simd, imr, problem, positions, first, step, sought, found);
-                });
-            })
-            .await;
-            return;
-        }
         paced::for_each_chunk(found, CHUNK, |at, found| {
-            let (any, first) = (step.metric.formulas(), first + at);
-            with_instructions!(Level::new(), simd => {
-                visit_mixed::<_, _, true>(simd, any, problem, positions, first, step, sought, found);
+            let first = first + at;
+            with_lanes!(problem.maps(), bounded, step.metric, simd, formulas, GENERAL => {
+                visit_mixed::<_, _, GENERAL>(simd, formulas, problem, positions, first, step, sought, found);
             });
         })
         .await;
@@ -186,7 +175,6 @@ async fn visit<T: VisitOutput>(
     }
     paced::for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
-        let bounded = T::STEPS && problem.is_bounded();
         with_lanes!(problem.maps(), bounded, step.metric, simd, formulas, GENERAL => {
             visit_all::<_, _, GENERAL>(simd, formulas, problem, positions, first, step, sought, found);
         });
