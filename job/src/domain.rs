@@ -126,8 +126,7 @@ impl Domain {
         let Constraints { vertices, anchored, .. } = file.constraints_beside_quadrilaterals();
         let (interfaces, interface_edges) = file.interfaces_of_elements();
         let of_triangles = Self::of_file(file);
-        let is_proper = |corners: &&[u32; 4]| (1..4).all(|k| !corners[..k].contains(&corners[k]));
-        let quadrilaterals = file.quadrilaterals().iter().filter(is_proper).copied().collect();
+        let quadrilaterals = file.proper_quadrilaterals().map(|(_, &corners)| corners).collect();
         let Mesh { points, triangles, .. } = of_triangles.mesh;
         let Self { mesh, interfaces, between_regions, .. } =
             Self::with(points, triangles, vertices, interfaces);

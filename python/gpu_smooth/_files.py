@@ -30,6 +30,8 @@ class Group(NamedTuple):
     """Vertices of the elements of the group, ascending, of shape (k,)."""
     triangles: Integers
     """Triangles of the group, ascending, of shape (k,)."""
+    quadrilaterals: Integers
+    """Quadrilaterals of the group, as rows of `MeshFile.quadrilaterals`, ascending, of shape (k,)."""
 
 
 class MeshFile:

@@ -1,5 +1,6 @@
 //! Mesh files: a file in memory with its points, triangles, groups and data, and conversions.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -30,11 +31,6 @@ enum Refused {
 /// Returns indices as an array.
 fn indices<'py>(py: Python<'py>, list: &[u32]) -> Bound<'py, PyArray1<i64>> {
     PyArray1::from_vec(py, list.iter().map(|&index| i64::from(index)).collect())
-}
-
-/// Returns whether the vertices of a quadrilateral differ.
-fn is_proper(corners: &[u32; 4]) -> bool {
-    (1..4).all(|k| !corners[..k].contains(&corners[k]))
 }
 
 #[pymethods]
@@ -83,8 +79,8 @@ impl MeshFile {
     /// The quadrilaterals of four different vertices.
     #[getter]
     fn quadrilaterals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let all = self.0.quadrilaterals().iter().filter(|corners| is_proper(corners));
-        let numbers: Vec<i64> = all.flatten().map(|&v| i64::from(v)).collect();
+        let all = self.0.proper_quadrilaterals().flat_map(|(_, corners)| corners);
+        let numbers: Vec<i64> = all.map(|&v| i64::from(v)).collect();
         let rows = numbers.len() / 4;
         arrays::matrix(py, numbers, [rows, 4])
     }
@@ -97,8 +93,8 @@ impl MeshFile {
             Some(regions) => regions.to_vec(),
             None => vec![0; file.triangles().len()],
         };
-        let others = file.quadrilaterals().iter().zip(file.quadrilateral_regions());
-        let others = others.filter(|(corners, _)| is_proper(corners)).map(|(_, &region)| region);
+        let of_file = file.quadrilateral_regions();
+        let others = file.proper_quadrilaterals().map(|(index, _)| of_file[index]);
         let all: Vec<i64> = of_triangles.into_iter().chain(others).map(i64::from).collect();
         let is_one = all.windows(2).all(|pair| pair[0] == pair[1]);
         (!is_one).then(|| PyArray1::from_vec(py, all))
@@ -171,6 +167,8 @@ impl MeshFile {
     fn groups<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let groups = threads::detached(py, || self.0.groups())?;
         let groups = groups.map_err(|error| error::of_reading(py, &error))?;
+        let proper: HashMap<u32, u32> =
+            self.0.proper_quadrilaterals().map(|(index, _)| index as u32).zip(0..).collect();
         let row = |group: &mesh_io::Group| {
             let row = PyDict::new(py);
             row.set_item("kind", &group.kind)?;
@@ -179,6 +177,9 @@ impl MeshFile {
             row.set_item("tag", group.tag)?;
             row.set_item("vertices", indices(py, group.vertices()))?;
             row.set_item("triangles", indices(py, group.triangles()))?;
+            let quadrilaterals: Vec<u32> =
+                group.quadrilaterals().iter().filter_map(|q| proper.get(q).copied()).collect();
+            row.set_item("quadrilaterals", indices(py, &quadrilaterals))?;
             Ok(row)
         };
         groups.iter().map(row).collect()

@@ -73,6 +73,21 @@ def test_a_file_is_read_and_written_with_moved_vertices_alone(tmp_path: Path) ->
         gpu_smooth.MeshFile(tmp_path / "none.msh")
 
 
+def test_groups_list_their_quadrilaterals(tmp_path: Path) -> None:
+    # The second cell lists a vertex twice, and is no row of the file's quadrilaterals.
+    cells = ["4 0 1 5 4", "4 1 6 6 5", "4 2 3 7 6"]
+    (tmp_path / "in.vtk").write_text("\n".join([
+        "# vtk DataFile Version 3.0", "cells", "ASCII", "DATASET UNSTRUCTURED_GRID",
+        "POINTS 8 double", *(f"{k % 4} {k // 4} 0" for k in range(8)),
+        "CELLS 3 15", *cells, "CELL_TYPES 3", "9", "9", "9",
+        "CELL_DATA 3", "SCALARS MaterialIDs int 1", "LOOKUP_TABLE default", "1", "1", "2", "",
+    ]))
+    file = gpu_smooth.MeshFile(tmp_path / "in.vtk")
+    assert file.quadrilaterals.tolist() == [[0, 1, 5, 4], [2, 3, 7, 6]]
+    assert [group.quadrilaterals.tolist() for group in file.groups] == [[0], [1]]
+    assert [group.triangles.tolist() for group in file.groups] == [[], []]
+
+
 @pytest.mark.filterwarnings("ignore:points. the mesh is:gpu_smooth.MeshWarning")
 def test_the_ends_of_groups_stay_where_vertices_slide(tmp_path: Path) -> None:
     # The bottom of a square: an inlet up to x = 0.62, then a wall.

@@ -82,24 +82,31 @@ pub fn vertices_near(topology: &Topology<'_>, triangles: &[u32], rings: u32) -> 
     indices(&found)
 }
 
-/// Returns the vertices whose elements are all in `triangles`, ascending. Vertices that no triangle uses, and vertices of
-/// quadrilaterals, are not included.
-pub fn vertices_inside(topology: &Topology<'_>, triangles: &[u32]) -> Vec<u32> {
-    let all = topology.triangles();
-    let mut chosen = vec![false; all.len()];
-    for &triangle in triangles {
-        if let Some(chosen) = chosen.get_mut(triangle as usize) {
+/// Returns the vertices whose elements are all in `elements`, ascending. Vertices that no element uses are not included.
+/// Elements that the mesh lacks are ignored.
+pub fn vertices_inside(topology: &Topology<'_>, elements: &[Element]) -> Vec<u32> {
+    let triangles = topology.triangles().len();
+    let corners: Vec<[u32; 4]> = topology.quadrilaterals().collect();
+    let mut chosen = vec![false; triangles + corners.len()];
+    for &element in elements {
+        let number = match element {
+            Element::Triangle(index) if index < triangles => index,
+            Element::Quadrilateral(index) => triangles + index,
+            _ => continue,
+        };
+        if let Some(chosen) = chosen.get_mut(number) {
             *chosen = true;
         }
     }
+    let of_triangles = topology.triangles().iter().map(|t| &t[..]);
+    let all = || of_triangles.clone().chain(corners.iter().map(|q| &q[..])).zip(&chosen);
     let mut inside = vec![false; topology.free().len()];
-    for (corners, _) in all.iter().zip(&chosen).filter(|(_, chosen)| **chosen) {
-        corners.iter().for_each(|&vertex| inside[vertex as usize] = true);
+    for (vertices, _) in all().filter(|(_, chosen)| **chosen) {
+        vertices.iter().for_each(|&vertex| inside[vertex as usize] = true);
     }
-    for (corners, _) in all.iter().zip(&chosen).filter(|(_, chosen)| !**chosen) {
-        corners.iter().for_each(|&vertex| inside[vertex as usize] = false);
+    for (vertices, _) in all().filter(|(_, chosen)| !**chosen) {
+        vertices.iter().for_each(|&vertex| inside[vertex as usize] = false);
     }
-    topology.quadrilaterals().flatten().for_each(|vertex| inside[vertex as usize] = false);
     indices(&inside)
 }
 
@@ -152,11 +159,16 @@ mod tests {
     fn vertices_inside_a_region_belong_to_no_triangle_outside() {
         let mesh = strip();
         let topology = Topology::new(&mesh).unwrap();
-        assert_eq!(vertices_inside(&topology, &[0, 1]), [0, 6]);
-        assert_eq!(vertices_inside(&topology, &[2, 3, 0, 1, 1, 77]), [0, 1, 6, 7]);
-        let all: Vec<u32> = (0..10).collect();
-        assert_eq!(vertices_inside(&topology, &all).len(), 12);
-        assert_eq!(vertices_inside(&topology, &[]), []);
+        let inside = |triangles: &[usize]| {
+            let elements: Vec<Element> = triangles.iter().map(|&t| Element::Triangle(t)).collect();
+            vertices_inside(&topology, &elements)
+        };
+        assert_eq!(inside(&[0, 1]), [0, 6]);
+        assert_eq!(inside(&[2, 3, 0, 1, 1, 77]), [0, 1, 6, 7]);
+        let all: Vec<usize> = (0..10).collect();
+        assert_eq!(inside(&all).len(), 12);
+        assert_eq!(inside(&[]), []);
+        assert_eq!(vertices_inside(&topology, &[Element::Quadrilateral(0)]), []);
     }
 
     #[test]

@@ -45,7 +45,7 @@ pub(crate) struct MoveArgs {
     /// to these groups [default: auto; none for compare]
     #[arg(long, value_name = "auto|none|rows=N|within=DISTANCE[,GROUP...]", help_heading = HEADING, value_parser = parse::kept_layers)]
     pub(crate) keep_layers: Option<KeptLayers>,
-    /// Let only vertices move whose triangles all belong to these groups
+    /// Let only vertices move whose elements all belong to these groups
     #[arg(long, value_name = "NAME|TAG,...", help_heading = HEADING, value_parser = parse::group_names, allow_hyphen_values = true)]
     pub(crate) only: Vec<String>,
 }

@@ -57,7 +57,7 @@ fn as_json(group: &Group, spelling: &str) -> serde_json::Value {
         "points": group.points,
         "lines": group.lines,
         "triangles": group.triangles().len(),
-        "quadrilaterals": group.quadrilaterals,
+        "quadrilaterals": group.quadrilaterals().len(),
         "vertices": group.vertices().len(),
     })
 }
@@ -78,7 +78,7 @@ fn table(groups: &Groups) -> String {
     };
     let counts = |group: &Group| {
         let (triangles, vertices) = (group.triangles().len(), group.vertices().len());
-        [group.points, group.lines, triangles, group.quadrilaterals, vertices]
+        [group.points, group.lines, triangles, group.quadrilaterals().len(), vertices]
     };
     let is_used = |column: usize| groups.iter().any(|group| counts(group)[column] > 0);
     let names = ["points", "lines", "triangles", "quadrilaterals", "vertices"];

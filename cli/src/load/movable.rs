@@ -1,8 +1,10 @@
 //! Selection of the movable vertices of a mesh.
 
+use std::collections::HashSet;
+
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{Topology, front_ends::select};
+use gpu_smooth::{Element, Topology, front_ends::select};
 use mesh_io::Groups;
 
 use crate::load::explain;
@@ -182,17 +184,19 @@ impl<'f> SelectionResolver<'f> {
         let of_all = self.topology.free_count();
         if !request.only.is_empty() {
             let groups = self.groups()?;
-            let (mut triangles, mut names) = (Vec::new(), Vec::new());
+            let (mut triangles, mut quadrilaterals) = (Vec::new(), Vec::new());
+            let mut names = Vec::new();
             for text in &request.only {
                 for (name, group) in named(file, &groups, "--only", text)? {
-                    if group.triangles().is_empty() {
+                    if group.triangles().is_empty() && group.quadrilaterals().is_empty() {
                         return Err(refusal(file, "--only", &format!("{group} has no triangles")));
                     }
                     triangles.extend_from_slice(group.triangles());
+                    quadrilaterals.extend_from_slice(group.quadrilaterals());
                     names.push(format!("{name} ({group})"));
                 }
             }
-            let vertices = select::vertices_inside(&self.topology, &triangles);
+            let vertices = self.inside(&triangles, &quadrilaterals);
             let free = self.free_among(&vertices);
             choice.notes.push(format!("--only {}: {}", names.join(", "), may_move(free, of_all)));
             lists.push(vertices);
@@ -221,6 +225,20 @@ impl<'f> SelectionResolver<'f> {
             lists.push(vertices);
         }
         Ok(lists)
+    }
+
+    /// Returns the vertices whose elements are all among triangles and quadrilaterals of the file, given by their indices.
+    fn inside(&self, triangles: &[u32], quadrilaterals: &[u32]) -> Vec<u32> {
+        let mut elements: Vec<Element> =
+            triangles.iter().map(|&index| Element::Triangle(index as usize)).collect();
+        if self.file.domain.moves_quadrilaterals() {
+            // The mesh lacks quadrilaterals of the file that list a vertex twice.
+            let chosen: HashSet<usize> = quadrilaterals.iter().map(|&q| q as usize).collect();
+            let of_file = self.file.source.proper_quadrilaterals().enumerate();
+            let chosen = of_file.filter(|(_, (index, _))| chosen.contains(index));
+            elements.extend(chosen.map(|(index, _)| Element::Quadrilateral(index)));
+        }
+        select::vertices_inside(&self.topology, &elements)
     }
 
     /// Returns the word for an element of the mesh.

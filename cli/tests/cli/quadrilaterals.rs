@@ -98,6 +98,63 @@ fn vertices_between_regions_of_quadrilaterals_stay() {
 }
 
 #[test]
+fn groups_have_quadrilaterals_and_choose_which_vertices_move() {
+    let halves = |k: usize| 1 + usize::from(k % 10 >= 5);
+    for cut in [(|_| false) as fn(usize) -> bool, |k| k % 10 < 5] {
+        let folder = Folder::new(&[("in.vtk", &vtk(10, cut, halves))]);
+        let listed = folder.line("groups in.vtk --json");
+        let told: serde_json::Value = serde_json::from_str(&listed.out).unwrap();
+        assert_eq!(told["groups"][1]["quadrilaterals"], 50, "{told}");
+        let run = folder.line("in.vtk out.vtk --engine cpu --only 2");
+        assert_holds(&run.err, &["--only 2 (MaterialIDs surface 2): 36 of 72 free vertices"]);
+        let compared = folder.line("compare in.vtk out.vtk --only 2");
+        assert_holds(&compared.out, &["36 of 121 vertices have moved"]);
+    }
+}
+
+#[test]
+fn a_quadrilateral_that_lists_a_vertex_twice_shifts_no_place() {
+    // The second quadrilateral loses a vertex, and the last is the only one of its region.
+    let text = vtk(4, |_| false, |k| 1 + usize::from(k == 15));
+    let degenerate = text.replacen("\n4 1 2 7 6\n", "\n4 1 7 7 6\n", 1);
+    assert_ne!(degenerate, text);
+    let folder = Folder::new(&[("in.vtk", &degenerate)]);
+    let quality = folder.line("quality in.vtk --by-region --json --worst 16");
+    assert_eq!(quality.code, Some(0), "{}", quality.err);
+    let told: serde_json::Value = serde_json::from_str(&quality.out).unwrap();
+    let last = told["worst"].as_array().unwrap().iter();
+    let last = last
+        .map(|worst| worst["quadrilateral"].as_u64().unwrap_or_else(|| panic!("{worst}")))
+        .max();
+    assert_eq!((told["worst"].as_array().unwrap().len(), last), (15, Some(15)), "{told}");
+    let counts: Vec<u64> = told["regions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|region| region["quadrilaterals"].as_u64().unwrap())
+        .collect();
+    assert_eq!(counts, [14, 1], "{told}");
+}
+
+#[test]
+fn runs_continue_from_checkpoints_to_the_same_bits() {
+    let folder = Folder::new(&[("in.vtk", &vtk(10, |k| k % 3 == 0, |_| 1))]);
+    for engine in ["cpu", "gpu"] {
+        let line = format!("in.vtk {engine}.vtk --engine {engine} --tolerance 0 --quiet");
+        assert_eq!(folder.line(&format!("{line} --max-sweeps 12")).code, Some(0));
+        let whole = folder.text(&format!("{engine}.vtk"));
+        std::fs::remove_file(folder.path(&format!("{engine}.vtk"))).unwrap();
+        let begun = format!(
+            "{line} --max-sweeps 12 --time-limit 1e-9 --checkpoint c --checkpoint-every 1e-9"
+        );
+        assert_eq!(folder.line(&begun).code, Some(0));
+        let run = folder.line(&format!("{line} --max-sweeps 12 --continue c"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_eq!(folder.text(&format!("{engine}.vtk")), whole, "{engine}");
+    }
+}
+
+#[test]
 fn a_concave_quadrilateral_is_refused_with_its_place() {
     let text = vtk(4, |_| false, |_| 1);
     let line = text.lines().nth(5 + 6).unwrap();

@@ -25,8 +25,7 @@ pub struct Group {
     pub points: usize,
     /// Number of line elements, without the segments of polylines.
     pub lines: usize,
-    /// Number of quadrilaterals.
-    pub quadrilaterals: usize,
+    pub(crate) quadrilaterals: Vec<u32>,
     pub(crate) triangles: Vec<u32>,
     pub(crate) vertices: Vec<u32>,
     /// Edges of line elements and polylines, each once: the smaller vertex first, ascending.
@@ -37,6 +36,12 @@ impl Group {
     /// Returns the indices of the group's triangles in [`MeshFile::triangles`](crate::MeshFile::triangles), ascending.
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
+    }
+
+    /// Returns the indices of the group's quadrilaterals in [`MeshFile::quadrilaterals`](crate::MeshFile::quadrilaterals),
+    /// ascending.
+    pub fn quadrilaterals(&self) -> &[u32] {
+        &self.quadrilaterals
     }
 
     /// Returns the indices of the vertices of all elements of the group, and of single vertices in the group, in
@@ -52,12 +57,12 @@ impl Group {
 
     /// Returns whether both groups consist of the same elements. False for groups without vertices.
     fn equals(&self, other: &Group) -> bool {
-        let elements =
-            |group: &Group| (group.dimension, group.points, group.lines, group.quadrilaterals);
+        let elements = |group: &Group| (group.dimension, group.points, group.lines);
         !self.vertices.is_empty()
             && elements(self) == elements(other)
             && self.vertices == other.vertices
             && self.triangles == other.triangles
+            && self.quadrilaterals == other.quadrilaterals
     }
 
     /// Returns the word for the group's dimension: `point`, `line` or `surface`.
@@ -209,7 +214,7 @@ mod tests {
 
     fn group(kind: &str, dimension: u8, name: Option<&str>, tag: Option<i64>) -> Group {
         let name = name.map(str::to_owned);
-        let (points, lines, quadrilaterals) = (0, 0, 0);
+        let (points, lines, quadrilaterals) = (0, 0, Vec::new());
         let (triangles, vertices, edges) = (Vec::new(), Vec::new(), Vec::new());
         Group {
             kind: kind.into(),

@@ -121,15 +121,19 @@ fn add_regions(table: &mut GroupTable, content: &Content, array: &str) {
     if table.has_kind(array) {
         return;
     }
-    let mut triangles = 0;
+    let (mut triangles, mut quadrilaterals) = (0, 0);
     for cell in content.cells() {
         for group in cell.groups().filter(|group| group.kind == common_kind(array)) {
             let number = table.number(array, group.dimension, &group.label);
             match cell.kind {
                 CellKind::Triangle => table.add_triangle(number, triangles),
+                CellKind::Quadrilateral => {
+                    table.add_quadrilateral(number, quadrilaterals, cell.vertices);
+                }
                 kind => table.add(number, kind, cell.vertices),
             }
         }
         triangles += u32::from(cell.kind == CellKind::Triangle);
+        quadrilaterals += u32::from(cell.kind == CellKind::Quadrilateral);
     }
 }

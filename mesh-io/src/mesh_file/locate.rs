@@ -73,15 +73,18 @@ impl MeshFile {
         self.locations(&wanted, found).collect()
     }
 
-    /// Returns the locations of the vertex lists of [quadrilaterals](crate::MeshFile::quadrilaterals), by 0-based index. A
-    /// single reading of the file finds all locations. Indices out of range are left out.
+    /// Returns the locations of the vertex lists of quadrilaterals, by 0-based index among those of four different vertices
+    /// ([`proper_quadrilaterals`](crate::MeshFile::proper_quadrilaterals)). A single reading of the file finds all locations.
+    /// Indices out of range are left out.
     pub fn quadrilateral_locations(
         &self,
         indices: impl IntoIterator<Item = usize>,
     ) -> BTreeMap<usize, SourceLocation> {
         let mut wanted: Vec<usize> = indices.into_iter().collect();
-        keep_ascending(&mut wanted, self.quadrilaterals().len());
-        let found = locate(self.reader(), self.source(), ItemList::Quadrilaterals, &wanted);
+        let of_file: Vec<usize> = self.proper_quadrilaterals().map(|(index, _)| index).collect();
+        keep_ascending(&mut wanted, of_file.len());
+        let places: Vec<usize> = wanted.iter().map(|&index| of_file[index]).collect();
+        let found = locate(self.reader(), self.source(), ItemList::Quadrilaterals, &places);
         self.locations(&wanted, found).collect()
     }
 

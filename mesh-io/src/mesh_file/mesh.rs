@@ -103,6 +103,13 @@ impl MeshFile {
         &self.parsed.quadrilaterals
     }
 
+    /// Returns the quadrilaterals of four different vertices, each with its index in [`quadrilaterals`](Self::quadrilaterals).
+    pub fn proper_quadrilaterals(&self) -> impl Iterator<Item = (usize, &[u32; 4])> {
+        let is_proper =
+            |(_, corners): &(usize, &[u32; 4])| (1..4).all(|k| !corners[..k].contains(&corners[k]));
+        self.quadrilaterals().iter().enumerate().filter(is_proper)
+    }
+
     /// Returns the lines, points, other elements and periodic pairs of the file.
     pub fn constraints(&self) -> &Constraints {
         &self.parsed.constraints

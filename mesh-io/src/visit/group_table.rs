@@ -37,7 +37,7 @@ impl GroupTable {
                 tag,
                 points: 0,
                 lines: 0,
-                quadrilaterals: 0,
+                quadrilaterals: Vec::new(),
                 triangles: Vec::new(),
                 vertices: Vec::new(),
                 edges: Vec::new(),
@@ -52,7 +52,14 @@ impl GroupTable {
         self.groups[group].group.triangles.push(triangle);
     }
 
-    /// Adds the vertices of an element other than a triangle to a group, and counts the element.
+    /// Adds a quadrilateral to a group. Quadrilaterals must come in ascending order.
+    pub(crate) fn add_quadrilateral(&mut self, group: usize, index: u32, vertices: &[u32]) {
+        let GroupMembers { group, others } = &mut self.groups[group];
+        group.quadrilaterals.push(index);
+        others.extend_from_slice(vertices);
+    }
+
+    /// Adds the vertices of an element other than a triangle or quadrilateral to a group, and counts the element.
     pub(crate) fn add(&mut self, group: usize, kind: CellKind, vertices: &[u32]) {
         let GroupMembers { group, others } = &mut self.groups[group];
         match kind {
@@ -61,8 +68,7 @@ impl GroupTable {
                 group.lines += 1;
                 group.edges.extend(vertices.windows(2).map(|ends| [ends[0], ends[1]]));
             }
-            CellKind::Triangle | CellKind::Polygon => {}
-            CellKind::Quadrilateral => group.quadrilaterals += 1,
+            CellKind::Triangle | CellKind::Quadrilateral | CellKind::Polygon => {}
         }
         others.extend_from_slice(vertices);
     }

@@ -30,7 +30,9 @@ pub(crate) fn vertex_ids(reader: &ReaderFunctions, source: &Source) -> Result<Ve
 struct GroupVisitor {
     table: GroupTable,
     ids: IdIndexBuilder,
+    /// Numbers of triangles and of quadrilaterals that have been visited.
     triangles: u32,
+    quadrilaterals: u32,
     /// Vertices of the last element other than a triangle.
     vertices: Vec<u32>,
     columns: Vec<RegionAttribute>,
@@ -94,6 +96,7 @@ impl MeshVisitor for GroupVisitor {
             self.vertices.clear();
             let index = |&node: &u64| self.ids.index(node);
             self.vertices.extend(nodes[..kind.nodes()].iter().filter_map(index));
+            self.quadrilaterals += u32::from(kind == CellKind::Quadrilateral);
         }
         self.further_region(kind, region);
         Ok(())
@@ -104,6 +107,10 @@ impl MeshVisitor for GroupVisitor {
         for &group in &self.of_element {
             match kind {
                 CellKind::Triangle => self.table.add_triangle(group, self.triangles - 1),
+                CellKind::Quadrilateral => {
+                    let index = self.quadrilaterals - 1;
+                    self.table.add_quadrilateral(group, index, &self.vertices);
+                }
                 _ => self.table.add(group, kind, &self.vertices),
             }
         }

@@ -13,7 +13,7 @@ use std::sync::Mutex;
 /// Returns the content of a group: dimension, name, triangles, and numbers of lines and quadrilaterals.
 fn held(group: &Group) -> (u8, Option<String>, Vec<u32>, usize, usize) {
     let triangles = group.triangles().to_vec();
-    (group.dimension, group.name.clone(), triangles, group.lines, group.quadrilaterals)
+    (group.dimension, group.name.clone(), triangles, group.lines, group.quadrilaterals().len())
 }
 
 /// Converts a mesh to every format and reads the result: the whole content must come back unless a loss is reported.
@@ -58,7 +58,8 @@ fn check(file: &MeshFile, folder: &Folder) -> usize {
         let after: Vec<_> = after.iter().map(held).collect();
         // Tag 0 is not a group in every format, and physical groups, if there are any, replace entities.
         let is_kept = |group: &&Group| {
-            let is_points = group.lines + group.triangles().len() + group.quadrilaterals == 0;
+            let is_points =
+                group.lines + group.triangles().len() + group.quadrilaterals().len() == 0;
             // OBJ puts lines into the groups of faces, and chains of nodes count as points.
             let is_points =
                 is_points || (matches!(name, "obj" | "2dm" | "adcirc") && group.dimension < 2);

@@ -16,7 +16,8 @@ fn told(file: &MeshFile) -> Vec<String> {
     let spellings = groups.unique_names();
     let one = |(group, spelling): (&mesh_io::Group, &String)| {
         assert_eq!(groups.find(spelling), Ok(group));
-        let counts = [group.points, group.lines, group.triangles().len(), group.quadrilaterals];
+        let counts =
+            [group.points, group.lines, group.triangles().len(), group.quadrilaterals().len()];
         format!("{spelling} = {group}: {counts:?} {:?}", group.vertices())
     };
     groups.iter().zip(&spellings).map(one).collect()

@@ -222,7 +222,7 @@ fn pieces_and_polygons_are_read_and_come_back() {
             (0..mesh.triangles.len()).map(|t| (t % first.triangles.len()) as u32 / 30).collect();
         assert_eq!(file.regions(), Some(regions.as_slice()), "{style:?}");
         let groups = file.groups().unwrap();
-        assert!(groups.iter().any(|group| group.quadrilaterals == meshes.len()));
+        assert!(groups.iter().any(|group| group.quadrilaterals().len() == meshes.len()));
         file.write(&folder.path(names[1]), &mesh.points).unwrap();
         assert!(fs::read(folder.path(names[1])).unwrap() == bytes, "{style:?}");
 

@@ -10,7 +10,7 @@ use gpu_smooth::{
     measure::{Measure, Measured, Statistics},
     topology::BadTriangle,
 };
-use mesh_io::{Group, Groups};
+use mesh_io::{Group, Groups, MeshFile};
 
 use crate::args::QualityArgs;
 use crate::commands::quality::worst::{WorstPart, worst};
@@ -232,7 +232,9 @@ fn regions(
         Some(regions) => regions.to_vec(),
         None => vec![0; triangles],
     };
-    let of_quadrilaterals = file.source.quadrilateral_regions().iter().copied();
+    let of_file = file.source.quadrilateral_regions();
+    let proper = file.source.proper_quadrilaterals();
+    let of_quadrilaterals = proper.filter_map(|(index, _)| of_file.get(index).copied());
     // Without regions of the file, all elements are of one region.
     regions
         .extend(of_quadrilaterals.chain(std::iter::repeat(0)).take(measured.count() - triangles));
@@ -250,7 +252,7 @@ fn regions(
     let known: Vec<(Element, [usize; 2], Vec<Statistics>)> = known.collect();
     let first: Vec<Element> = known.iter().map(|(first, ..)| *first).collect();
     let groups = file.source.groups()?;
-    let named = groups_of(&first, &groups).into_iter();
+    let named = groups_of(&first, &groups, &file.source).into_iter();
     let places = Place::of_elements(&file.source, &first).into_iter();
     let mut regions = Vec::with_capacity(known.len());
     for ((first, groups), (_, counts, statistics)) in places.zip(named).zip(known) {
@@ -261,18 +263,21 @@ fn regions(
 }
 
 /// Returns the groups of each element in `elements`, named groups first. All triangles of a region belong to equal
-/// groups, so one triangle represents its region. Groups do not list their quadrilaterals.
-fn groups_of(elements: &[Element], groups: &Groups) -> Vec<Vec<GroupNames>> {
-    // One pass over each group's triangles suffices, though the mesh may have as many regions as groups.
-    let triangle = |(element, k): (&Element, usize)| match *element {
-        Element::Triangle(index) => Some((index as u32, k)),
-        Element::Quadrilateral(_) => None,
+/// groups, and so do all quadrilaterals, so one element represents its region.
+fn groups_of(elements: &[Element], groups: &Groups, file: &MeshFile) -> Vec<Vec<GroupNames>> {
+    // One pass over each group's elements suffices, though the mesh may have as many regions as groups.
+    let proper: Vec<usize> = file.proper_quadrilaterals().map(|(index, _)| index).collect();
+    let of_file = |element: &Element| match *element {
+        Element::Triangle(index) => Element::Triangle(index),
+        Element::Quadrilateral(index) => Element::Quadrilateral(proper[index]),
     };
-    let asked: HashMap<u32, usize> = elements.iter().zip(0..).filter_map(triangle).collect();
+    let asked: HashMap<Element, usize> = elements.iter().map(of_file).zip(0..).collect();
     let mut found: Vec<Vec<(&Group, GroupNames)>> = vec![Vec::new(); elements.len()];
     for (group, spelling) in groups.iter().zip(groups.unique_names()) {
+        let triangles = group.triangles().iter().map(|&t| Element::Triangle(t as usize));
+        let others = group.quadrilaterals().iter().map(|&q| Element::Quadrilateral(q as usize));
         let regions: Vec<usize> =
-            group.triangles().iter().filter_map(|t| asked.get(t)).copied().collect();
+            triangles.chain(others).filter_map(|element| asked.get(&element)).copied().collect();
         for &region in &regions {
             let kind = format!("{} {}", group.kind, group.dimension_name());
             let spelling = spelling.clone();
