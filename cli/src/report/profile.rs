@@ -128,11 +128,11 @@ impl ProfileReport {
                 let _ = write!(text, "  {value}{unit}, {}", worst.place);
             }
         }
-        self.explained(&text)
+        self.explained(&text, false)
     }
 
     /// Returns a table of the mesh before and after a run, where `self` is the mesh after.
-    fn table_after(&self, before: &Self) -> String {
+    fn table_after(&self, before: &Self, is_by_acute: bool) -> String {
         let quantity = self.width();
         let width = LimitReport::HEAD.len() + 2 + VALUE;
         let name = format!("limits of {}", self.name);
@@ -150,7 +150,7 @@ impl ProfileReport {
                 let _ = write!(text, "  {:>VALUE$}{}", worst.unwrap_or_default(), limit.numbers());
             }
         }
-        self.explained(&text)
+        self.explained(&text, is_by_acute)
     }
 
     /// Returns the width of the column of quantities, in characters.
@@ -167,8 +167,8 @@ impl ProfileReport {
     }
 
     /// Returns a table without blanks at the ends of its lines, a line on quadrilaterals, and a line for each reason of edges
-    /// beyond limits.
-    fn explained(&self, table: &str) -> String {
+    /// beyond limits. `is_by_acute` tells whether the mesh comes from a run by a metric that mends edges.
+    fn explained(&self, table: &str, is_by_acute: bool) -> String {
         let mut lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
         if self.quadrilaterals > 0 {
             let count = self.quadrilaterals;
@@ -180,7 +180,7 @@ impl ProfileReport {
             lines.push("edges beyond the limits, by reason".to_owned());
         }
         lines.extend(self.reasons.iter().map(|Reason { why, warned, failed }| {
-            format!("{failed:>9} fail{warned:>9} warn  {}", Reason::words(*why))
+            format!("{failed:>9} fail{warned:>9} warn  {}", Reason::words(*why, is_by_acute))
         }));
         lines.join("\n")
     }
@@ -301,12 +301,15 @@ impl LimitReport {
 pub(crate) struct ProfileChange {
     pub(crate) before: ProfileReport,
     pub(crate) after: ProfileReport,
+    /// Whether the run had a metric that mends edges.
+    #[serde(skip)]
+    pub(crate) is_by_acute: bool,
 }
 
 impl ProfileChange {
     /// Returns a table with a line for each limit, and the reasons of edges that are beyond limits after the run.
     pub(crate) fn table(&self) -> String {
-        self.after.table_after(&self.before)
+        self.after.table_after(&self.before, self.is_by_acute)
     }
 }
 

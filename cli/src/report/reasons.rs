@@ -59,8 +59,9 @@ fn reason(quantities: &Quantities<'_>, edge: &InnerEdge) -> Option<WhyLarge> {
 }
 
 impl Reason {
-    /// Returns the description and the remedies of a reason.
-    pub(crate) fn words(why: Option<WhyLarge>) -> &'static str {
+    /// Returns the description and the remedies of a reason. `is_by_acute` tells whether the mesh comes from a run by a metric
+    /// that mends edges.
+    pub(crate) fn words(why: Option<WhyLarge>, is_by_acute: bool) -> &'static str {
         match why {
             Some(WhyLarge::AllFixed) => {
                 "a triangle of three fixed corners: slide, swap an edge or refine"
@@ -69,6 +70,7 @@ impl Reason {
                 "a vertex inside with three or four triangles: swap an edge or refine"
             }
             Some(WhyLarge::WideFan) => "a wide fan at a fixed vertex: slide or refine",
+            _ if is_by_acute => "nothing known prevents it: slide, swap an edge or refine",
             _ => "nothing known prevents it: a run by acute mends most",
         }
     }

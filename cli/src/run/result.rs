@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use gpu_smooth::measure::{Change, Measured};
-use gpu_smooth::{Quality, Topology};
+use gpu_smooth::{Metric, Quality, Topology};
 use mesh_io::PointField;
 
 use crate::error::CliError;
@@ -87,7 +87,9 @@ fn profile(
         Ok(ProfileReport::new(profile, &Quantities::new(file, &measured, depths)))
     };
     let (before, after) = (report(&file.mesh().points, &[])?, report(points, fields)?);
-    Ok(Some(ProfileChange { before, after }))
+    let base = request.scheme().base();
+    let is_by_acute = matches!(base, Metric::Acute | Metric::AcuteSize);
+    Ok(Some(ProfileChange { before, after, is_by_acute }))
 }
 
 /// Writes a smoothed mesh, and proves the statements of the report from the files. Removes the checkpoint unless the
