@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::load::plane::{likewise, of_file, remark};
 use gpu_smooth::{
-    Mesh, MeshError, Topology,
+    Element, Mesh, MeshError, Topology,
     front_ends::{Chart, Plane},
     options::Precision,
 };
@@ -53,6 +53,17 @@ impl LoadedMesh {
     /// Returns the paths of all files that were read.
     pub(crate) fn paths(&self) -> Vec<PathBuf> {
         self.source.paths().map(Path::to_path_buf).collect()
+    }
+
+    /// Returns the vertices of an element of the mesh.
+    ///
+    /// # Panics
+    /// Panics if the mesh has no such element.
+    pub(crate) fn corners(&self, element: Element) -> &[u32] {
+        match element {
+            Element::Triangle(index) => &self.mesh().triangles[index],
+            Element::Quadrilateral(index) => &self.mesh().quadrilaterals[index],
+        }
     }
 
     /// Returns the mesh to smooth.

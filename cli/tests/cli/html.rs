@@ -151,7 +151,7 @@ fn a_page_needs_nothing_else_and_tells_all_of_the_run() {
     assert!(links == spots.len() && links >= 16, "{links}");
     for (i, spot) in spots.iter().enumerate() {
         let state = spot["state"].as_u64().unwrap() as usize;
-        let corners = corners(&data, state)[spot["triangle"].as_u64().unwrap() as usize];
+        let corners = corners(&data, state)[spot["element"].as_u64().unwrap() as usize];
         let middle =
             [0, 1].map(|axis| corners.iter().map(|corner| corner[axis] / 3.0).sum::<f64>());
         for axis in 0..2 {

@@ -1,4 +1,4 @@
-//! The mesh data for the page's script: the whole mesh, or a picture and the triangles around the worst ones.
+//! The mesh data for the page's script: the whole mesh, or a picture and the elements around the worst ones.
 
 use crate::color_scale::ColorScale;
 use crate::error::CliError;
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use crate::profiles::Profile;
 use crate::render::html::edges::ShownEdges;
 use crate::render::html::page::ViewerMesh;
-use crate::render::html::worst::WorstTriangle;
+use crate::render::html::worst::{WorstElement, number};
 use crate::render::picture::{
     BAD, Extent, FixedFaces, NEUTRAL, Outlines, PALE, VIRIDIS, picture_of,
 };
@@ -48,7 +48,7 @@ pub(crate) fn measures(
 
 /// Limits on the size of a page.
 pub(crate) struct Bounds {
-    /// Largest number of triangles that the page contains completely. Larger meshes are shown by pictures and parts.
+    /// Largest number of elements that the page contains completely. Larger meshes are shown by pictures and parts.
     most: usize,
     /// Longer side of each picture, in pixels.
     pixels: u32,
@@ -57,7 +57,7 @@ pub(crate) struct Bounds {
 /// The default limits, with which a page has at most some 20 MB.
 pub(crate) const BOUNDS: Bounds = Bounds { most: 250_000, pixels: 2000 };
 
-/// Number of triangles shown around each of the worst triangles of a larger mesh.
+/// Number of elements shown around each of the worst elements of a larger mesh.
 const AROUND: usize = 1500;
 
 /// Largest number of boundary edges shown of a larger mesh; also that of edges between regions.
@@ -71,11 +71,12 @@ fn caption(triangles: usize, faces: &FixedFaces, is_whole: bool) -> String {
         (Some(name), 0) => counted(faces.count, name),
         (Some(name), _) => format!("{of_triangles} and {}", counted(faces.count, name)),
     };
+    let kind = if faces.is_empty() { "triangles" } else { "elements" };
     match is_whole {
         true => format!("All {elements}."),
         false => format!(
-            "{elements}, too many for a page: the whole is a picture, where the worst of the triangles that share a pixel \
-             shows. The {AROUND} triangles around each of the worst ones listed below can be enlarged, and have values."
+            "{elements}, too many for a page: the whole is a picture, where the worst of the {kind} that share a pixel \
+             shows. The {AROUND} {kind} around each of the worst ones listed below can be enlarged, and have values."
         ),
     }
 }
@@ -85,7 +86,7 @@ fn caption(triangles: usize, faces: &FixedFaces, is_whole: bool) -> String {
 pub(crate) fn viewer_mesh(
     file: &LoadedMesh,
     states: &[&Measured<'_>],
-    spots: &[WorstTriangle],
+    spots: &[WorstElement],
     measures: &[Measure],
     colors: ColorScale,
     bounds: &Bounds,
@@ -102,14 +103,24 @@ pub(crate) fn viewer_mesh(
         [first, last].map(|state| state.points()),
     );
     let shown = match is_whole {
-        true => (0..topology.triangles().len()).collect(),
-        false => around(topology, spots),
+        true => (0..topology.element_count()).collect(),
+        false => around(file, topology, spots),
     };
+    let of_triangles = shown.partition_point(|&index| index < topology.triangles().len());
+    let (triangles, quadrilaterals) = shown.split_at(of_triangles);
     let extent =
         Extent::of([topology.triangles(), &faces.pieces], &[first.points(), last.points()]);
     let mut part = Part::new(file.mesh().points.len());
-    let corners = shown.iter().flat_map(|&t| topology.triangles()[t]);
-    let triangles: Vec<u32> = corners.map(|v| part.number(v)).collect();
+    let corners = triangles.iter().flat_map(|&t| topology.triangles()[t]);
+    let triangle_corners: Vec<u32> = corners.map(|v| part.number(v)).collect();
+    // A diagonal cuts each quadrilateral into two triangles.
+    let first_quadrilateral = topology.triangles().len();
+    let mesh_quadrilaterals: Vec<[u32; 4]> = topology.quadrilaterals().collect();
+    let corners = quadrilaterals.iter().flat_map(|&index| {
+        let [a, b, c, d] = mesh_quadrilaterals[index - first_quadrilateral];
+        [a, b, c, a, c, d]
+    });
+    let halves: Vec<u32> = corners.map(|v| part.number(v)).collect();
     let most_edges = if is_whole { usize::MAX } else { MOST_EDGES };
     let edges = |edges: &[[u32; 2]], part: &mut Part| -> Vec<u32> {
         edges.iter().take(most_edges).flatten().map(|&v| part.number(v)).collect()
@@ -127,11 +138,15 @@ pub(crate) fn viewer_mesh(
     // Pictures show the faces of larger meshes.
     let (pieces, face_edges) =
         if is_whole { (&faces.pieces[..], &faces.edges[..]) } else { (&[][..], &[][..]) };
-    let pieces: Vec<u32> = pieces.as_flattened().iter().map(|&v| part.number(v)).collect();
-    let face_edges = face_edges.iter().flat_map(|edge| {
+    // Quadrilaterals that are elements are shown by their values.
+    let others: Vec<usize> = (0..pieces.len()).filter(|&k| !faces.is_of_element(k)).collect();
+    let pieces: Vec<u32> = others.iter().flat_map(|&k| pieces[k]).map(|v| part.number(v)).collect();
+    let face_edges = face_edges.iter().filter_map(|edge| {
+        let piece = others.binary_search(&edge.piece).ok()?;
         let [a, b] = edge.ends.map(|v| part.number(v));
-        [edge.piece as u32, a, b]
+        Some([piece as u32, a, b])
     });
+    let face_edges = face_edges.flatten();
     let face_edges: Vec<u32> = face_edges.collect();
     let colored = ShownEdges::of(states, &shown, measures);
     let edges: Vec<u32> = colored.ends().flatten().map(|v| part.number(v)).collect();
@@ -140,6 +155,7 @@ pub(crate) fn viewer_mesh(
         json!({
             "name": measure.name(), "unit": measure.definition().unit,
             "of_edges": measure.is_of_edges(),
+            "of_quadrilaterals": measure.of_quadrilateral(),
             // The values at the bad and the good end of the scale.
             "ends": scale.ends(),
             "ticks": scale.ticks().into_iter()
@@ -160,15 +176,15 @@ pub(crate) fn viewer_mesh(
             "points": part.points(state.points()),
             "values": values(topology, state, &shown, measures)?,
             "edge_values": measures.iter().map(of_edges).collect::<Vec<_>>(),
-            // A picture by each measure; empty if the page contains all triangles.
+            // A picture by each measure; empty if the page contains all elements.
             "pictures": pictures.par_iter().map(draw).collect::<Result<Vec<_>, CliError>>()?,
         }));
     }
     let corners: Vec<Value> = spots
         .iter()
         .map(|spot| {
-            let at = shown.iter().position(|&t| t == spot.triangle);
-            json!({ "triangle": at, "state": spot.state, "at": spot.at, "size": spot.size })
+            let at = shown.binary_search(&number(topology, spot.element)).ok();
+            json!({ "element": at, "state": spot.state, "at": spot.at, "size": spot.size })
         })
         .collect();
     let data = json!({
@@ -180,8 +196,10 @@ pub(crate) fn viewer_mesh(
         // The index of the measure that the page shows first.
         "first": measures.iter().position(|&measure| measure == colors.measure()),
         "extent": [extent.low, extent.high],
-        "triangles": indices(&triangles),
-        // Two vertices for each edge between triangles, if a measure is one of edges.
+        "triangles": indices(&triangle_corners),
+        // Two triangles for each quadrilateral a, b, c, d: a, b, c and a, c, d.
+        "halves": indices(&halves),
+        // Two vertices for each edge between elements, if a measure is one of edges.
         "edges": indices(&edges),
         "boundary": indices(&boundary),
         "between": indices(&between),
@@ -193,21 +211,21 @@ pub(crate) fn viewer_mesh(
         "face": faces.name(),
         "states": both,
         "spots": corners,
-        "ids": ids(file, &shown),
+        "ids": ids(file, triangles, quadrilaterals, first_quadrilateral),
     });
     let mut caption = caption(topology.triangles().len(), &faces, is_whole);
     if let Some(axes) = file.plane().and_then(axes_legend) {
         caption += &format!(" Axes: {axes}.");
     }
     let is_tangled = (states.iter())
-        .map(|state| Ok(!topology.bad_triangles(state.points())?.is_empty()))
+        .map(|state| Ok(!bad(topology, state.points())?.is_empty()))
         .collect::<Result<Vec<bool>, CliError>>()?;
     let signs = [
         (true, "boundary", "boundary"),
         (!between.is_empty(), "between", "between regions"),
         (!held.is_empty(), "held", "fixed vertex inside"),
         (!slid.is_empty(), "slid", "vertex that slid"),
-        (!faces.is_empty(), "face", faces.name().unwrap_or_default()),
+        (!pieces.is_empty(), "face", faces.name().unwrap_or_default()),
         (is_tangled.contains(&true), "bad", "inverted or flat"),
         (!spots.is_empty(), "spot", "among the worst"),
     ];
@@ -215,13 +233,22 @@ pub(crate) fn viewer_mesh(
     Ok(ViewerMesh { caption, signs: signs.collect(), data })
 }
 
-/// Returns the ids that the file gives to triangles, as runs of consecutive ids: for each run, the position in `shown` of
-/// its first triangle, and the id. `shown` is ascending.
-fn ids(file: &LoadedMesh, shown: &[usize]) -> Vec<[u64; 2]> {
-    let locations = file.source.triangle_locations(shown.iter().copied());
+/// Returns the ids that the file gives to the shown triangles, and then to the shown quadrilaterals, whose numbers begin at
+/// `first_quadrilateral`, as runs of consecutive ids: for each run, the position of its first element, and the id. Numbers
+/// ascend.
+fn ids(
+    file: &LoadedMesh,
+    triangles: &[usize],
+    quadrilaterals: &[usize],
+    first_quadrilateral: usize,
+) -> Vec<[u64; 2]> {
+    let locations = file.source.triangle_locations(triangles.iter().copied());
+    let of_others = quadrilaterals.iter().map(|index| index - first_quadrilateral);
+    let others = file.source.quadrilateral_locations(of_others);
+    let all = locations.values().chain(others.values()).map(|place| place.id);
     let mut runs = Vec::new();
     let mut next = None;
-    for (at, id) in (0..).zip(shown.iter().map(|t| locations[t].id)) {
+    for (at, id) in (0..).zip(all) {
         if next != Some(id) {
             runs.push([at, id]);
         }
@@ -239,16 +266,23 @@ fn indices(numbers: &[u32]) -> String {
     encoded(numbers.iter().map(|number| number.to_le_bytes()))
 }
 
-/// Returns a Base64 string for each measure with the values of the shown triangles in single precision, NaN for inverted
-/// and flat triangles.
+/// Returns the numbers of the triangles that are inverted or flat, and of the quadrilaterals that are not convex.
+fn bad(topology: &Topology<'_>, points: &[[f64; 2]]) -> Result<HashSet<usize>, CliError> {
+    let triangles = topology.bad_triangles(points)?.into_iter().map(|bad| bad.triangle);
+    let others = topology.bad_quadrilaterals(points)?.into_iter();
+    let others = others.map(|bad| topology.triangles().len() + bad.quadrilateral);
+    Ok(triangles.chain(others).collect())
+}
+
+/// Returns a Base64 string for each measure with the values of the shown elements in single precision, NaN for triangles that
+/// are inverted or flat and quadrilaterals that are not convex.
 fn values(
     topology: &Topology<'_>,
     state: &Measured<'_>,
     shown: &[usize],
     measures: &[Measure],
 ) -> Result<Vec<String>, CliError> {
-    let bad = topology.bad_triangles(state.points())?;
-    let bad: HashSet<usize> = bad.into_iter().map(|bad| bad.triangle).collect();
+    let bad = bad(topology, state.points())?;
     let of = |&measure: &Measure| {
         let value = |&t: &usize| match bad.contains(&t) {
             true => f32::NAN,
@@ -259,21 +293,21 @@ fn values(
     Ok(measures.iter().map(of).collect())
 }
 
-/// Returns the triangles around each spot, ascending and without repeats. Triangles are added in order of their
+/// Returns the numbers of the elements around each spot, ascending and without repeats. Elements are added in order of their
 /// distance from the spot, counted in rings.
-fn around(topology: &Topology<'_>, spots: &[WorstTriangle]) -> Vec<usize> {
+fn around(file: &LoadedMesh, topology: &Topology<'_>, spots: &[WorstElement]) -> Vec<usize> {
     let mut all = HashSet::new();
     for spot in spots {
-        let (mut met, mut queue) = (HashSet::from([spot.triangle]), vec![spot.triangle]);
+        let (mut met, mut queue) = (HashSet::from([spot.element]), vec![spot.element]);
         let mut next = 0;
         while next < queue.len() && queue.len() < AROUND {
-            for &v in &topology.triangles()[queue[next]] {
-                let star = topology.star(v).iter().map(|&t| t as usize);
-                queue.extend(star.filter(|&t| met.insert(t)));
+            for &v in file.corners(queue[next]) {
+                let star = topology.star(v).iter().map(|&corner| topology.element(corner));
+                queue.extend(star.filter(|&element| met.insert(element)));
             }
             next += 1;
         }
-        all.extend(queue);
+        all.extend(queue.into_iter().map(|element| number(topology, element)));
     }
     let mut all: Vec<usize> = all.into_iter().collect();
     all.sort_unstable();
@@ -314,6 +348,7 @@ impl Part {
 mod tests {
     use super::*;
     use crate::render::html::worst;
+    use gpu_smooth::Element;
     use mesh_io::MeshFile;
     use std::path::Path;
 
@@ -333,6 +368,65 @@ mod tests {
         }
         let bytes = (text + "$EndElements\n").into_bytes();
         LoadedMesh::new(MeshFile::from_bytes(Path::new("m.msh"), bytes).unwrap())
+    }
+
+    /// Makes a mesh of 80 by 80 squares, each second of them cut into two triangles, with one displaced vertex.
+    fn mixed() -> LoadedMesh {
+        let mut text = "# vtk DataFile Version 3.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\n\
+                        POINTS 6561 double\n"
+            .to_owned();
+        for i in 0..6561 {
+            let (x, y) = (f64::from(i % 81), f64::from(i / 81));
+            text += &format!("{} {y} 0\n", if i == 3000 { x + 0.9 } else { x });
+        }
+        text += "CELLS 9600 41600\n";
+        for i in 0..6400 {
+            let a = i / 80 * 81 + i % 80;
+            let [b, c, d] = [a + 1, a + 82, a + 81];
+            match i % 2 {
+                0 => text += &format!("4 {a} {b} {c} {d}\n"),
+                _ => text += &format!("3 {a} {b} {c}\n3 {a} {c} {d}\n"),
+            }
+        }
+        let types = (0..6400).map(|i| if i % 2 == 0 { "9\n" } else { "5\n5\n" });
+        text += &format!("CELL_TYPES 9600\n{}", types.collect::<String>());
+        let file = MeshFile::from_bytes(Path::new("m.vtk"), text.into_bytes());
+        LoadedMesh::of_elements(file.unwrap())
+    }
+
+    #[test]
+    fn quadrilaterals_are_shown_by_their_values_alone_and_around_the_worst() {
+        let file = mixed();
+        let topology = Topology::new(file.mesh()).unwrap();
+        let state = Measured::new(&file.mesh().points, &topology).unwrap();
+        let spots = worst::spots(&file, [&state; 2]);
+        let is_other = |spot: &WorstElement| matches!(spot.element, Element::Quadrilateral(_));
+        assert!(spots.iter().any(is_other) && !spots.iter().all(is_other));
+        assert_eq!(worst::title(&spots), "Worst elements");
+        for most in [20_000, 9_000] {
+            let bounds = Bounds { most, pixels: 300 };
+            let colors = ColorScale::usual(Measure::Shape);
+            let measures = measures(colors, &[], None);
+            let data = viewer_mesh(&file, &[&state; 2], &spots, &measures, colors, &bounds);
+            let data = data.unwrap().data;
+            let decoded = |text: &Value| BASE64_STANDARD.decode(text.as_str().unwrap()).unwrap();
+            let count = |key: &str| decoded(&data[key]).len() / 4;
+            let (triangles, quadrilaterals) = (count("triangles") / 3, count("halves") / 6);
+            match most {
+                20_000 => assert_eq!([triangles, quadrilaterals], [6400, 3200]),
+                _ => assert!(triangles > 800 && (400..3200).contains(&quadrilaterals)),
+            }
+            assert_eq!(count("pieces"), 0);
+            let values = decoded(&data["states"][0]["values"][0]);
+            assert_eq!(values.len() / 4, triangles + quadrilaterals);
+            for (spot, told) in spots.iter().zip(data["spots"].as_array().unwrap()) {
+                let at = told["element"].as_u64().unwrap() as usize;
+                let value = f32::from_le_bytes(values[4 * at..4 * at + 4].try_into().unwrap());
+                let expected = state.value(Measure::Shape, number(&topology, spot.element));
+                assert_eq!(at >= triangles, is_other(spot));
+                assert!(value == expected as f32 || value.is_nan(), "{value} {expected}");
+            }
+        }
     }
 
     #[test]
@@ -373,7 +467,7 @@ mod tests {
         // The worst triangles touch the displaced vertex, and both forms show them.
         for data in [&whole, &parts] {
             let first = &data["spots"][0];
-            assert!(first["triangle"].is_u64(), "{first}");
+            assert!(first["element"].is_u64(), "{first}");
             let [x, y] = [0, 1].map(|axis| first["at"][axis].as_f64().unwrap());
             assert!((x - 3.0).hypot(y - 37.0) < 2.0, "{x} {y}");
         }

@@ -33,7 +33,7 @@ pub(crate) struct MeshDescription<'a> {
     pub(crate) colors: ColorScale,
     /// The profile whose measures of edges the page can show.
     pub(crate) profile: Option<&'a Profile>,
-    /// Number of listed worst triangles.
+    /// Number of listed worst elements.
     pub(crate) worst: usize,
     /// Whether the page has only this mesh.
     pub(crate) is_alone: bool,
@@ -45,6 +45,8 @@ pub(crate) struct MeshDescription<'a> {
 pub(crate) struct MeshPart {
     sentences: Vec<String>,
     view: MeshView,
+    /// The title of the list in `worst`.
+    worst_title: String,
     worst: String,
     charts: String,
 }
@@ -91,6 +93,7 @@ impl MeshPart {
         Ok(Self {
             sentences,
             view,
+            worst_title: worst::title(&spots),
             worst: worst::list_of_mesh(&spots, by, file.axes(), is_alone),
             charts: format!("<div class=\"charts\">{charts}</div>"),
         })
@@ -133,7 +136,7 @@ fn page(meshes: &[PageEntry<'_>]) -> String {
     }
     page.section("Distribution", &part.charts);
     page.columns(&[
-        &[("Worst triangles", part.worst.clone())],
+        &[(&part.worst_title, part.worst.clone())],
         &[("Statistics", statistics(entry) + &notes)],
     ]);
     page.finish()

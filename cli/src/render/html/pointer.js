@@ -1,5 +1,5 @@
 
-// What follows the pointer: moving and enlarging the view, and the values of the triangle at the pointer.
+// What follows the pointer: moving and enlarging the view, and the values of the element at the pointer.
 
 // The position of the pointer over a canvas in CSS pixels of the window; null elsewhere.
 let pointer = null;
@@ -22,7 +22,7 @@ function found(list, points, [x, y]) {
   return -1;
 }
 
-/** Marks the triangle at the pointer, or else the chosen one of the worst triangles, and shows its values beside it. */
+/** Marks the element at the pointer, or else the chosen one of the worst elements, and shows its values beside it. */
 function inspect() {
   const spot = data.spots[view.spot], index = pointer ? canvases.indexOf(pointer.canvas) : (spot?.state ?? 0);
   const canvas = canvases[index], { points } = states[index];
@@ -31,19 +31,19 @@ function inspect() {
     const [dx, dy] = fromMiddle(canvas, pointer);
     at = [view.x + dx / view.scale, view.y - dy / view.scale];
   } else if (spot) at = spot.at;
-  marked = !at ? -1 : pointer ? found(triangles, points, at) : spot.triangle;
+  marked = !at ? -1 : pointer ? elementOf(found(triangles, points, at)) : spot.element;
   remark();
   if (!at) return hideTip();
   // A box of the canvas, as the figure also has a caption.
   const x = canvas.clientWidth / 2 + (at[0] - view.x) * view.scale, y = canvas.clientHeight / 2 - (at[1] - view.y) * view.scale;
   if (x < 0 || y < 0 || x > canvas.clientWidth || y > canvas.clientHeight) return hideTip();
-  // The box does not hide a chosen triangle.
+  // The box does not hide a chosen element.
   const gap = pointer ? undefined : Math.max(16, 0.6 * spot.size * view.scale);
   showTip(canvas.parentElement, canvas.offsetLeft + x, canvas.offsetTop + y, described(marked, at, points), gap);
 }
 
-/** What the box says about a triangle at a place: its number, its values before and after a run, and the place. */
-function described(t, at, points) {
+/** What the box says about an element at a place: its number, its values before and after a run, and the place. */
+function described(marked, at, points) {
   const element = (name, text, ...children) => {
     const made = document.createElement(name);
     if (text) made.textContent = text;
@@ -51,14 +51,16 @@ function described(t, at, points) {
     return made;
   };
   const place = element("div", at.map(coordinate).join("  "));
-  if (t < 0) {
-    const name = found(pieces, points, at) >= 0 ? data.face : states[0].pictures.length ? "values are known around the worst triangles" : "";
+  if (marked < 0) {
+    const name = found(pieces, points, at) >= 0 ? data.face : states[0].pictures.length ? "values are known around the worst elements" : "";
     return name ? [element("strong", name), place] : [place];
   }
   const names = states.length > 1 ? [element("tr", "", ...["", "before", "after"].map((name) => element("td", name)))] : [];
-  const rows = data.measures.map((measure, k) =>
-    element("tr", "", element("th", measure.name), ...states.map(({ values }) => element("td", value(measure, values[k][t])))));
-  return [element("strong", `triangle ${ids[t]}`), element("table", "", element("tbody", "", ...names, ...rows)), place];
+  const shown = (measure) => has(marked, measure);
+  const rows = data.measures.map((measure, k) => shown(measure) &&
+    element("tr", "", element("th", measure.name), ...states.map(({ values }) => element("td", value(measure, values[k][marked])))));
+  const kind = marked < firstHalf ? "triangle" : "quadrilateral";
+  return [element("strong", `${kind} ${ids[marked]}`), element("table", "", element("tbody", "", ...names, ...rows.filter(Boolean))), place];
 }
 
 /** A coordinate with digits down to a tenth of a pixel, at least seven and at most the 17 of double precision. */
@@ -69,7 +71,7 @@ function coordinate(x) {
 
 /** The value of a measure with six of the seven digits of single precision. */
 function value({ unit }, x) {
-  if (Number.isNaN(x)) return "inverted or flat";
+  if (Number.isNaN(x)) return marked < firstHalf ? "inverted or flat" : "not convex";
   return Number.isFinite(x) ? `${x.toPrecision(6)}${unit}` : "infinite";
 }
 

@@ -8,14 +8,19 @@ function decoded(Type, text) {
   return new Type(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
 }
 
-const triangles = decoded(Uint32Array, data.triangles);
-// The ends of the edges between triangles, which measures of edges color.
+const wholes = decoded(Uint32Array, data.triangles), halves = decoded(Uint32Array, data.halves);
+// Triangles, then two halves of each quadrilateral. Elements are numbered in this order.
+const triangles = new Uint32Array(wholes.length + halves.length);
+triangles.set(wholes);
+triangles.set(halves, wholes.length);
+const firstHalf = wholes.length / 3;
+// The ends of the edges between elements, which measures of edges color.
 const colored = decoded(Uint32Array, data.edges);
 const boundary = decoded(Uint32Array, data.boundary);
 const between = decoded(Uint32Array, data.between);
 const held = decoded(Uint32Array, data.held);
 const slid = decoded(Uint32Array, data.slid);
-// Triangles that cover the quadrilaterals and polygons, and edges of these faces: index of a piece, and two vertices.
+// Triangles that cover the faces that are no elements, and edges of these faces: index of a piece, and two vertices.
 const pieces = decoded(Uint32Array, data.pieces);
 const faceEdges = decoded(Uint32Array, data.face_edges);
 const states = data.states.map((state) => ({
@@ -27,8 +32,8 @@ const states = data.states.map((state) => ({
   images: [],
   codes: [],
 }));
-// The file's ids of the triangles, from runs of consecutive ids: index of the first triangle, and its id.
-const ids = new Float64Array(triangles.length / 3);
+// The file's ids of the elements, from runs of consecutive ids: index of the first element, and its id.
+const ids = new Float64Array(firstHalf + halves.length / 6);
 data.ids.forEach(([start, id], i) => {
   const end = data.ids[i + 1]?.[0] ?? ids.length;
   for (let t = start; t < end; t++) ids[t] = id + t - start;
@@ -38,10 +43,10 @@ const canvases = [...document.querySelectorAll("#views canvas")];
 const layers = canvases.map(() => document.createElement("canvas"));
 const [low, high] = data.extent;
 
-// The middle of the view in units of the mesh, and CSS pixels per unit. `spot` is the triangle that a link asked for.
+// The middle of the view in units of the mesh, and CSS pixels per unit. `spot` is the element that a link asked for.
 const view = { x: 0, y: 0, scale: 1, isWhole: true, spot: null };
 let measure = data.first;
-// The triangle whose values are shown, -1 without any.
+// The element whose values are shown, -1 without any.
 let marked = -1;
 // Whether colors are those of paper, whatever the theme of the window is.
 let isPrinting = false;
@@ -62,10 +67,29 @@ for (let code = 1; code <= BEST; code++) {
 }
 for (const [code, [r, g, b]] of [[0, data.bad], [PALE, data.pale], [NEUTRAL, data.neutral]]) palette[code] = (255 << 24) | (b << 16) | (g << 8) | r;
 
-/** The codes of all triangles by the chosen measure. A value that is not a number is that of an inverted or flat triangle. */
+/** The element that a triangle is or is half of. */
+function elementOf(t) {
+  return t < firstHalf ? t : firstHalf + Math.floor((t - firstHalf) / 2);
+}
+
+/** The vertices of an element, in order around it. */
+function verticesOf(element) {
+  const i = 3 * (element < firstHalf ? element : 2 * element - firstHalf);
+  const vertices = [triangles[i], triangles[i + 1], triangles[i + 2]];
+  return element < firstHalf ? vertices : [...vertices, triangles[i + 5]];
+}
+
+/** Whether an element has a measure. */
+function has(element, { of_quadrilaterals }) {
+  return element < firstHalf || of_quadrilaterals;
+}
+
+/** The codes of all elements by the chosen measure. A value that is not a number is that of an element that is not valid. */
 function codesOf(state) {
-  return (state.codes[measure] ??= Uint16Array.from(state.values[measure], (value) =>
-    Number.isNaN(value) ? 0 : 1 + Math.round((BEST - 1) * goodness(data.measures[measure], value))));
+  return (state.codes[measure] ??= Uint16Array.from(state.values[measure], (value, element) => {
+    if (!has(element, data.measures[measure])) return NEUTRAL;
+    return Number.isNaN(value) ? 0 : 1 + Math.round((BEST - 1) * goodness(data.measures[measure], value));
+  }));
 }
 
 /** Rates a value from 0 (the bad end of the scale, or worse) to 1 (the good end, or better). */
@@ -185,11 +209,13 @@ function draw(canvas, layer, state) {
     return isHigh;
   };
   for (let t = 0, i = 0; i < triangles.length; t++, i += 3) {
-    if (!filled(triangles, i, codes[t]) || data.measures[measure].of_edges) continue;
+    if (!filled(triangles, i, codes[elementOf(t)]) || data.measures[measure].of_edges) continue;
     const [a, b, c] = [triangles[i], triangles[i + 1], triangles[i + 2]];
-    if (a < b) inner.push(a, b);
+    // The diagonal of a quadrilateral ends its first half and begins its second.
+    const isFirst = t >= firstHalf && (t - firstHalf) % 2 === 0, isSecond = t >= firstHalf && !isFirst;
+    if (a < b && !isSecond) inner.push(a, b);
     if (b < c) inner.push(b, c);
-    if (c < a) inner.push(c, a);
+    if (c < a && !isFirst) inner.push(c, a);
   }
   const isHigh = [];
   for (let i = 0; i < pieces.length; i += 3) isHigh.push(filled(pieces, i, NEUTRAL));
@@ -232,13 +258,13 @@ function dot(context, x, y, ratio, [inside, rim]) {
   context.stroke();
 }
 
-/** Draws rings around the worst triangles, and the outline of the triangle whose values are shown. */
+/** Draws rings around the worst elements, and the outline of the element whose values are shown. */
 function marks(canvas, state) {
   const ratio = window.devicePixelRatio || 1, context = canvas.getContext("2d"), scale = view.scale * ratio;
   const place = (v) => [canvas.width / 2 + (state.points[2 * v] - view.x) * scale, canvas.height / 2 - (state.points[2 * v + 1] - view.y) * scale];
-  const cornersOf = (t) => [0, 1, 2].map((k) => place(triangles[3 * t + k]));
+  const cornersOf = (element) => verticesOf(element).map(place);
   const ring = (corners, radius) => {
-    const [x, y] = [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / 3);
+    const [x, y] = [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
     context.beginPath();
     context.arc(x, y, radius * ratio, 0, 7);
   };
@@ -250,8 +276,8 @@ function marks(canvas, state) {
     }
   };
   for (const spot of data.spots) {
-    if (states[spot.state] !== state || spot.triangle === marked || spot.size * view.scale > canvasWidth(canvas) / 12) continue;
-    ring(cornersOf(spot.triangle), 8);
+    if (states[spot.state] !== state || spot.element === marked || spot.size * view.scale > canvasWidth(canvas) / 12) continue;
+    ring(cornersOf(spot.element), 8);
     stroke([["#fff", 3.4], ["#000", 1.2]]);
   }
   if (marked < 0) return;
@@ -344,7 +370,7 @@ function pan(x, y) {
   redraw();
 }
 
-/** Shows one of the worst triangles, as the link asks for that names it. */
+/** Shows one of the worst elements, as the link asks for that names it. */
 function show(i) {
   const spot = data.spots[i], canvas = canvases[0];
   if (!spot) return;
@@ -352,7 +378,7 @@ function show(i) {
   view.scale = Math.min(canvas.clientWidth, canvas.clientHeight) / (6 * spot.size);
   view.isWhole = false;
   view.spot = i;
-  // The values of the triangle take the place of those at the last position of the pointer.
+  // The values of the element take the place of those at the last position of the pointer.
   pointer = null;
   redraw();
   document.getElementById("views").scrollIntoView({ block: "center" });

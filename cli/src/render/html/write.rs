@@ -49,7 +49,7 @@ fn page(task: &SmoothJob<'_>, done: &Done<'_>, began: Instant) -> Result<String,
     page.mesh(&viewed, View::Run);
     page.columns(&[
         &[("Summary", tables::summary(&done.report))],
-        &[("Worst triangles", worst::lists(&spots, done.file.axes()))],
+        &[(&*worst::title(&spots), worst::lists(&spots, done.file.axes()))],
     ]);
     page.section("Distribution", &histograms(states));
     page.section("Convergence", &convergence(done));

@@ -76,6 +76,11 @@ impl FixedFaces {
         of_element.copied().filter(|goodness| !goodness.is_nan()).unwrap_or(UNJUDGED)
     }
 
+    /// Returns whether a piece belongs to a quadrilateral of the topology.
+    pub(crate) fn is_of_element(&self, piece: usize) -> bool {
+        self.quadrilateral_of[piece].is_some()
+    }
+
     /// `of_triangles` is the boundary of the triangles. `number` returns the index of a quadrilateral of the topology, given its
     /// vertices.
     fn new<'a>(
