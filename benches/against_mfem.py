@@ -24,13 +24,17 @@ import mfem.ser as mfem
 from mfem._ser import tmop, tmop_tools
 
 
-def quadrilaterals(cells, seed=1):
-    rng = np.random.default_rng(seed)
+def lattice(cells, by, rng):
     side = cells + 1
     x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float))
     points = np.stack([x.ravel(), y.ravel()], axis=1)
     inner = ((points > 0) & (points < cells)).all(axis=1)
-    points[inner] += rng.uniform(-0.2, 0.2, (inner.sum(), 2))
+    points[inner] += rng.uniform(-by, by, (inner.sum(), 2))
+    return points
+
+
+def quadrilaterals(cells, seed=1):
+    points, side = lattice(cells, 0.2, np.random.default_rng(seed)), cells + 1
     x, y = (points / cells).T
     bent = np.stack([x + 0.1 * np.sin(np.pi * y), y + 0.15 * np.sin(2 * np.pi * x) * (1 - 0.5 * y)], axis=1)
     corner = (np.arange(cells) + side * np.arange(cells)[:, None]).ravel()
@@ -39,11 +43,7 @@ def quadrilaterals(cells, seed=1):
 
 def made(cells, seed=1):
     rng = np.random.default_rng(seed)
-    side = cells + 1
-    x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float))
-    points = np.stack([x.ravel(), y.ravel()], axis=1)
-    inner = ((points > 0) & (points < cells)).all(axis=1)
-    points[inner] += rng.uniform(-0.3, 0.3, (inner.sum(), 2))
+    points, side = lattice(cells, 0.3, rng), cells + 1
     triangles = []
     for j in range(cells):
         for i in range(cells):

@@ -29,8 +29,8 @@ fn angle_hinge_of(x: f32, ramp: f32) -> vec3<f32> {
     return vec3(hinge.x / (scale * scale), hinge.y / scale, hinge.z);
 }
 
-// The functions of an angle: the penalties on an angle of a triangle, on the angle at a corner of a quadrilateral and on an angle
-// between a side and a diagonal of a quadrilateral, and the cotangent itself.
+// The kinds of angles, by which penalties differ: angles of triangles, angles between two sides of a quadrilateral, and angles
+// between a side and a diagonal. ANGLE_ITSELF stands for the cotangent without a penalty.
 const ANGLE_OF_TRIANGLE: u32 = 0u;
 const ANGLE_AT_CORNER: u32 = 1u;
 const ANGLE_AT_DIAGONAL: u32 = 2u;

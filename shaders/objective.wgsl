@@ -53,17 +53,17 @@ fn objective(
         let corner = transformed(Corner(a, b, ideal), map_of(corners));
 #endif
 #if OPPOSITE_ANGLES
-        let across = opposite_corner(t, k);
-        let around = vec3(triangles[across.x], triangles[across.y], triangles[across.z]);
-        let o = position(around.x);
-        let c = edge(o, position(around.y));
-        let d = edge(o, position(around.z));
-        let opposite = transformed(metric_form(Corner(c, d, ideal)), map_of(around));
-        let values = with_shares_of_opposite_angles(
-            tracked_values(corner),
-            corner,
-            opposite,
-        );
+        var values = tracked_values(corner);
+        // Each pair of opposite corners has one share.
+        if k < 2u {
+            let across = opposite_corner(t, k);
+            let around = vec3(triangles[across.x], triangles[across.y], triangles[across.z]);
+            let o = position(around.x);
+            let c = edge(o, position(around.y));
+            let d = edge(o, position(around.z));
+            let opposite = transformed(metric_form(Corner(c, d, ideal)), map_of(around));
+            values = with_shares_of_opposite_angles(values, corner, opposite);
+        }
 #else
         let values = tracked_values(corner);
 #endif

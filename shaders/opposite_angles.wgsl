@@ -70,10 +70,9 @@ fn with_opposite_angles(sum: Derivatives, p: Patch, around: vec3<u32>) -> Deriva
     );
 }
 
-// Returns the share of a corner in the term of its quadrilateral, given the opposite corner. The shares of all four corners are
-// the term.
+// Returns the share of two opposite corners in the term of their quadrilateral.
 fn share_of_opposite_angles(t: Corner, opposite: Corner) -> f32 {
-    return 100.0 * cotangent_of(t) * cotangent_of(opposite);
+    return 200.0 * cotangent_of(t) * cotangent_of(opposite);
 }
 
 // Returns the places of the vertices of the corner opposite to corner k of a quadrilateral, in the list of quadrilaterals.

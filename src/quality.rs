@@ -168,7 +168,8 @@ impl Quality {
     }
 
     /// Returns the objective f = (1/n) Σ q² over all n elements (Park & Shontz, equation 1), with q² of a
-    /// quadrilateral the mean over its corners, and the term that joins opposite angles by ACUTE. Infinite if an element is inverted or flat and the metric has a barrier.
+    /// quadrilateral the mean over its corners, to which ACUTE and ACUTE-SIZE add the term of opposite angles. Infinite if an
+    /// element is inverted or flat and the metric has a barrier.
     pub fn f(&self, metric: Metric) -> f64 {
         self.f[metric as usize]
     }

@@ -55,21 +55,25 @@ fn objective_along_correction(
         let there = transformed(moved, map);
 #endif
 #if OPPOSITE_ANGLES
-        let across = opposite_corner(t, k);
-        let around = vec3(triangles[across.x], triangles[across.y], triangles[across.z]);
-        let o = position(around.x);
-        let e = displacement(around.x);
-        let far = Corner(edge(o, position(around.y)), edge(o, position(around.z)), ideal);
-        let moved_far = Corner(
-            moved_edge(far.a, e, displacement(around.y)),
-            moved_edge(far.b, e, displacement(around.z)),
-            ideal,
-        );
-        let map_far = map_of(around);
-        let opposite_here = transformed(metric_form(far), map_far);
-        let opposite_there = transformed(metric_form(moved_far), map_far);
-        sums[0] = pair_accumulate(sums[0], share_of_opposite_angles(here, opposite_here));
-        let joined = share_of_opposite_angles(there, opposite_there);
+        var joined = 0.0;
+        // Each pair of opposite corners has one share.
+        if k < 2u {
+            let across = opposite_corner(t, k);
+            let around = vec3(triangles[across.x], triangles[across.y], triangles[across.z]);
+            let o = position(around.x);
+            let e = displacement(around.x);
+            let far = Corner(edge(o, position(around.y)), edge(o, position(around.z)), ideal);
+            let moved_far = Corner(
+                moved_edge(far.a, e, displacement(around.y)),
+                moved_edge(far.b, e, displacement(around.z)),
+                ideal,
+            );
+            let map_far = map_of(around);
+            let opposite_here = transformed(metric_form(far), map_far);
+            let opposite_there = transformed(metric_form(moved_far), map_far);
+            sums[0] = pair_accumulate(sums[0], share_of_opposite_angles(here, opposite_here));
+            joined = share_of_opposite_angles(there, opposite_there);
+        }
 #endif
         sums[0] = pair_accumulate(sums[0], metric_model(here));
         if !is_positive(doubled_area(here)) || is_broken(here, there)

@@ -82,7 +82,7 @@ pub(super) fn cotangent<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes) -> Dual<
     own.expansion(|cotangent| [cotangent, cotangent.constant(1.0), cotangent.constant(0.0)])
 }
 
-/// Returns the three angles of a triangle, from the one at its first vertex on. Their cotangents are a·b, -a·c and b·c, divided
+/// Returns the angles at the first, second and third vertex of a triangle. Their cotangents are a·b, -a·c and b·c, divided
 /// by the doubled area, with c = b - a.
 #[inline(always)]
 fn angles_of<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes) -> [Angle<T>; 3] {

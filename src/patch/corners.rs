@@ -43,7 +43,7 @@ pub(crate) trait Corners<T: Numbers> {
     }
 
     /// Returns a quadrilateral: the index of its first corner, and its corner opposite the visited vertex, transformed by its
-    /// target map. The first corner is at the visited vertex, and the next two are at the next and at the last vertex.
+    /// target map. The first corner is at the visited vertex. The corners of both neighbors of the vertex follow.
     #[inline(always)]
     fn quadrilateral(&self, _: usize) -> (usize, Corner<T>) {
         unreachable!("a patch of triangles has no quadrilaterals")

@@ -10,7 +10,7 @@ use crate::layout::{MeshCoordinates, Problem};
 use crate::measure::altitude;
 use crate::metric::{Corner, Dual, Given, Ideal, TargetMap};
 use crate::patch::corners::Corners;
-use crate::patch::role::Role;
+use crate::patch::role::{AroundVertex, Role};
 use crate::topology::Topology;
 use crate::topology::predicates::is_positive;
 
@@ -21,8 +21,6 @@ pub(crate) struct Fan {
     corners: Vec<[u32; 3]>,
     /// The place of the common vertex in each corner.
     roles: Vec<Role>,
-    /// The corner opposite the common vertex of each quadrilateral.
-    opposites: Vec<[u32; 3]>,
 }
 
 impl Fan {
@@ -34,17 +32,12 @@ impl Fan {
             ([vertex, a, b], role)
         };
         let (corners, roles) = topology.corners_with(vertex).map(own_first).unzip();
-        let list = topology.corner_list();
-        let opposite = |&own: &u32| Some(list.all()[list.opposite_corner(own)? as usize]);
-        let opposites = topology.star(vertex).iter().filter_map(opposite).collect();
-        Self { corners, roles, opposites }
+        Self { corners, roles }
     }
 
     /// Replaces every vertex index `v` by `number[v]`.
     pub(crate) fn renumber(&mut self, number: &[u32]) {
-        let lists = [&mut self.corners, &mut self.opposites];
-        let vertices = lists.into_iter().flat_map(|list| list.as_flattened_mut());
-        vertices.for_each(|v| *v = number[*v as usize]);
+        self.corners.as_flattened_mut().iter_mut().for_each(|v| *v = number[*v as usize]);
     }
 
     /// Returns the vertices of the corners, each with the common vertex first.
@@ -81,8 +74,12 @@ impl Fan {
             role,
         };
         let corners = self.corners.iter().zip(&self.roles).map(corner).collect();
-        let opposite = |t| problem.corner_of(true, t, |v| positions[v as usize]);
-        let opposites = self.opposites.iter().map(opposite).collect();
+        let others = self.corners.iter().map(|&[_, a, b]| [a, b]);
+        let quadrilaterals = AroundVertex::all(self.roles.iter().copied().zip(others));
+        let opposite = |AroundVertex { first, opposite }: AroundVertex| {
+            (first, problem.corner_of(true, &opposite, |v| positions[v as usize]))
+        };
+        let opposites = quadrilaterals.map(opposite).collect();
         let (ideal, coordinates) = (problem.ideal(), problem.coordinates());
         FanPatch { corners, opposites, ideal, coordinates, min_altitude }
     }
@@ -128,9 +125,9 @@ impl FanCorner {
 #[derive(Clone, Debug)]
 pub(crate) struct FanPatch {
     pub(crate) corners: Vec<FanCorner>,
-    /// The corner opposite the common vertex of each quadrilateral, transformed by its target map. Empty in patches whose
-    /// objectives lack terms of opposite angles.
-    pub(crate) opposites: Vec<Corner<f64>>,
+    /// For each quadrilateral, the index of its corner at the common vertex, and its corner opposite that vertex, transformed by
+    /// the target map.
+    pub(crate) opposites: Vec<(usize, Corner<f64>)>,
     pub(crate) ideal: Ideal,
     /// Coordinates in which altitudes are measured.
     pub(crate) coordinates: MeshCoordinates,
@@ -162,9 +159,7 @@ impl Corners<f64> for FanPatch {
     }
 
     fn quadrilateral(&self, k: usize) -> (usize, Corner<f64>) {
-        let is_own = |corner: &&FanCorner| corner.role == Role::Own;
-        let first = self.corners.iter().enumerate().filter(|(_, c)| is_own(c)).nth(k);
-        (first.map_or(0, |(i, _)| i), self.opposites[k])
+        self.opposites[k]
     }
 
     fn corner(&self, i: usize, at: [f64; 2]) -> Corner<f64> {

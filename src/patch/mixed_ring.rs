@@ -11,7 +11,7 @@ use crate::patch::corners::Corners;
 use crate::patch::direction::{Direction, newton_direction};
 use crate::patch::lanes::{LANES, Lanes, Points, points, vertex_maps};
 use crate::patch::ring::{LanePatch, mapped_direction, squared_distance};
-use crate::patch::role::Role;
+use crate::patch::role::{AroundVertex, Role};
 
 /// One-rings of four free vertices whose elements are of equal kinds in equal order.
 #[derive(Clone, Copy)]
@@ -20,7 +20,8 @@ pub(crate) struct MixedRings<'a, S: Simd> {
     /// quadrilaterals.
     ring: &'a [Points<S>],
     corners: &'a [RingCorner],
-    quadrilaterals: &'a [RingQuadrilateral],
+    /// The quadrilaterals of the visited vertex, with vertices as indices in the ring.
+    quadrilaterals: &'a [AroundVertex],
     /// Target map of each corner, then of the corner of each quadrilateral opposite the visited vertex. Empty without targets
     /// and local maps.
     maps: &'a [TargetMap<Lanes<S>>],
@@ -38,22 +39,13 @@ struct RingCorner {
     others: [u32; 2],
 }
 
-/// A quadrilateral of the visited vertex.
-#[derive(Clone, Copy)]
-struct RingQuadrilateral {
-    /// The index of its first corner.
-    first: usize,
-    /// The vertices of its corner opposite the visited vertex, as indices in the ring.
-    opposite: [u32; 3],
-}
-
 /// Memory for [`MixedRings`], reused by one visit after another.
 pub(crate) struct MixedScratch<S: Simd> {
     ring: Vec<Points<S>>,
     /// The mark of each vertex of the ring that `corners` lists the corners of. Successive visits mostly have equal marks.
     marks: Vec<u32>,
     corners: Vec<RingCorner>,
-    quadrilaterals: Vec<RingQuadrilateral>,
+    quadrilaterals: Vec<AroundVertex>,
     total_weight: f64,
     maps: Vec<TargetMap<Lanes<S>>>,
 }
@@ -101,7 +93,8 @@ impl<'a, S: Simd> MixedRings<'a, S> {
             corners.clear();
             list_corners(a, corners);
             quadrilaterals.clear();
-            quadrilaterals.extend(quadrilaterals_of(corners));
+            let roles = corners.iter().map(|corner| (corner.role, corner.others));
+            quadrilaterals.extend(AroundVertex::all(roles));
             *total_weight = corners.iter().map(|corner| corner.role.weighted(1.0)).sum();
         }
         maps.clear();
@@ -158,15 +151,6 @@ fn list_corners(ring: &[u32], corners: &mut Vec<RingCorner>) {
     }
 }
 
-/// Returns the quadrilaterals of a list of corners.
-fn quadrilaterals_of(corners: &[RingCorner]) -> impl Iterator<Item = RingQuadrilateral> + '_ {
-    let own = (0..corners.len()).filter(|&i| corners[i].role == Role::Own);
-    own.map(|first| {
-        let ([next, last], [_, opposite]) = (corners[first].others, corners[first + 1].others);
-        RingQuadrilateral { first, opposite: [opposite, last, next] }
-    })
-}
-
 impl<S: Simd> LanePatch<S> for MixedRings<'_, S> {
     #[inline(always)]
     fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
@@ -205,7 +189,7 @@ impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
 
     #[inline(always)]
     fn quadrilateral(&self, k: usize) -> (usize, Corner<Lanes<S>>) {
-        let RingQuadrilateral { first, opposite } = self.quadrilaterals[k];
+        let AroundVertex { first, opposite } = self.quadrilaterals[k];
         let vertices = opposite.map(|i| self.ring[i as usize]);
         (first, self.corner_of(true, vertices, self.corners.len() + k))
     }

@@ -32,5 +32,5 @@ pub(crate) use fan::{Fan, FanCorner, FanPatch};
 pub(crate) use mixed_ring::{MixedRings, MixedScratch};
 pub(crate) use newton_step::{Objective, newton_step, step_alone};
 pub(crate) use ring::{LanePatch, Rings, Scratch};
-pub(crate) use role::Role;
+pub(crate) use role::{AroundVertex, Role};
 pub(crate) use search_rule::SearchRule;

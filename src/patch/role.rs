@@ -17,6 +17,31 @@ pub(crate) enum Role {
     Last,
 }
 
+/// A quadrilateral among the corners around a visited vertex, which has the corners at the vertex, at the next and at the last
+/// vertex of the quadrilateral one after the other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AroundVertex {
+    /// The index of the corner at the visited vertex.
+    pub(crate) first: usize,
+    /// The vertices of the corner opposite the visited vertex, that vertex first.
+    pub(crate) opposite: [u32; 3],
+}
+
+impl AroundVertex {
+    /// Returns the quadrilaterals of a list of corners, each with its role and with the two vertices of [`Role::of`].
+    pub(crate) fn all(
+        corners: impl Iterator<Item = (Role, [u32; 2])> + Clone,
+    ) -> impl Iterator<Item = Self> {
+        let pairs = corners.clone().zip(corners.skip(1)).enumerate();
+        pairs.filter(|(_, ((role, _), _))| *role == Role::Own).map(
+            |(first, ((_, [next, last]), (_, [_, opposite])))| Self {
+                first,
+                opposite: [opposite, last, next],
+            },
+        )
+    }
+}
+
 impl Role {
     /// Returns the place of a vertex in a corner, and the other two vertices, counter-clockwise. `is_right` tells whether the
     /// corner is of a quadrilateral.

@@ -123,15 +123,9 @@ impl<'m> Corners<'m> {
     /// Returns the vertex of a quadrilateral opposite to the first vertex of a corner. `None` for a triangle.
     #[inline(always)]
     pub(crate) fn opposite(&self, corner: u32) -> Option<u32> {
-        Some(self.all[self.opposite_corner(corner)? as usize][0])
-    }
-
-    /// Returns the corner of a quadrilateral opposite to a corner. `None` for a triangle.
-    #[inline(always)]
-    pub(crate) fn opposite_corner(&self, corner: u32) -> Option<u32> {
         let of_quadrilaterals = (corner as usize).checked_sub(self.triangles)?;
         let turn = of_quadrilaterals % 4;
-        Some((corner as usize - turn + (turn + 2) % 4) as u32)
+        Some(self.all[corner as usize - turn + (turn + 2) % 4][0])
     }
 
     /// Returns the corner of the element of `corner` at a vertex, and the place of the vertex in this corner. `None` if the

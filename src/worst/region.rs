@@ -8,8 +8,8 @@ use crate::layout::{MeshCoordinates, Problem};
 use crate::metric::{Dual, Ideal, Smoothing, TargetMap};
 use crate::parallel::pace::pause;
 use crate::patch::{
-    Circle, FanCorner, FanPatch, MetricObjective, Objective, Role, SearchRule, is_acceptable,
-    step_alone,
+    AroundVertex, Circle, FanCorner, FanPatch, MetricObjective, Objective, Role, SearchRule,
+    is_acceptable, step_alone,
 };
 use crate::run::SweepParams;
 use crate::worst::badness::Badness;
@@ -57,9 +57,6 @@ struct PatchCorner {
     is_heavy: bool,
 }
 
-/// The vertices of the corner opposite a vertex in a quadrilateral, and the target map of the corner.
-type OppositeCorner = ([u32; 3], Option<TargetMap<f64>>);
-
 /// Free vertices that move together, with the corners around each. Indices within the region begin with the moving
 /// vertices, and their fixed neighbors follow.
 pub(crate) struct Region<'a> {
@@ -68,8 +65,8 @@ pub(crate) struct Region<'a> {
     vertices: Vec<u32>,
     positions: Vec<DVec2>,
     stars: Vec<Vec<PatchCorner>>,
-    /// For each moving vertex, the corner opposite the vertex in each of its quadrilaterals, with the target map.
-    opposites: Vec<Vec<OppositeCorner>>,
+    /// For each moving vertex, its quadrilaterals, each with the target map of the corner opposite the vertex.
+    quadrilaterals: Vec<Vec<(AroundVertex, Option<TargetMap<f64>>)>>,
     /// For each moving vertex, the circle that limits its coordinates of the mesh.
     bounds: Vec<Circle>,
     ideal: Ideal,
@@ -86,7 +83,7 @@ impl<'a> Region<'a> {
         let mut places: Vec<DVec2> = vertices.iter().map(|&v| positions[v as usize]).collect();
         let mut number: HashMap<u32, u32> = vertices.iter().copied().zip(0..).collect();
         let mut stars = Vec::new();
-        let mut opposites = Vec::new();
+        let mut quadrilaterals = Vec::new();
         for &v in &vertices {
             let corner = |(corner, is_right): ([u32; 3], bool)| {
                 let (role, ends) = Role::of(corner, is_right, v);
@@ -100,14 +97,10 @@ impl<'a> Region<'a> {
                 PatchCorner { ends, map: problem.target_map(&corner), role, is_heavy }
             };
             let star: Vec<PatchCorner> = problem.corners_around(v).map(corner).collect();
-            let corners: Vec<_> = problem.corners_around(v).collect();
-            let own = (0..star.len()).filter(|&i| star[i].role == Role::Own);
-            let opposite = |i: usize| {
-                let ([_, next, last], [_, opposite, _]) = (corners[i].0, corners[i + 1].0);
-                let ([n, l], [_, o]) = (star[i].ends, star[i + 1].ends);
-                ([o, l, n], problem.target_map(&[opposite, last, next]))
-            };
-            opposites.push(own.map(opposite).collect());
+            let of_problem = problem.corners_around(v).map(|(corner, is)| Role::of(corner, is, v));
+            let maps = AroundVertex::all(of_problem).map(|of| problem.target_map(&of.opposite));
+            let of_region = star.iter().map(|corner| (corner.role, corner.ends));
+            quadrilaterals.push(AroundVertex::all(of_region).zip(maps).collect());
             stars.push(star);
         }
         let coordinates = problem.coordinates();
@@ -117,7 +110,16 @@ impl<'a> Region<'a> {
         };
         let bounds = vertices.iter().map(bound).collect();
         let ideal = problem.ideal();
-        Self { rules, vertices, positions: places, stars, opposites, bounds, ideal, coordinates }
+        Self {
+            rules,
+            vertices,
+            positions: places,
+            stars,
+            quadrilaterals,
+            bounds,
+            ideal,
+            coordinates,
+        }
     }
 
     /// Moves the vertices so that the worst triangle around them becomes less bad, and then regains as much of f as
@@ -190,11 +192,11 @@ impl<'a> Region<'a> {
         };
         let corners = self.stars[v].iter().map(corner).collect();
         let Self { ideal, coordinates, rules, .. } = *self;
-        let opposite = |&(vertices, map): &OppositeCorner| {
-            let [at, ends @ ..] = vertices.map(|v| self.positions[v as usize]);
-            FanCorner { ends, map, role: Role::Own }.seen(at, ideal)
+        let opposite = |&(AroundVertex { first, opposite }, map): &(AroundVertex, _)| {
+            let [at, ends @ ..] = opposite.map(|v| self.positions[v as usize]);
+            (first, FanCorner { ends, map, role: Role::Own }.seen(at, ideal))
         };
-        let opposites = self.opposites[v].iter().map(opposite).collect();
+        let opposites = self.quadrilaterals[v].iter().map(opposite).collect();
         FanPatch { corners, opposites, ideal, coordinates, min_altitude: rules.floor }
     }
 

@@ -105,13 +105,12 @@ impl<'m> Quantities<'m> {
         self.find(threshold, Among::All)
     }
 
-    /// Does the work of [`finding`](Self::finding) for a limit of a solver, among the elements of a kind: other values are good
-    /// for quadrilaterals than for triangles.
+    /// Does the work of [`finding`](Self::finding) for a limit of a solver, which concerns triangles or quadrilaterals alone.
     pub(crate) fn finding_among(&self, threshold: &Threshold, elements: Elements) -> Finding {
         self.find(threshold, Among::Only(elements))
     }
 
-    /// Returns the number of elements of a kind.
+    /// Counts the triangles or the quadrilaterals of the mesh.
     pub(crate) fn count(&self, elements: Elements) -> usize {
         let topology = self.measured.topology();
         match elements {

@@ -373,7 +373,7 @@ fn shape_excess(t: Corner) -> f32 {{
         let _ = writeln!(
             text,
             "
-// Adds the shares of a corner in the terms of opposite angles to the values of the metrics that have the term.
+// Adds the share of two opposite corners in the term of opposite angles to the values of the metrics that have the term.
 fn with_shares_of_opposite_angles(
     values: array<f32, TRACKED>,
     t: Corner,

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use gpu_smooth::{
-    Topology,
+    Element, Topology,
     measure::{Measure, Measured},
 };
 use rayon::prelude::*;
@@ -270,7 +270,7 @@ fn indices(numbers: &[u32]) -> String {
 fn bad(topology: &Topology<'_>, points: &[[f64; 2]]) -> Result<HashSet<usize>, CliError> {
     let triangles = topology.bad_triangles(points)?.into_iter().map(|bad| bad.triangle);
     let others = topology.bad_quadrilaterals(points)?.into_iter();
-    let others = others.map(|bad| topology.triangles().len() + bad.quadrilateral);
+    let others = others.map(|bad| number(topology, Element::Quadrilateral(bad.quadrilateral)));
     Ok(triangles.chain(others).collect())
 }
 
@@ -348,7 +348,6 @@ impl Part {
 mod tests {
     use super::*;
     use crate::render::html::worst;
-    use gpu_smooth::Element;
     use mesh_io::MeshFile;
     use std::path::Path;
 

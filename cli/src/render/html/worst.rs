@@ -24,7 +24,7 @@ const LISTS: [(&str, usize, bool); 3] = [
     ("The worst after the run that have a free vertex", 1, true),
 ];
 
-/// An element in one of the lists, measured before or after the run.
+/// A triangle or quadrilateral of a list, with its values before and after the run.
 pub(crate) struct WorstElement {
     pub(crate) element: Element,
     list: usize,
@@ -79,7 +79,7 @@ pub(crate) fn spots_of_mesh(
     located(file, [measured; 2], measure, &listed)
 }
 
-/// Returns the number of an element of a mesh: triangles are numbered first.
+/// Returns the number by which [`Measured`] knows an element: quadrilaterals follow the triangles.
 pub(crate) fn number(topology: &Topology<'_>, element: Element) -> usize {
     match element {
         Element::Triangle(index) => index,
@@ -130,7 +130,7 @@ struct Words {
     /// The heading of the column of numbers.
     one: &'static str,
     several: &'static str,
-    /// Whether the kind of an element stands beside its number.
+    /// Whether a table writes the kind beside each number, since the list has both kinds.
     names_kinds: bool,
 }
 
