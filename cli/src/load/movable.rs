@@ -188,7 +188,9 @@ impl<'f> SelectionResolver<'f> {
             let mut names = Vec::new();
             for text in &request.only {
                 for (name, group) in named(file, &groups, "--only", text)? {
-                    if group.triangles().is_empty() && group.quadrilaterals().is_empty() {
+                    let has_quadrilaterals =
+                        file.domain.moves_quadrilaterals() && !group.quadrilaterals().is_empty();
+                    if group.triangles().is_empty() && !has_quadrilaterals {
                         return Err(refusal(file, "--only", &format!("{group} has no triangles")));
                     }
                     triangles.extend_from_slice(group.triangles());

@@ -109,6 +109,11 @@ fn groups_have_quadrilaterals_and_choose_which_vertices_move() {
         assert_holds(&run.err, &["--only 2 (MaterialIDs surface 2): 36 of 72 free vertices"]);
         let compared = folder.line("compare in.vtk out.vtk --only 2");
         assert_holds(&compared.out, &["36 of 121 vertices have moved"]);
+        // Vertices of quadrilaterals that stay let no vertex of such a group move.
+        if cut(0) {
+            let kept = folder.line("in.vtk out.vtk --only 2 --quadrilaterals keep --force");
+            kept.refused(&["--only: MaterialIDs surface 2 has no triangles"]);
+        }
     }
 }
 
