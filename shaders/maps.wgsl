@@ -45,6 +45,14 @@ fn map_of_patch(p: Patch, first: u32, second: u32) -> vec3<f32> {
     return (p.own + map_at(first) + map_at(second)) * (p.map_unit / 3.0);
 }
 
+#if QUADRILATERALS
+// Returns the target map of a corner of an element.
+fn map_in(p: Patch, e: Element, role: u32) -> vec3<f32> {
+    let others = others_of(e.vertices, role);
+    return map_of_patch(p, others.x, others.y);
+}
+
+#endif
 // Returns the patch of a vertex with the triangles `start..end` around it, in the given unit.
 fn patch_around(vertex: u32, start: u32, end: u32, unit: f32) -> Patch {
     var p: Patch;

@@ -6,9 +6,10 @@
 fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
     var sum = 0.0;
 #if QUADRILATERALS
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let now = corner_around(p, at, d);
-        let t = transformed(metric_form(now), map_of_corner(p, at));
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        for (var role = at.first_role; role <= at.last_role; role++) {
+        let now = corner_in(p, at.element, role, d);
+        let t = transformed(metric_form(now), map_in(p, at.element, role));
 #else
     var a = ring_edge(p, p.end - 1u) - d;
     for (var i = p.start; i < p.end; i++) {
@@ -30,13 +31,15 @@ fn objective_at(p: Patch, d: vec2<f32>, limit: f32) -> vec2<f32> {
             return vec2(0.0, 0.0);
         }
         sum += metric_model(t);
-#if OPPOSITE_ANGLES
-        if at.role == OWN {
-            sum += opposite_angles(p, quadrilateral_from(p, at.entry), d);
+#if QUADRILATERALS
         }
-#endif
-#if !QUADRILATERALS
+#else
         a = b;
+#endif
+#if OPPOSITE_ANGLES
+        if at.first_role == OWN {
+            sum += opposite_angles(p, at.element, d);
+        }
 #endif
     }
     return vec2(sum, 1.0);
@@ -60,9 +63,10 @@ fn newton_step(vertex: u32, p: Patch, omega: f32) -> vec2<f32> {
     var limit = part.shape_guard;
     let width = difference_width(p);
 #if QUADRILATERALS
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let map = map_of_corner(p, at);
-        let t = transformed(metric_form(corner_around(p, at, vec2(0.0))), map);
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        for (var role = at.first_role; role <= at.last_role; role++) {
+        let map = map_in(p, at.element, role);
+        let t = transformed(metric_form(corner_in(p, at.element, role, vec2(0.0))), map);
 #else
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {
@@ -73,19 +77,22 @@ fn newton_step(vertex: u32, p: Patch, omega: f32) -> vec2<f32> {
         if part.shape_guard < NO_GUARD {
             limit = max(limit, inverse_mean_ratio(t));
         }
-#if OPPOSITE_ANGLES
-        var d = pulled_back(metric_derivatives(t, width), map);
-        if at.role == OWN {
-            d = with_opposite_angles(d, p, quadrilateral_from(p, at.entry));
-        }
-#else
         let d = pulled_back(metric_derivatives(t, width), map);
-#endif
         value += d.value;
         gradient += d.gradient;
         hessian += d.hessian;
-#if !QUADRILATERALS
+#if QUADRILATERALS
+        }
+#else
         a = b;
+#endif
+#if OPPOSITE_ANGLES
+        if at.first_role == OWN {
+            let joined = opposite_angle_derivatives(p, at.element);
+            value += joined.value;
+            gradient += joined.gradient;
+            hessian += joined.hessian;
+        }
 #endif
     }
     let inverse = inverse_of(p.own * p.map_unit);

@@ -10,62 +10,57 @@ fn ring_edge(p: Patch, i: u32) -> vec2<f32> {
     return edge(p.at, position(vertex_at(i))) * p.unit;
 }
 
-// A corner around the vertex of a patch: the entry of the one-ring at which its element begins, and the role of the vertex.
+// An element around the vertex of a patch, the entry of the one-ring at which the element begins, the entry after the element, the
+// position of the element's last vertex, and the roles of the visited vertex in the element's first and last corner.
 struct Around {
+    element: Element,
     entry: u32,
-    role: u32,
+    end: u32,
+    last_at: vec4<f32>,
+    first_role: u32,
+    last_role: u32,
 }
 
-// Returns the first corner of the element that begins at an entry. An opposite vertex follows the entry if the element is a
-// quadrilateral.
-fn corner_from(p: Patch, entry: u32) -> Around {
+// Returns the element that begins at an entry, given the position of its next vertex and the edge to that vertex. An opposite vertex
+// follows the entry if the element is a quadrilateral.
+fn element_from(p: Patch, entry: u32, next_at: vec4<f32>, next: vec2<f32>) -> Around {
     let is_triangle = entry + 1u >= p.end || (ring[entry + 1u] & OPPOSITE) == 0u;
-    return Around(entry, select(OWN, TRIANGLE, is_triangle));
-}
-
-fn first_corner(p: Patch) -> Around {
-    return corner_from(p, p.start);
-}
-
-// Returns the next corner around the vertex. Its entry is the end of the patch after the last corner.
-fn next_corner(p: Patch, at: Around) -> Around {
-    if at.role == OWN || at.role == NEXT {
-        return Around(at.entry, at.role + 1u);
+    let end = entry + select(2u, 1u, is_triangle);
+    let last = vertex_at(select(end, p.start, end >= p.end));
+    let last_at = position(last);
+    var e: Element;
+    e.vertices = vec3(vertex_at(entry), last, last);
+    e.next = next;
+    e.last = edge(p.at, last_at) * p.unit;
+    if is_triangle {
+        return Around(e, entry, end, last_at, TRIANGLE, TRIANGLE);
     }
-    let next = at.entry + select(1u, 2u, at.role == LAST);
-    if next >= p.end {
-        return Around(p.end, TRIANGLE);
+    e.vertices.y = vertex_at(entry + 1u);
+    let opposite_at = position(e.vertices.y);
+    e.from_next = edge(next_at, opposite_at) * p.unit;
+    e.from_last = edge(last_at, opposite_at) * p.unit;
+    return Around(e, entry, end, last_at, OWN, LAST);
+}
+
+fn first_element(p: Patch) -> Around {
+    let next_at = position(vertex_at(p.start));
+    return element_from(p, p.start, next_at, edge(p.at, next_at) * p.unit);
+}
+
+// Returns the next element around the vertex. Its entry is the end of the patch after the last element.
+fn next_element(p: Patch, at: Around) -> Around {
+    if at.end >= p.end {
+        var none = at;
+        none.entry = p.end;
+        return none;
     }
-    return corner_from(p, next);
+    return element_from(p, at.end, at.last_at, at.element.last);
 }
 
-// Returns the entries of the other two vertices of a corner, counter-clockwise.
-fn others_of(p: Patch, at: Around) -> vec2<u32> {
-    let next = at.entry + select(2u, 1u, at.role == TRIANGLE);
-    let last = select(next, p.start, next >= p.end);
-    let opposite = at.entry + 1u;
-    if at.role == NEXT {
-        return vec2(at.entry, opposite);
-    }
-    return vec2(select(at.entry, last, at.role == LAST), select(last, opposite, at.role == LAST));
-}
-
-// Returns the other vertices, counter-clockwise, of the quadrilateral that begins at an entry.
-fn quadrilateral_from(p: Patch, entry: u32) -> vec3<u32> {
-    let last = select(entry + 2u, p.start, entry + 2u >= p.end);
-    return vec3(vertex_at(entry), vertex_at(entry + 1u), vertex_at(last));
-}
-
-// Returns a corner of the plane around the vertex, with the vertex moved by d, and makes it the present corner.
-fn corner_around(p: Patch, at: Around, d: vec2<f32>) -> Corner {
-    let others = others_of(p, at);
-    return corner_of(p, at.role, vertex_at(others.x), vertex_at(others.y), d);
-}
-
-// Returns the target map of a corner around the vertex.
-fn map_of_corner(p: Patch, at: Around) -> vec3<f32> {
-    let others = others_of(p, at);
-    return map_of_patch(p, vertex_at(others.x), vertex_at(others.y));
+// Returns the entries of the vertices of an element other than the vertex of the patch.
+fn entries_of(p: Patch, at: Around) -> vec3<u32> {
+    let last = select(at.end, p.start, at.end >= p.end);
+    return vec3(at.entry, select(last, at.entry + 1u, at.first_role == OWN), last);
 }
 
 // Returns in x the number of neighbors of the vertex along edges, in y the sum of the weights of its corners.
@@ -94,9 +89,11 @@ fn patch_of(vertex: u32) -> Patch {
 // Returns the least height of a corner, as metrics see it, over its edge b - a.
 fn least_height(p: Patch) -> f32 {
     var least = 3.0e38;
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let t = metric_form(corner_around(p, at, vec2(0.0)));
-        least = min(least, cross2(t.a, t.b) / length(t.b - t.a));
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        for (var role = at.first_role; role <= at.last_role; role++) {
+            let t = metric_form(corner_in(p, at.element, role, vec2(0.0)));
+            least = min(least, cross2(t.a, t.b) / length(t.b - t.a));
+        }
     }
     return least;
 }

@@ -22,51 +22,47 @@ fn cotangent_derivatives(t: Corner) -> Derivatives {
     );
 }
 
-// Returns a corner of a quadrilateral that the visited vertex is not in, as metrics see it. The present corner is another corner of
-// the quadrilateral.
-fn distant_corner(p: Patch, vertices: vec3<u32>) -> Corner {
-    let start = position(vertices.x);
-    let a = edge(start, position(vertices.y)) * p.unit;
-    let b = edge(start, position(vertices.z)) * p.unit;
-    return transformed(metric_form(Corner(a, b, p.ideal)), map_of(vertices) * p.map_unit);
+// Returns the corner opposite the visited vertex of a quadrilateral, as metrics see it. The present corner is another corner of the
+// quadrilateral.
+fn opposite_of(p: Patch, e: Element) -> Corner {
+    let map = map_of(e.vertices.yzx) * p.map_unit;
+    return transformed(metric_form(Corner(-e.from_last, -e.from_next, p.ideal)), map);
 }
 
-// Returns the cotangent of the angle at a corner around the vertex of a patch, with the vertex moved by d.
-fn cotangent_around(p: Patch, role: u32, first: u32, second: u32, d: vec2<f32>) -> f32 {
-    let map = map_of_patch(p, first, second);
-    return cotangent_of(transformed(metric_form(corner_of(p, role, first, second, d)), map));
+// Returns the cotangent of the angle at a corner of a quadrilateral, with the visited vertex moved by d.
+fn cotangent_in(p: Patch, e: Element, role: u32, d: vec2<f32>) -> f32 {
+    return cotangent_of(transformed(metric_form(corner_in(p, e, role, d)), map_in(p, e, role)));
 }
 
-// Returns the cotangent of the angle at a corner around the vertex of a patch, with its derivatives by the vertex.
-fn cotangent_derivatives_around(p: Patch, role: u32, first: u32, second: u32) -> Derivatives {
-    let map = map_of_patch(p, first, second);
-    let t = transformed(metric_form(corner_of(p, role, first, second, vec2(0.0))), map);
+// Returns the cotangent of the angle at a corner of a quadrilateral, with its derivatives by the visited vertex.
+fn cotangent_derivatives_in(p: Patch, e: Element, role: u32) -> Derivatives {
+    let map = map_in(p, e, role);
+    let t = transformed(metric_form(corner_in(p, e, role, vec2(0.0))), map);
     return pulled_back(cotangent_derivatives(t), map);
 }
 
-// Returns the term of a quadrilateral with the vertex of a patch moved by d. `around` are its other vertices, counter-clockwise.
-fn opposite_angles(p: Patch, around: vec3<u32>, d: vec2<f32>) -> f32 {
-    let own = cotangent_around(p, OWN, around.x, around.z, d);
-    let next = cotangent_around(p, NEXT, around.x, around.y, d);
-    let last = cotangent_around(p, LAST, around.z, around.y, d);
-    let opposite = cotangent_of(distant_corner(p, around.yzx));
+// Returns the term of a quadrilateral with the vertex of a patch moved by d.
+fn opposite_angles(p: Patch, e: Element, d: vec2<f32>) -> f32 {
+    let own = cotangent_in(p, e, OWN, d);
+    let next = cotangent_in(p, e, NEXT, d);
+    let last = cotangent_in(p, e, LAST, d);
+    let opposite = cotangent_of(opposite_of(p, e));
     return 200.0 * (own * opposite + next * last);
 }
 
-// Adds the term of a quadrilateral, with its derivatives by the vertex of a patch, to a sum.
-fn with_opposite_angles(sum: Derivatives, p: Patch, around: vec3<u32>) -> Derivatives {
-    let own = cotangent_derivatives_around(p, OWN, around.x, around.z);
-    let next = cotangent_derivatives_around(p, NEXT, around.x, around.y);
-    let last = cotangent_derivatives_around(p, LAST, around.z, around.y);
-    let opposite = cotangent_of(distant_corner(p, around.yzx));
+// Returns the term of a quadrilateral, with its derivatives by the vertex of a patch.
+fn opposite_angle_derivatives(p: Patch, e: Element) -> Derivatives {
+    let own = cotangent_derivatives_in(p, e, OWN);
+    let next = cotangent_derivatives_in(p, e, NEXT);
+    let last = cotangent_derivatives_in(p, e, LAST);
+    let opposite = cotangent_of(opposite_of(p, e));
     let g = next.gradient;
     let h = last.gradient;
     let crossed = vec3(2.0 * g.x * h.x, g.x * h.y + g.y * h.x, 2.0 * g.y * h.y);
     return Derivatives(
-        sum.value + 200.0 * (own.value * opposite + next.value * last.value),
-        sum.gradient + 200.0 * (own.gradient * opposite + g * last.value + h * next.value),
-        sum.hessian + 200.0 * (own.hessian * opposite + next.hessian * last.value
-            + last.hessian * next.value + crossed),
+        200.0 * (own.value * opposite + next.value * last.value),
+        200.0 * (own.gradient * opposite + g * last.value + h * next.value),
+        200.0 * (own.hessian * opposite + next.hessian * last.value + last.hessian * next.value + crossed),
     );
 }
 

@@ -20,6 +20,17 @@ var<private> plane_slopes: vec2<f32>;
 // The slopes of the edges that metrics see.
 var<private> edge_slopes: vec2<f32>;
 
+// An element with the vertex of a patch: the vertices of a quadrilateral after the visited vertex, counter-clockwise (the next, the
+// opposite and the last vertex), and edges in the patch's unit: from the visited vertex to the next and to the last vertex, and from
+// these two to the opposite vertex. A triangle has its last vertex in place of the opposite vertex.
+struct Element {
+    vertices: vec3<u32>,
+    next: vec2<f32>,
+    last: vec2<f32>,
+    from_next: vec2<f32>,
+    from_last: vec2<f32>,
+}
+
 // Sets the role of the visited vertex in the present corner.
 fn set_role(role: u32) {
     is_right = role != TRIANGLE;
@@ -76,6 +87,40 @@ fn moved_back(t: Corner, d: vec2<f32>) -> Corner {
 fn weighted(d: Derivatives) -> Derivatives {
     let w = corner_weight;
     return Derivatives(w * d.value, w * d.gradient, w * d.hessian);
+}
+
+// Returns the quadrilateral of the vertex of a patch and three other vertices, counter-clockwise.
+fn quadrilateral_of(p: Patch, vertices: vec3<u32>) -> Element {
+    let next = position(vertices.x);
+    let opposite = position(vertices.y);
+    let last = position(vertices.z);
+    return Element(
+        vertices,
+        edge(p.at, next) * p.unit,
+        edge(p.at, last) * p.unit,
+        edge(next, opposite) * p.unit,
+        edge(last, opposite) * p.unit,
+    );
+}
+
+// Returns the two vertices of a corner that are not the visited vertex, counter-clockwise, from the list of an element.
+fn others_of(vertices: vec3<u32>, role: u32) -> vec2<u32> {
+    if role == NEXT {
+        return vertices.xy;
+    }
+    return select(vertices.xz, vertices.zy, role == LAST);
+}
+
+// Returns a corner of an element in the plane, with the vertex of the patch moved by d, and makes it the present corner.
+fn corner_in(p: Patch, e: Element, role: u32, d: vec2<f32>) -> Corner {
+    set_role(role);
+    if role == NEXT {
+        return Corner(e.from_next, d - e.next, p.ideal);
+    }
+    if role == LAST {
+        return Corner(d - e.last, e.from_last, p.ideal);
+    }
+    return Corner(e.next - d, e.last - d, p.ideal);
 }
 
 // Returns a corner of the plane around the vertex of a patch, with the vertex moved by d, and makes it the present corner.

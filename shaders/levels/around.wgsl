@@ -18,10 +18,11 @@ fn root_of_stiffness(p: Patch, hessian: vec3<f32>) -> f32 {
 fn derivatives_around(p: Patch) -> Derivatives {
     var sum = Derivatives(0.0, vec2(0.0), vec3(0.0));
 #if QUADRILATERALS
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let map = map_of_corner(p, at);
-        let t = transformed(metric_form(corner_around(p, at, vec2(0.0))), map);
-        var one = pulled_back(metric_derivatives(t, 0.0), map);
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        for (var role = at.first_role; role <= at.last_role; role++) {
+        let map = map_in(p, at.element, role);
+        let t = transformed(metric_form(corner_in(p, at.element, role, vec2(0.0))), map);
+        let one = pulled_back(metric_derivatives(t, 0.0), map);
 #else
     var a = ring_edge(p, p.end - 1u);
     for (var i = p.start; i < p.end; i++) {
@@ -29,15 +30,19 @@ fn derivatives_around(p: Patch) -> Derivatives {
         let map = map_around(p, i);
         let one = pulled_back(metric_derivatives(transformed(Corner(a, b, p.ideal), map), 0.0), map);
 #endif
-#if OPPOSITE_ANGLES
-        if at.role == OWN {
-            one = with_opposite_angles(one, p, quadrilateral_from(p, at.entry));
-        }
-#endif
         sum.gradient += one.gradient;
         sum.hessian += one.hessian;
-#if !QUADRILATERALS
+#if QUADRILATERALS
+        }
+#else
         a = b;
+#endif
+#if OPPOSITE_ANGLES
+        if at.first_role == OWN {
+            let joined = opposite_angle_derivatives(p, at.element);
+            sum.gradient += joined.gradient;
+            sum.hessian += joined.hessian;
+        }
 #endif
     }
     return sum;

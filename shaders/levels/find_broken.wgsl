@@ -3,15 +3,30 @@
 // result.
 
 #if QUADRILATERALS
-// Returns a corner of a patch after its vertices have moved: the visited vertex by d, the others by `first` and `second`.
-fn moved_corner(t: Corner, role: u32, d: vec2<f32>, first: vec2<f32>, second: vec2<f32>) -> Corner {
+// The displacements of the vertices of an element other than the visited vertex, counter-clockwise.
+struct Displacements {
+    next: vec2<f32>,
+    opposite: vec2<f32>,
+    last: vec2<f32>,
+}
+
+fn displacements_of(vertices: vec3<u32>) -> Displacements {
+    return Displacements(
+        displacement(vertices.x),
+        displacement(vertices.y),
+        displacement(vertices.z),
+    );
+}
+
+// Returns a corner of an element after its vertices have moved, the visited vertex by d.
+fn moved_corner(t: Corner, role: u32, d: vec2<f32>, by: Displacements) -> Corner {
     if role == NEXT {
-        return Corner(moved_edge(t.a, first, second), moved_edge(t.b, first, d), t.ideal);
+        return Corner(moved_edge(t.a, by.next, by.opposite), moved_edge(t.b, by.next, d), t.ideal);
     }
     if role == LAST {
-        return Corner(moved_edge(t.a, first, d), moved_edge(t.b, first, second), t.ideal);
+        return Corner(moved_edge(t.a, by.last, d), moved_edge(t.b, by.last, by.opposite), t.ideal);
     }
-    return Corner(moved_edge(t.a, d, first), moved_edge(t.b, d, second), t.ideal);
+    return Corner(moved_edge(t.a, d, by.next), moved_edge(t.b, d, by.last), t.ideal);
 }
 
 #endif
@@ -31,21 +46,17 @@ fn find_broken(
     p.ideal = Ideal(params.mean_area, params.size_weight);
     let d = displacement(vertex);
     var kept = true;
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let others = others_of(p, at);
-        let map = map_of_corner(p, at);
-        let was = corner_around(p, at, vec2(0.0));
-        let moved = moved_corner(
-            was,
-            at.role,
-            d,
-            displacement(vertex_at(others.x)),
-            displacement(vertex_at(others.y)),
-        );
-        let here = transformed(metric_form(was), map);
-        let there = transformed(metric_form(moved), map);
-        kept = kept && !is_broken(here, there)
-            && keeps_altitude(was.a, was.b, moved.a, moved.b, 1.0);
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        let ahead = displacements_of(at.element.vertices);
+        for (var role = at.first_role; role <= at.last_role; role++) {
+            let was = corner_in(p, at.element, role, vec2(0.0));
+            let moved = moved_corner(was, role, d, ahead);
+            let map = map_in(p, at.element, role);
+            let here = transformed(metric_form(was), map);
+            let there = transformed(metric_form(moved), map);
+            kept = kept && !is_broken(here, there)
+                && keeps_altitude(was.a, was.b, moved.a, moved.b, 1.0);
+        }
     }
 #else
     let p = patch_of(vertex);

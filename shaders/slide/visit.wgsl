@@ -35,12 +35,12 @@ struct AlongCurve {
 // Returns a triangle of a patch in the plane, with the vertex moved by d.
 fn corner_around(p: Patch, i: u32, d: vec2<f32>) -> Corner {
 #if QUADRILATERALS
-    let others = others_of(i);
+    let others = others_at(i);
     return corner_of(p, role_of(i), others.x, others.y, d);
 }
 
 // Returns the other two vertices of a corner, without the marks of the role.
-fn others_of(i: u32) -> vec2<u32> {
+fn others_at(i: u32) -> vec2<u32> {
     return corners[i] & vec2(~OPPOSITE);
 }
 
@@ -49,9 +49,9 @@ fn role_of(i: u32) -> u32 {
     return (corners[i].x >> 31u) + 2u * (corners[i].y >> 31u);
 }
 
-// Returns the other vertices, counter-clockwise, of the quadrilateral whose first corner has this index.
-fn quadrilateral_from(i: u32) -> vec3<u32> {
-    return vec3(corners[i].x, corners[i + 1u].y, corners[i].y) & vec3(~OPPOSITE);
+// Returns the quadrilateral whose first corner has this index.
+fn quadrilateral_from(p: Patch, i: u32) -> Element {
+    return quadrilateral_of(p, vec3(corners[i].x, corners[i + 1u].y, corners[i].y) & vec3(~OPPOSITE));
 }
 
 // Returns the sum of the weights of the corners of a patch.
@@ -78,7 +78,7 @@ fn along_curve() -> AlongCurve {
         var hessian = vec3(0.0);
         for (var i = p.start; i < p.end; i++) {
 #if QUADRILATERALS
-            let others = others_of(i);
+            let others = others_at(i);
             let map = map_of_patch(p, others.x, others.y);
             let t = transformed(metric_form(corner_around(p, i, vec2(0.0))), map);
 #else
@@ -91,7 +91,10 @@ fn along_curve() -> AlongCurve {
 #if OPPOSITE_ANGLES
             var d = pulled_back(metric_derivatives(t, 0.0), map);
             if role_of(i) == OWN {
-                d = with_opposite_angles(d, p, quadrilateral_from(i));
+                let joined = opposite_angle_derivatives(p, quadrilateral_from(p, i));
+                d.value += joined.value;
+                d.gradient += joined.gradient;
+                d.hessian += joined.hessian;
             }
 #else
             let d = pulled_back(metric_derivatives(t, 0.0), map);
@@ -182,7 +185,7 @@ fn objective_at(to: vec2<f32>, limit: f32) -> vec2<f32> {
         for (var i = p.start; i < p.end; i++) {
             let moved = corner_around(p, i, d);
 #if QUADRILATERALS
-            let others = others_of(i);
+            let others = others_at(i);
             let t = transformed(metric_form(moved), map_of_patch(p, others.x, others.y));
 #else
             let t = transformed(moved, map_of_patch(p, corners[i].x, corners[i].y));
@@ -204,7 +207,7 @@ fn objective_at(to: vec2<f32>, limit: f32) -> vec2<f32> {
             sum += metric_model(t);
 #if OPPOSITE_ANGLES
             if role_of(i) == OWN {
-                sum += opposite_angles(p, quadrilateral_from(i), d);
+                sum += opposite_angles(p, quadrilateral_from(p, i), d);
             }
 #endif
         }
@@ -315,7 +318,7 @@ fn slide(
     let unit = unit_of(edge(
         position(visited.vertices.x),
 #if QUADRILATERALS
-        position(others_of(visited.first_corner).x),
+        position(others_at(visited.first_corner).x),
 #else
         position(corners[visited.first_corner].x),
 #endif

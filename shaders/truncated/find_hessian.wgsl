@@ -20,14 +20,18 @@ fn find_hessian(
     for (var i = p.start; i < p.end; i++) {
         entries[i] = vec4(0.0);
     }
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let map = map_of_corner(p, at);
-        let others = others_of(p, at);
-        let made = blocks_of(transformed(metric_form(corner_around(p, at, vec2(0.0))), map));
-        gradient += select(made.gradient, mapped(map, made.gradient), HAS_TARGETS);
-        own += block_in_plane(made.own, map, p.unit);
-        entries[others.x] += block_in_plane(made.a, map, p.unit);
-        entries[others.y] += block_in_plane(made.b, map, p.unit);
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        let around = entries_of(p, at);
+        for (var role = at.first_role; role <= at.last_role; role++) {
+            let map = map_in(p, at.element, role);
+            let corner = corner_in(p, at.element, role, vec2(0.0));
+            let made = blocks_of(transformed(metric_form(corner), map));
+            gradient += select(made.gradient, mapped(map, made.gradient), HAS_TARGETS);
+            own += block_in_plane(made.own, map, p.unit);
+            let others = others_of(around, role);
+            entries[others.x] += block_in_plane(made.a, map, p.unit);
+            entries[others.y] += block_in_plane(made.b, map, p.unit);
+        }
     }
 #else
     // The last neighbor has its second triangle at the start of the one-ring.

@@ -66,21 +66,22 @@ fn epsilon_of(p: Patch, corners: vec3<u32>, map: vec3<f32>) -> f32 {
 }
 
 #if QUADRILATERALS
-// Returns the vertices of a corner around a vertex.
-fn corners_at(p: Patch, vertex: u32, at: Around) -> vec3<u32> {
-    let others = others_of(p, at);
-    return vec3(vertex, vertex_at(others.x), vertex_at(others.y));
+// Returns ε of a corner of an element around a vertex.
+fn epsilon_in(p: Patch, vertex: u32, e: Element, role: u32, map: vec3<f32>) -> f32 {
+    return epsilon_of(p, vec3(vertex, others_of(e.vertices, role)), map);
 }
 
 #endif
 fn energy_of_patch(p: Patch, vertex: u32, d: vec2<f32>) -> f32 {
     var sum = 0.0;
 #if QUADRILATERALS
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let map = map_of_corner(p, at);
-        let epsilon = epsilon_of(p, corners_at(p, vertex, at), map);
-        let t = transformed(metric_form(corner_around(p, at, d)), map);
-        sum += corner_weight * energy(t, epsilon);
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        for (var role = at.first_role; role <= at.last_role; role++) {
+            let map = map_in(p, at.element, role);
+            let epsilon = epsilon_in(p, vertex, at.element, role, map);
+            let t = transformed(metric_form(corner_in(p, at.element, role, d)), map);
+            sum += corner_weight * energy(t, epsilon);
+        }
     }
 #else
     var before = p.end - 1u;
@@ -98,14 +99,16 @@ fn energy_of_patch(p: Patch, vertex: u32, d: vec2<f32>) -> f32 {
 fn untangling_step(p: Patch, vertex: u32) -> vec2<f32> {
     var sum = Derivatives(0.0, vec2(0.0), vec3(0.0));
 #if QUADRILATERALS
-    for (var at = first_corner(p); at.entry < p.end; at = next_corner(p, at)) {
-        let map = map_of_corner(p, at);
-        let epsilon = epsilon_of(p, corners_at(p, vertex, at), map);
-        let t = transformed(metric_form(corner_around(p, at, vec2(0.0))), map);
-        let d = pulled_back(energy_derivatives(t, epsilon), map);
-        sum.value += corner_weight * d.value;
-        sum.gradient += corner_weight * d.gradient;
-        sum.hessian += corner_weight * d.hessian;
+    for (var at = first_element(p); at.entry < p.end; at = next_element(p, at)) {
+        for (var role = at.first_role; role <= at.last_role; role++) {
+            let map = map_in(p, at.element, role);
+            let epsilon = epsilon_in(p, vertex, at.element, role, map);
+            let t = transformed(metric_form(corner_in(p, at.element, role, vec2(0.0))), map);
+            let d = pulled_back(energy_derivatives(t, epsilon), map);
+            sum.value += corner_weight * d.value;
+            sum.gradient += corner_weight * d.gradient;
+            sum.hessian += corner_weight * d.hessian;
+        }
     }
 #else
     var before = p.end - 1u;
