@@ -8,7 +8,7 @@ use gpu_smooth::{
     options::Precision,
 };
 use gpu_smooth_job::{Domain, smoother_precision};
-use mesh_io::{Constraints, MeshFile, PointField, SourceLocation, WriteError};
+use mesh_io::{Constraints, MeshFile, PointField, SourceLocation, WriteError, interfaces};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -48,6 +48,24 @@ impl LoadedMesh {
             true => self.source.interfaces_of_elements().0,
             false => self.source.interface_vertices(),
         }
+    }
+
+    /// Returns the edges between elements of different regions, by the vertices of the mesh.
+    pub(crate) fn interface_edges(&self) -> Vec<[u32; 2]> {
+        let of_triangles = self.source.regions();
+        let of_quadrilaterals = self.source.quadrilateral_regions();
+        let Mesh { points, triangles, quadrilaterals, .. } = self.mesh();
+        if of_triangles.is_none() && quadrilaterals.is_empty() {
+            return Vec::new();
+        }
+        let triangles = triangles.iter().enumerate();
+        let triangles =
+            triangles.map(|(t, corners)| (&corners[..], of_triangles.map_or(0, |of| of[t])));
+        let in_file =
+            self.source.proper_quadrilaterals().map(|(index, _)| of_quadrilaterals[index]);
+        let quadrilaterals = quadrilaterals.iter().zip(in_file);
+        let quadrilaterals = quadrilaterals.map(|(corners, region)| (&corners[..], region));
+        interfaces(triangles.chain(quadrilaterals), points.len()).1
     }
 
     /// Returns the paths of all files that were read.

@@ -86,8 +86,9 @@ fn vertices_between_regions_of_quadrilaterals_stay() {
     let halves = |k: usize| usize::from(k % 10 < 5);
     for cut in [(|_| false) as fn(usize) -> bool, |k| k % 10 < 5, |k| k % 3 == 0] {
         let folder = Folder::new(&[("in.vtk", &vtk(10, cut, halves))]);
-        let run = folder.line("in.vtk out.vtk --engine cpu");
+        let run = folder.line("in.vtk out.vtk --engine cpu --picture p.svg");
         assert_holds(&run.err, &["9 vertices between regions stay fixed"]);
+        assert_holds(&folder.text("p.svg"), &[">between regions</text>"]);
         let compared = folder.line("compare in.vtk out.vtk");
         assert_holds(&compared.out, &["72 of 121 vertices have moved"]);
         let freed = folder.line("in.vtk free.vtk --engine cpu --free-interfaces");

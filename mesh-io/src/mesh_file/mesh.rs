@@ -104,7 +104,7 @@ impl MeshFile {
     }
 
     /// Returns the quadrilaterals of four different vertices, each with its index in [`quadrilaterals`](Self::quadrilaterals).
-    pub fn proper_quadrilaterals(&self) -> impl Iterator<Item = (usize, &[u32; 4])> {
+    pub fn proper_quadrilaterals(&self) -> impl Iterator<Item = (usize, &[u32; 4])> + Clone {
         let is_proper =
             |(_, corners): &(usize, &[u32; 4])| (1..4).all(|k| !corners[..k].contains(&corners[k]));
         self.quadrilaterals().iter().enumerate().filter(is_proper)

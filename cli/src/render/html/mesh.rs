@@ -99,7 +99,7 @@ pub(crate) fn viewer_mesh(
         topology,
         &faces,
         &file.mesh().fixed,
-        file.source.regions(),
+        file.interface_edges(),
         [first, last].map(|state| state.points()),
     );
     let shown = match is_whole {

@@ -66,7 +66,7 @@ pub(crate) fn write(
             mesh.topology,
             &faces,
             &mesh.file.mesh().fixed,
-            mesh.file.source.regions(),
+            mesh.file.interface_edges(),
             [before, after],
         ),
         faces,

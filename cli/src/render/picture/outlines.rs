@@ -8,7 +8,7 @@ use crate::render::picture::faces::FixedFaces;
 pub(crate) struct Outlines {
     /// Boundary edges, which belong to one triangle or one fixed face each.
     pub(crate) boundary: Vec<[u32; 2]>,
-    /// Edges between triangles of different regions.
+    /// Edges between elements of different regions.
     pub(crate) between_regions: Vec<[u32; 2]>,
     /// Fixed vertices inside the mesh that have not slid and are no corner of a fixed face, ascending.
     pub(crate) held: Vec<u32>,
@@ -17,13 +17,13 @@ pub(crate) struct Outlines {
 }
 
 impl Outlines {
-    /// Collects the lines of a mesh from its fixed faces and vertices, the region of each triangle, and its points before
-    /// and after a run. `regions` is `None` for a single region.
+    /// Collects the lines of a mesh from its fixed faces and vertices, the edges between regions, and its points before and
+    /// after a run.
     pub(crate) fn of(
         topology: &Topology<'_>,
         faces: &FixedFaces,
         fixed: &[u32],
-        regions: Option<&[u32]>,
+        between_regions: Vec<[u32; 2]>,
         [before, after]: [&[[f64; 2]]; 2],
     ) -> Self {
         let slid = slid(topology, before, after);
@@ -36,7 +36,6 @@ impl Outlines {
         held.sort_unstable();
         held.dedup();
         held.retain(|v| slid.binary_search(v).is_err());
-        let between_regions = regions.map(|regions| between(topology, regions)).unwrap_or_default();
         Self { boundary, between_regions, held, slid }
     }
 }
@@ -46,23 +45,6 @@ pub(crate) fn slid(topology: &Topology<'_>, before: &[[f64; 2]], after: &[[f64; 
     let states = before.iter().zip(after).zip(topology.free());
     let slid = states.map(|((was, is), is_free)| !is_free && was != is);
     (0..).zip(slid).filter(|(_, slid)| *slid).map(|(v, _)| v).collect()
-}
-
-/// Returns the edges between triangles of different regions.
-fn between(topology: &Topology<'_>, regions: &[u32]) -> Vec<[u32; 2]> {
-    let triangles = topology.triangles();
-    let across = |t: usize, [a, b]: [u32; 2]| {
-        let (star_a, star_b) = (topology.star(a), topology.star(b));
-        let (star, end) = if star_a.len() <= star_b.len() { (star_a, b) } else { (star_b, a) };
-        let other = star
-            .iter()
-            .find(|&&other| other as usize != t && triangles[other as usize].contains(&end));
-        other.map(|&other| regions[other as usize])
-    };
-    inner_edges(triangles)
-        .filter(|&(t, edge)| across(t, edge).is_some_and(|r| r != regions[t]))
-        .map(|(_, edge)| edge)
-        .collect()
 }
 
 /// Returns each edge inside a mesh once, together with one of its triangles. Some boundary edges are included.
