@@ -141,7 +141,7 @@ try {
   const start = await evaluate("seen.frames[0]");
   await until("a frame that is torn, and one that is mended", "seen.most > 0 && seen.numbers[2] === 0");
   const [most, end] = await evaluate("[seen.most, seen.frames[0]]");
-  console.log(`torn: ${most} triangles inverted at most in frames that were seen, none after ${end - start} frames`);
+  console.log(`torn: ${most} triangles and corners inverted at most in frames that were seen, none after ${end - start} frames`);
   await still();
   await frames("mending");
   await picture("mended.png");

@@ -27,7 +27,7 @@ pub struct Run {
     pub before: f64,
     pub after: f64,
     pub sweeps: u32,
-    /// Number of inverted or flat triangles after the run, by exact predicates.
+    /// Number of elements after the run that are inverted or flat, or not convex, by exact predicates.
     pub inverted: usize,
     points: Vec<f32>,
 }
@@ -71,6 +71,11 @@ impl Page {
         self.plate.mesh.triangles.as_flattened().to_vec()
     }
 
+    /// Returns the vertices of all quadrilaterals, four per quadrilateral.
+    pub fn quadrilaterals(&self) -> Vec<u32> {
+        self.plate.mesh.quadrilaterals.as_flattened().to_vec()
+    }
+
     /// Smooths the mesh on the page's only thread. The page does not respond during the run.
     pub fn run_on_cpu(&self) -> Result<Run, JsError> {
         let smoother = Smoother::new(&self.plate.mesh)?;
@@ -108,7 +113,7 @@ pub struct Live {
     scene: Scene,
     plate: Plate,
     points: Vec<f32>,
-    /// f, the worst inverse mean ratio, and the number of inverted triangles.
+    /// f, the worst inverse mean ratio, and the number of inverted triangles and of inverted corners of quadrilaterals.
     numbers: [f32; 3],
 }
 
@@ -139,12 +144,13 @@ impl Live {
         self.points.clone()
     }
 
-    /// Returns f, the worst inverse mean ratio and the number of inverted triangles from the latest frame read back.
+    /// Returns f, the worst inverse mean ratio, and the number of inverted triangles and of inverted corners of quadrilaterals from
+    /// the latest frame read back.
     pub fn numbers(&self) -> Vec<f32> {
         self.numbers.to_vec()
     }
 
-    /// Drags the hole's center toward x, y, as far as triangles allow. The center starts at 0, 0.
+    /// Drags the hole's center toward x, y, as far as elements allow. The center starts at 0, 0.
     pub fn hold(&mut self, x: f32, y: f32) {
         self.scene.hold(Some([x, y]));
     }
@@ -153,7 +159,7 @@ impl Live {
         self.scene.hold(None);
     }
 
-    /// Scatters vertices, which inverts triangles.
+    /// Scatters vertices, which inverts elements.
     pub fn tear(&mut self) {
         self.scene.tear(&self.plate);
     }

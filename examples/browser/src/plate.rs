@@ -2,7 +2,7 @@
 
 use gpu_smooth::Mesh;
 
-/// A plate of 2 by 2 around the origin, with a round hole of radius 0.35.
+/// A plate of 2 by 2 around the origin, of triangles and quadrilaterals, with a round hole of radius 0.35.
 #[derive(Clone)]
 pub(crate) struct Plate {
     pub(crate) mesh: Mesh,
@@ -11,7 +11,7 @@ pub(crate) struct Plate {
 }
 
 /// Largest displacement of a vertex along each coordinate, in units of the distance between vertices. Values above
-/// approximately a quarter invert triangles.
+/// approximately a quarter invert elements.
 const BADLY: f64 = 0.2;
 
 impl Plate {
@@ -31,17 +31,21 @@ impl Plate {
                 points.push(at(i / f64::from(around), ring / f64::from(rings)));
             }
         }
-        let mut triangles = Vec::new();
+        // The upper half has quadrilaterals, the lower half triangles.
+        let (mut triangles, mut quadrilaterals) = (Vec::new(), Vec::new());
         for ring in 0..rings {
             for i in 0..around {
                 let of = |ring, i| ring * around + i % around;
                 let [a, b, c, d] =
                     [of(ring, i), of(ring + 1, i), of(ring + 1, i + 1), of(ring, i + 1)];
-                triangles.extend([[a, b, c], [a, c, d]]);
+                match 2 * i < around {
+                    true => quadrilaterals.push([a, b, c, d]),
+                    false => triangles.extend([[a, b, c], [a, c, d]]),
+                }
             }
         }
         let hole = (0..around).collect();
-        Self { mesh: Mesh { points, triangles, ..Mesh::default() }, hole }
+        Self { mesh: Mesh { points, triangles, quadrilaterals, ..Mesh::default() }, hole }
     }
 
     /// Returns every `each`th interior vertex.
