@@ -13,15 +13,15 @@ use crate::patch::numbers::{self, Numbers};
 /// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instruction set for which
 /// the code is compiled, and the constant `$general` to whether the copy of the code serves target maps and bounds.
 ///
-/// Each copy of a sweep takes seconds to compile, so only usual cases have a copy of their own, with AVX2 on x86: each
-/// usual metric on meshes without targets and bounds, and soft-size on meshes with targets, where its copy takes half
-/// the time of the copy for all metrics. The copy for all metrics serves all other cases. It looks up the metric for each
-/// triangle, which costs imr nothing measurable, and gives meshes without targets identity maps.
+/// Each copy of a sweep takes seconds to compile, without vector instructions minutes. So only usual cases have a copy of their own,
+/// with the instructions of [`HAS_COPIES`]: each usual metric on meshes without targets and bounds, and on x86 soft-size on meshes
+/// with targets, where its copy takes half the time of the copy for all metrics. The copy for all metrics serves all other cases.
+/// It looks up the metric for each triangle, which costs imr nothing measurable, and gives meshes without targets identity maps.
 macro_rules! with_lanes {
     ($maps:expr, $bounded:expr, $metric:expr, $simd:ident, $f:ident, $general:ident => $body:expr) => {
         'done: {
             let level = fearless_simd::Level::new();
-            if $maps.is_none() && !$bounded {
+            if $crate::patch::lanes::HAS_COPIES && $maps.is_none() && !$bounded {
                 #[allow(dead_code)]
                 const $general: bool = false;
                 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -81,6 +81,14 @@ macro_rules! with_instructions {
     }};
 }
 pub(crate) use with_instructions;
+
+/// Whether usual cases have copies of their own: with AVX2 on x86, with Neon on 64-bit ARM, and with `simd128` in WebAssembly.
+pub(crate) const HAS_COPIES: bool = cfg!(any(
+    target_arch = "x86",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    target_feature = "simd128"
+));
 
 /// Number of lanes.
 pub(crate) const LANES: usize = 4;
