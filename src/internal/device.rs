@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::gpu::{Gpu, GpuEngine, GpuError, Waiting};
 use crate::layout::Problem;
 use crate::parallel::pace::now;
-use crate::run::{Plan, Stepwise, StepwiseRun};
+use crate::run::{Plan, Stepwise, StepwiseRun, Work};
 
 pub use crate::gpu::scope::DeviceCounts;
 pub use crate::gpu::{BindLayout, Kernel};
@@ -25,8 +25,8 @@ pub fn run_on_gpu<'a>(
     positions: &'a [DVec2],
     plan: Plan,
 ) -> Result<impl Stepwise + 'a, GpuError> {
-    let steps = plan.steps();
+    let work = Work::of_sweeps(plan.steps());
     let engine =
-        now(GpuEngine::new(gpu, problem, positions, None, plan.clone(), steps, Waiting::Block))?;
+        now(GpuEngine::new(gpu, problem, positions, None, plan.clone(), work, Waiting::Block))?;
     Ok(StepwiseRun::new(engine, plan))
 }

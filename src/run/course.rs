@@ -11,8 +11,8 @@ use crate::run::history::History;
 use crate::run::named::Named;
 use crate::run::plan::Plan;
 use crate::run::progress::GoesOn;
-use crate::run::sweep_params::SweepParams;
 use crate::run::sweeping::Sweeping;
+use crate::run::work::{Ending, Work};
 
 /// The control of the sweeps of a run. Its state determines which sweeps, corrections and steps follow, and when they end.
 pub(crate) enum Course {
@@ -37,11 +37,17 @@ impl Course {
         options.is_multilevel() && problem.free_count() > 0
     }
 
-    /// Returns all distinct steps that a run by `plan` can take.
-    pub(crate) fn steps(&self, plan: &Plan) -> Vec<SweepParams> {
+    /// Returns the work of a run by `plan`.
+    pub(crate) fn work(&self, plan: &Plan) -> Work {
         match self {
-            Self::Sweeps(_) => plan.steps(),
-            Self::Corrected(_) => Corrections::steps(plan),
+            Self::Sweeps(sweeping) => {
+                Work { is_measured: sweeping.is_measured(), ..Work::of_sweeps(plan.steps()) }
+            }
+            Self::Corrected(corrections) => Work {
+                steps: Corrections::steps(plan),
+                ending: if corrections.can_step() { Ending::Steps } else { Ending::Corrections },
+                is_measured: corrections.is_measured(),
+            },
         }
     }
 

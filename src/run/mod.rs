@@ -26,6 +26,7 @@ mod sweep_params;
 mod sweeping;
 pub(crate) mod sweeps;
 pub(crate) mod truncated;
+mod work;
 
 pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::RunFingerprint;
@@ -47,3 +48,4 @@ pub use stop::{Stop, StopRule};
 pub use sweep_params::SweepParams;
 pub use sweeps::Stepwise;
 pub(crate) use sweeps::StepwiseRun;
+pub(crate) use work::{Ending, Work};

@@ -47,6 +47,11 @@ impl Sweeping {
         }
     }
 
+    /// Returns whether a Newton step of all vertices measures the remaining gain at the end.
+    pub(crate) fn is_measured(&self) -> bool {
+        self.is_measured && self.tolerance > 0.0
+    }
+
     /// Does up to `sweeps` further sweeps of the plan, fewer if the run ends.
     pub(crate) async fn advance(
         &mut self,

@@ -6,7 +6,7 @@ use crate::error::GpuError;
 use crate::gpu::{Gpu, GpuEngine, Waiting};
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
-use crate::run::{Plan, SweepParams};
+use crate::run::{Plan, Work};
 use crate::slide::OnCurves;
 
 /// The engine on a device.
@@ -37,16 +37,16 @@ impl<'s> Device<'s> {
         self.gpu.arithmetic_checked(self.waiting).await
     }
 
-    /// Returns an engine for a run by `plan`, which may take `steps`; see [`GpuEngine::new`].
+    /// Returns an engine for a run by `plan`, which may do the given work; see [`GpuEngine::new`].
     pub(crate) async fn engine(
         self,
         problem: &Problem,
         from: &[DVec2],
         curves: Option<&OnCurves>,
         plan: Plan,
-        steps: Vec<SweepParams>,
+        work: Work,
     ) -> Result<DeviceEngine<'s>, GpuError> {
-        GpuEngine::new(self.gpu, problem, from, curves, plan, steps, self.waiting)
+        GpuEngine::new(self.gpu, problem, from, curves, plan, work, self.waiting)
             .await
             .map(Box::new)
     }

@@ -254,9 +254,9 @@ impl<'s> Session<'s> {
             Place::Device(device) => {
                 let is_judged_by_host = course.is_judged_by_host() || self.field.is_some();
                 let judged = if is_judged_by_host { plan.clone().endless() } else { plan.clone() };
-                let steps = course.steps(plan);
+                let work = course.work(plan);
                 let curves = curves.as_ref();
-                AnyEngine::Device(device.engine(problem, positions, curves, judged, steps).await?)
+                AnyEngine::Device(device.engine(problem, positions, curves, judged, work).await?)
             }
         };
         if let Some(Saved { log, remaining, control, engine: state }) = &self.checkpointer.last {

@@ -6,7 +6,9 @@
 use std::time::Duration;
 
 use gpu_smooth::internal::{DeviceCounts, Plan, Stepwise, device_counts, prepare, run_on_gpu};
-use gpu_smooth::{Backend, CheckpointPolicy, Gpu, Mesh, Method, Options, Smoother, Stopping};
+use gpu_smooth::{
+    Backend, CheckpointPolicy, Gpu, Mesh, Method, Options, Scheme, Slide, Smoother, Stopping,
+};
 
 /// The counts of one run, with bytes for each vertex, rounded.
 #[derive(Debug, PartialEq)]
@@ -79,12 +81,37 @@ fn a_run_to_its_end_gives_the_device_no_more_work_than_before() {
         dispatches: 608,
         submissions: 11,
         waits: 11,
-        kernels: [3, 22],
+        kernels: [25, 0],
         uploaded: 79,
         read_back: 25,
         allocated: 295,
     };
     assert_eq!(work(counts, mesh.points.len(), done), expected);
+}
+
+/// Runs compile their kernels on all threads before the first sweep, whatever follows the sweeps.
+#[test]
+fn no_kernel_is_compiled_after_the_first_sweep() {
+    let quadrilaterals =
+        support::quadrilaterals::perturbed(&support::quadrilaterals::squares(30), 0.3);
+    let mixed = support::quadrilaterals::perturbed(&support::quadrilaterals::mixed(30), 0.2);
+    for (mesh, scheme, slides) in [
+        (perturbed(900), "imr+rms", false),
+        (perturbed(900), "shape-size", false),
+        (perturbed(900), "imr", true),
+        (quadrilaterals, "imr", false),
+        (mixed, "rms", false),
+    ] {
+        let gpu = open();
+        let mut smoother = Smoother::new(&mesh).unwrap();
+        smoother.set_slide(slides.then(Slide::default).as_ref()).unwrap();
+        let options = Options::default().scheme(scheme.parse::<Scheme>().unwrap());
+        let backend = Backend::Gpu(gpu.clone());
+        let outcome = smoother.run(&options).on(&backend).block().unwrap();
+        assert!(outcome.corrections + outcome.newton_steps > 0, "{scheme}");
+        let DeviceCounts { kernels, late_kernels, .. } = device_counts(&gpu);
+        assert!(kernels > 10 && late_kernels == 0, "{scheme}: {late_kernels} of {kernels}");
+    }
 }
 
 /// Whole runs without corrections do as many sweeps in a submission as take a tenth of a second. Here one submission has

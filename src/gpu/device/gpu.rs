@@ -8,13 +8,14 @@ use crate::adapter::AdapterSummary;
 use crate::error::{GpuError, SmoothError};
 use crate::gpu::device::limits;
 use crate::gpu::device::pending::Pending;
-use crate::gpu::kernels::form::Positions;
+use crate::gpu::kernels::form::{MeshForm, Positions};
 use crate::gpu::kernels::pipelines::Pipelines;
 use crate::gpu::kernels::row::User;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::scope::{CountedQueue, DeviceCounts, WatchedDevice, caught, check_alive, poll};
 use crate::mesh::MeshSize;
 use crate::options::Options;
+use crate::parallel::pace::{now, pause};
 use crate::run::Plan;
 
 /// A device with compiled pipelines, created once for many meshes. Clones of the handle refer to the same device.
@@ -112,9 +113,9 @@ impl Gpu {
         if options.is_multilevel() {
             kernels.extend(Kernel::needed_by(&plan, User::Corrections));
         }
-        for kernel in kernels {
-            self.pipelines.get(&self.device, &kernel, Positions::Whole)?;
-        }
+        let kernels: Vec<_> =
+            kernels.into_iter().map(|kernel| (kernel, Positions::Whole.into())).collect();
+        now(self.compile(&kernels))?;
         // Kernels that were compiled earlier need no call of wgpu, which would fail.
         Ok(check_alive(&self.device)?)
     }
@@ -163,6 +164,31 @@ impl Gpu {
     /// [`GpuError::Lost`] if the device is lost.
     pub fn errors(&self) -> Pending<'_, ()> {
         Pending::new(|_| Box::pin(self.device.check_async()))
+    }
+}
+
+impl Gpu {
+    /// Compiles kernels for meshes of their forms, except kernels that are compiled already. Outside of a browser, the threads of
+    /// rayon take kernels from the end of the list while this thread takes them from the start.
+    ///
+    /// # Errors
+    /// The error of the first kernel in the list that the device refuses.
+    pub(crate) async fn compile(&self, kernels: &[(Kernel, MeshForm)]) -> Result<(), GpuError> {
+        let missing = kernels.iter().filter(|(kernel, form)| !self.pipelines.has(kernel, *form));
+        let missing: Vec<_> = missing.cloned().collect();
+        #[cfg(not(target_arch = "wasm32"))]
+        for (kernel, form) in missing.iter().rev().cloned() {
+            let gpu = self.clone();
+            // This thread meets the error of a refused kernel too. A panic would end the process.
+            rayon::spawn(move || {
+                let _ = caught(move || gpu.pipelines.get(&gpu.device, &kernel, form).map(drop));
+            });
+        }
+        for (kernel, form) in &missing {
+            self.pipelines.get(&self.device, kernel, *form)?;
+            pause().await;
+        }
+        Ok(())
     }
 }
 

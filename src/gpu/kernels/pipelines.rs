@@ -27,11 +27,15 @@ impl Pipeline {
     }
 }
 
+/// A pipeline, `None` before it is compiled. The lock is held during compilation, so that a second thread that needs the kernel
+/// waits for the first.
+type Slot = Arc<Mutex<Option<wgpu::ComputePipeline>>>;
+
 /// Pipelines of a device, each compiled at the first request.
 #[derive(Default)]
 pub(crate) struct Pipelines {
     layouts: [[OnceLock<Layout>; Positions::ALL.len()]; BindLayout::ALL.len()],
-    made: Mutex<HashMap<(Kernel, MeshForm), wgpu::ComputePipeline>>,
+    made: Mutex<HashMap<(Kernel, MeshForm), Slot>>,
     /// A pipeline cache of the application.
     cache: Option<wgpu::PipelineCache>,
 }
@@ -102,7 +106,20 @@ impl Pipelines {
         })
     }
 
-    /// Returns the pipeline of a kernel for meshes of this form, compiled at the first request.
+    /// Returns the slot of a kernel for meshes of a form that the kernel sees.
+    fn slot(&self, kernel: &Kernel, form: MeshForm) -> Slot {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(made.entry((kernel.clone(), form)).or_default())
+    }
+
+    /// Returns whether the pipeline of a kernel is compiled.
+    pub(crate) fn has(&self, kernel: &Kernel, form: MeshForm) -> bool {
+        let slot = self.slot(kernel, kernel.sees(form));
+        slot.try_lock().is_ok_and(|made| made.is_some())
+    }
+
+    /// Returns the pipeline of a kernel for meshes of this form, compiled at the first request. Waits if another thread compiles
+    /// the kernel.
     pub(crate) fn get(
         &self,
         device: &WatchedDevice,
@@ -115,15 +132,14 @@ impl Pipelines {
             raw: raw.clone(),
             counters: Arc::clone(device.counters()),
         };
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(raw) = made.get(&(kernel.clone(), form)) {
+        let slot = self.slot(kernel, form);
+        let mut made = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(raw) = &*made {
             return Ok(ready(raw));
         }
         let wgsl = kernel.composed(form);
         let raw = scoped(device, || self.compile(device, kernel, form.positions, wgsl))?;
-        let pipeline = ready(&raw);
-        made.insert((kernel.clone(), form), raw);
-        Ok(pipeline)
+        Ok(ready(made.insert(raw)))
     }
 
     /// Compiles `wgsl` with the entry point and the bindings of a kernel. Must be called in an error scope.

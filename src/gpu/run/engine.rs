@@ -13,11 +13,12 @@ use crate::gpu::device::readback::{self, Copied};
 use crate::gpu::encode::{Passes, sealed::Target};
 use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
 use crate::gpu::mesh::{Curves, MeshBuffers};
+use crate::gpu::run::ahead;
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::levels::{Fitting, Levels};
 use crate::gpu::run::secants::Secants;
 use crate::gpu::run::stiffness;
-use crate::gpu::run::truncated::{OnDevice, Truncated};
+use crate::gpu::run::truncated::{self, OnDevice, Truncated};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
@@ -25,7 +26,7 @@ use crate::parallel::paced;
 use crate::run::multilevel::Hierarchy;
 use crate::run::truncated::{NewtonStep, StepRequest};
 use crate::run::{
-    Engine, EngineState, GoesOn, History, Objectives, Plan, Proposal, Stop, SweepParams,
+    Engine, EngineState, GoesOn, History, Objectives, Plan, Proposal, Stop, SweepParams, Work,
 };
 use crate::slide::OnCurves;
 
@@ -66,8 +67,8 @@ pub(crate) struct GpuEngine<'a> {
 
 impl<'a> GpuEngine<'a> {
     /// Uploads the problem with its vertices at the normalized positions `start`, in the problem's order, and with the
-    /// sliding vertices `curves` at these positions. Creates the pipelines for `steps`, all possible steps of a run by the
-    /// plan. The device ends [`Engine::sweeps`] by the plan's stop rule.
+    /// sliding vertices `curves` at these positions. Compiles the kernels for the work of a run by the plan. The device
+    /// ends [`Engine::sweeps`] by the plan's stop rule.
     ///
     /// # Errors
     /// [`GpuError::Limit`] if the mesh is too large for the device, or another [`GpuError`] if the device fails.
@@ -77,7 +78,7 @@ impl<'a> GpuEngine<'a> {
         start: &[DVec2],
         curves: Option<&OnCurves>,
         plan: Plan,
-        steps: Vec<SweepParams>,
+        work: Work,
         waiting: Waiting,
     ) -> Result<Self, GpuError> {
         gpu.device.check()?;
@@ -86,7 +87,8 @@ impl<'a> GpuEngine<'a> {
         if let Some(curves) = curves {
             mesh.curves = Some(Curves::new(gpu, problem, curves, keep_best)?);
         }
-        let dispatches = Dispatches::new(gpu, problem, &mesh, plan, steps, keep_best).await?;
+        gpu.compile(&ahead::kernels(&plan, &work, problem, &mesh)).await?;
+        let dispatches = Dispatches::new(gpu, problem, &mesh, plan, work.steps, keep_best).await?;
         let start = paced::copied(start).await;
         let (levels, secants, hierarchy) = (None, None, None);
         let evaluated = 0;
@@ -113,8 +115,7 @@ impl<'a> GpuEngine<'a> {
     /// Prepares the mesh for Newton steps of all vertices. Returns false if the device takes no such steps.
     async fn prepare_steps(&mut self) -> Result<bool, GpuError> {
         let Self { gpu, problem, mesh, dispatches, truncated, .. } = self;
-        // In single precision, steps on strongly stretched triangles do not end a run. The Hessian is not bound in parts.
-        if problem.has_local_maps() || !mesh.parts.are_whole() {
+        if !truncated::serves(problem, mesh) {
             return Ok(false);
         }
         if truncated.is_none() {

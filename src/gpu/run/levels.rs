@@ -14,10 +14,10 @@ use crate::gpu::run::listing::{
 };
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
-use crate::metric::{Metric, Smoothing};
+use crate::metric::Smoothing;
 use crate::parallel::pace::pause;
-use crate::run::EXCLUSION_PASSES;
 use crate::run::multilevel::Hierarchy;
+use crate::run::{EXCLUSION_PASSES, Plan};
 
 /// A hierarchy bound to a mesh on the device. The methods encode corrections and submit nothing.
 pub(crate) struct Levels {
@@ -76,9 +76,9 @@ impl Levels {
     ) -> Result<Self, GpuError> {
         let metric = dispatches.plan.scheme.base();
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
-        let has_guard = guard < NO_GUARD as f32 || problem.floor() > 0.0;
+        let has_guard = leaves_out(&dispatches.plan, problem);
         // Compiled here with pauses, so that the listing finds every kernel compiled.
-        for kernel in kernels(metric, has_guard, hierarchy) {
+        for kernel in kernels(&dispatches.plan, problem) {
             gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form())?;
             pause().await;
         }
@@ -197,8 +197,14 @@ impl Levels {
     }
 }
 
-/// Returns the kernels of corrections by a metric.
-fn kernels(metric: Metric, has_guard: bool, hierarchy: &Hierarchy) -> Vec<Kernel> {
+/// Returns whether corrections leave out the triangles around which they break a guard or the least altitude.
+fn leaves_out(plan: &Plan, problem: &Problem) -> bool {
+    plan.base_step(1.0).shape_guard < NO_GUARD || problem.floor() > 0.0
+}
+
+/// Returns the kernels of corrections in a run by a plan.
+pub(super) fn kernels(plan: &Plan, problem: &Problem) -> Vec<Kernel> {
+    let metric = plan.scheme.base();
     let mut kernels = vec![
         Kernel::Gradient(metric),
         Kernel::SmoothGradient,
@@ -209,11 +215,10 @@ fn kernels(metric: Metric, has_guard: bool, hierarchy: &Hierarchy) -> Vec<Kernel
         Kernel::SumAlongCorrection,
         Kernel::MoveAlongCorrection,
     ];
-    if has_guard {
+    if leaves_out(plan, problem) {
         kernels.extend([Kernel::FindBroken, Kernel::ExcludeBroken]);
     }
-    if hierarchy.levels().len() > 1 {
-        kernels.extend([Kernel::Chebyshev, Kernel::MatrixVector]);
-    }
+    // For more than one level, as almost all meshes have.
+    kernels.extend([Kernel::Chebyshev, Kernel::MatrixVector]);
     kernels
 }

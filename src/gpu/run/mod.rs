@@ -1,5 +1,6 @@
 //! A run on a device: the dispatches of its sweeps and corrections.
 
+mod ahead;
 mod dispatches;
 mod engine;
 mod level_list;

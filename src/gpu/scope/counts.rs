@@ -40,7 +40,7 @@ impl Counters {
         self.counts[count as usize].fetch_add(number, Relaxed);
     }
 
-    /// DeviceCounts the dispatch of a kernel.
+    /// Counts the dispatch of a kernel.
     pub(crate) fn add_dispatch(&self, is_sweep: bool) {
         self.add(Count::Dispatches, 1);
         if is_sweep {
@@ -48,14 +48,14 @@ impl Counters {
         }
     }
 
-    /// DeviceCounts a compiled kernel and the time of its compilation.
+    /// Counts a compiled kernel and the time of its compilation.
     pub(crate) fn add_kernel(&self, time: Duration) {
         self.add(Count::Kernels, 1);
         self.add(Count::Compiling, time.as_nanos() as u64);
         self.add(Count::LateKernels, self.has_swept.load(Relaxed).into());
     }
 
-    /// DeviceCounts a wait of the host and its time.
+    /// Counts a wait of the host and its time.
     pub(crate) fn add_wait(&self, time: Duration) {
         self.add(Count::Waits, 1);
         self.add(Count::Waiting, time.as_nanos() as u64);

@@ -124,7 +124,7 @@ impl Corrections {
         end: Option<Stop>,
         goes_on: &mut GoesOn<'_>,
     ) -> Result<(Option<f64>, Option<Stop>), GpuError> {
-        if self.metric().curved().is_none() || self.has_field {
+        if !self.is_measured() {
             return Ok((estimate, end));
         }
         let last = history.f().len() - 1;

@@ -154,6 +154,16 @@ impl Corrections {
         (self.attempts > 0).then_some(self.alternated)
     }
 
+    /// Returns whether Newton steps of all vertices may follow the sweeps.
+    pub(crate) fn can_step(&self) -> bool {
+        self.can_step
+    }
+
+    /// Returns whether a Newton step of all vertices measures the remaining gain at the end.
+    pub(crate) fn is_measured(&self) -> bool {
+        self.metric().curved().is_some() && !self.has_field
+    }
+
     /// Returns the number of Newton steps of all vertices, and of iterations in all steps.
     pub(crate) fn steps_taken(&self) -> [u32; 2] {
         self.tail.counts()

@@ -20,6 +20,8 @@ use crate::gpu::device::pending::Waiting;
 use crate::gpu::device::readback;
 use crate::gpu::encode::Passes;
 use crate::gpu::encode::sealed::Target;
+use crate::gpu::kernels::row::User;
+use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{StepState, unpair};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::Dispatches;
@@ -27,7 +29,7 @@ use crate::gpu::run::listing::{Dispatch, encode};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest, could_gain};
-use crate::run::{GoesOn, SweepParams};
+use crate::run::{GoesOn, Plan, SweepParams};
 use list::{List, Prepared};
 
 /// Number of iterations in the first submission of a run. Later submissions have numbers between two limits.
@@ -36,6 +38,23 @@ const ITERATIONS: [u32; 2] = [4, 32];
 /// Number of iterations that a submission adds to those of the last step. With four, a run on 20,000 vertices took a fifth more
 /// dispatches and no fewer submissions. An iteration after the end of the step takes a twentieth of the time.
 const MORE: u32 = 2;
+
+/// Returns whether a device takes Newton steps on a mesh. In single precision, steps on strongly stretched triangles do not end a
+/// run. The Hessian is not bound in parts.
+pub(super) fn serves(problem: &Problem, mesh: &MeshBuffers) -> bool {
+    !problem.has_local_maps() && mesh.parts.are_whole()
+}
+
+/// Returns the kernels of Newton steps in a run by a plan. `slides` is whether vertices slide.
+pub(super) fn kernels(plan: &Plan, slides: bool) -> Vec<Kernel> {
+    let along = Kernel::ObjectiveAlongCorrection(plan.scheme.base());
+    let mut kernels = Kernel::needed_by(plan, User::Steps);
+    if slides {
+        kernels.extend(Kernel::needed_by(plan, User::Slides));
+    }
+    kernels.extend([along, Kernel::SumAlongCorrection, Kernel::MoveAlongCorrection]);
+    kernels
+}
 
 /// A mesh on a device, with the positions of its fixed vertices.
 pub(crate) struct OnDevice<'d> {

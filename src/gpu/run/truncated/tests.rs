@@ -16,7 +16,7 @@ use crate::parallel::pace::now;
 use crate::run::corrections::Corrections;
 use crate::run::truncated::fixtures::{hub, lattice, problem, quadrilaterals, with_targets};
 use crate::run::truncated::{ErrorBound, NewtonStep, StepRequest};
-use crate::run::{Engine, GoesOn, Plan, SweepParams};
+use crate::run::{Ending, Engine, GoesOn, Plan, SweepParams, Work};
 use crate::slide::{OnCurves, Periodic, Slide, Sliding};
 use crate::topology::Topology;
 
@@ -52,6 +52,7 @@ impl<'a> Engines<'a> {
         let plan = Plan::new(&Options { scheme: metric.into(), ..Options::default() });
         let (steps, start) = (Corrections::steps(&plan), problem.positions().to_vec());
         let sweep = steps[1];
+        let work = Work { steps, ending: Ending::Steps, is_measured: true };
         let mut cpu = CpuEngine::new(problem, start.clone(), curves, &plan);
         for _ in 0..sweeps {
             now(cpu.sweep(&sweep)).unwrap();
@@ -59,7 +60,7 @@ impl<'a> Engines<'a> {
         let swept = now(cpu.positions()).unwrap().into_owned();
         let curves = now(cpu.best_curves()).unwrap();
         let of_device = curves.as_ref();
-        let device = GpuEngine::new(gpu, problem, &swept, of_device, plan, steps, Waiting::Block);
+        let device = GpuEngine::new(gpu, problem, &swept, of_device, plan, work, Waiting::Block);
         Self { cpu, device: now(device).unwrap(), sweep }
     }
 
