@@ -48,4 +48,6 @@ pub use stop::{Stop, StopRule};
 pub use sweep_params::SweepParams;
 pub use sweeps::Stepwise;
 pub(crate) use sweeps::StepwiseRun;
-pub(crate) use work::{Ending, Work};
+#[cfg(feature = "gpu")]
+pub(crate) use work::Ending;
+pub(crate) use work::Work;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::error::GpuError;
 use crate::layout::Problem;
 use crate::mesh::MeshSize;
-use crate::run::{Plan, SweepParams};
+use crate::run::{Plan, Work};
 use crate::slide::OnCurves;
 
 /// The device of a run. The type has no value, as no device exists.
@@ -32,7 +32,7 @@ impl NoDevice {
         _: &[DVec2],
         _: Option<&OnCurves>,
         _: Plan,
-        _: Vec<SweepParams>,
+        _: Work,
     ) -> Result<DeviceEngine<'s>, GpuError> {
         match *self {}
     }
