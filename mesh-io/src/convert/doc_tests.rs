@@ -266,7 +266,7 @@ const ROWS: &[Row] = &[
     ),
     row(
         &[Format::Abaqus],
-        "Abaqus and CalculiX; keywords in any case, rows and keywords of several lines; with parts, an assembly and instances if one part or instance has elements",
+        "Abaqus and CalculiX; keywords in any case, rows and keywords of several lines; with parts, an assembly and instances",
         [
             "lines, sides of elements in surfaces, nodes of masses, springs, connectors and elements of a user",
             "`ELSET` of its `*ELEMENT`, and section; where there are neither, sets",

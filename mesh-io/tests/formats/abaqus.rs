@@ -219,12 +219,59 @@ fn one_part_of_an_assembly_is_a_mesh() {
         deck()
     );
     assert!(groups(&own).contains(&"elset surface E: [3] 0 [0, 3, 4]".to_owned()));
-    let two = text.replace("*Part, name=Q\n*Node\n", &format!("*Part, name=Q\n{ELEMENTS}*Node\n"));
-    let parts =
-        ["part Q has elements beside part P, each with numbers of its own", "without parts"];
-    assert_refused("a.inp", &two, &parts);
     let of_assembly = text.replace("CONN2D2", "S3");
     assert_refused("a.inp", &of_assembly, &["an assembly has elements in addition"]);
+}
+
+/// Both parts number their nodes and elements from 1, and the second has the sets `Left` and `Right` too.
+#[test]
+fn several_parts_are_one_mesh() {
+    let more = "*Elset, elset=Set-2\n2\n*Nset, nset=foot\n1\n";
+    let second = format!(
+        "*Part, name=Q\n{}{more}*End Part\n*Assembly",
+        deck().replace("5, 1., 1.", "50, 1., 1.").replace(", 5\n", ", 50\n")
+    );
+    let text =
+        parts().replacen("*Part, name=Q\n*Node\n1, 9., 9.\n*End Part\n*Assembly", &second, 1);
+    assert_ne!(text, parts());
+    let text = text.replace("elset=none, instance=Q-1", "elset=both, instance=Q-1");
+    let text = text.replace(
+        "*Nset, nset=inside\nP-1.mid, Q-1.1",
+        "*Nset, nset=inside\nP-1.mid, Q-1.foot, Q-1.2",
+    );
+    let file = read(&text);
+    assert_eq!((file.points().len(), file.triangles().len()), (10, 8));
+    let shifted = file.triangles()[..4].iter().map(|corners| corners.map(|v| v + 5));
+    assert_eq!(file.triangles()[4..], shifted.collect::<Vec<_>>());
+    assert!(
+        remarks(&file)[0]
+            .starts_with("2 parts have elements (P, Q): each is read in coordinates of its own"),
+        "{:?}",
+        remarks(&file)
+    );
+    let groups = groups(&text);
+    for group in [
+        "elset surface P.Left: [0, 1] 0 [0, 1, 2, 4]",
+        "elset surface Q.Left: [4, 5] 0 [5, 6, 7, 9]",
+        "elset surface Set-2: [5] 0 [6, 7, 9]",
+        "elset surface both: [4] 0 [5, 6, 9]",
+        "elset surface P.Set-1: [0] 0 [0, 1, 4]",
+        "elset surface Set-1: [1, 2] 0 [1, 2, 3, 4]",
+        "nset point inside: [] 0 [1, 4, 5, 6]",
+    ] {
+        assert!(groups.contains(&group.to_owned()), "{group}: {groups:#?}");
+    }
+    // The connector of the assembly holds a node of the first part.
+    assert!(fixed(&file).contains(&2) && !fixed(&file).contains(&7));
+    let mut points = file.points().to_vec();
+    points[9] = [0.25, 0.5];
+    let mut moved = Vec::new();
+    file.write_to(Path::new("a.inp"), &mut moved, &points).unwrap();
+    let moved = String::from_utf8(moved).unwrap();
+    let rows = |text: &str| text.lines().filter(|line| line.starts_with("50, ")).count();
+    assert_eq!((rows(&text), rows(&moved)), (1, 1));
+    assert_eq!(read(&moved).points()[9], [0.25, 0.5]);
+    assert_eq!(read(&moved).points()[..9], file.points()[..9]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::text::token::{key_value, line_end, unquoted};
+use crate::text::token::{integer, key_value, line_end, unquoted};
 use std::ops::Range;
 
 /// A keyword of an input file, with its parameters and data lines.
@@ -46,6 +46,12 @@ impl<'a> Block<'a> {
         remedy: impl Into<String>,
     ) -> ReadError {
         Cursor::on_line_of(source, self.at).error(problem, remedy)
+    }
+
+    /// Lists the first items of the data lines that are whole numbers.
+    pub(super) fn first_numbers(&self, source: &'a Source) -> impl Iterator<Item = u64> {
+        let lines = source.bytes[self.data.clone()].split(|&byte| byte == b'\n');
+        lines.filter_map(|line| integer(line.split(|&byte| byte == b',').next()?.trim_ascii()))
     }
 
     /// Lists the comma-separated items of the data lines, trimmed of blanks. A flag marks the last item of each line.

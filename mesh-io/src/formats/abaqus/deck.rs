@@ -1,5 +1,5 @@
-//! Selects the blocks of an input file that describe the mesh: blocks of the model itself, or of the only part or
-//! instance that contains elements.
+//! Selects the blocks of an input file that describe the mesh: blocks of the model itself, and of the parts and instances
+//! that contain elements.
 
 use super::blocks::{self, Block};
 use crate::disk::source::Source;
@@ -12,11 +12,14 @@ use std::path::{Path, PathBuf};
 pub(super) struct Deck<'a> {
     /// The keyword blocks in file order, with the number of the scope that contains each block.
     pub(super) blocks: Vec<(Block<'a>, usize)>,
-    /// The scope of the mesh: the scope with elements, else the first scope with nodes, else [`MODEL`].
-    pub(super) mesh: usize,
-    /// Maps the name of an instance, in capital letters, to true if the instance holds the mesh or refers to the part
-    /// that holds the mesh.
-    instances: HashMap<Vec<u8>, bool>,
+    /// The scopes of the mesh, ascending: the scopes with elements, else the first scope with nodes, else [`MODEL`].
+    meshes: Vec<usize>,
+    /// The number that is added to the ids of nodes and elements of each scope in `meshes`, so that no id occurs in two scopes.
+    offsets: Vec<u64>,
+    /// The name of each scope: of the part or the instance, or an empty name.
+    names: Vec<Vec<u8>>,
+    /// Maps the name of an instance, in capital letters, to the scope of the mesh that the instance is or refers to.
+    instances: HashMap<Vec<u8>, usize>,
     /// Remarks for the user.
     pub(super) notes: Vec<String>,
 }
@@ -36,11 +39,14 @@ const MAX_INCLUDE_DEPTH: u32 = 8;
 impl<'a> Deck<'a> {
     pub(super) fn read(source: &'a Source) -> Result<Deck<'a>, ReadError> {
         let blocks = blocks::blocks(source);
-        let mut deck =
-            Deck { blocks: Vec::new(), mesh: MODEL, instances: HashMap::new(), notes: Vec::new() };
-        // The name of each scope, by number, for messages.
-        let mut names = vec!["the model".to_owned(), "the assembly".to_owned()];
-        let mut with_elements: Option<usize> = None;
+        let mut deck = Deck {
+            blocks: Vec::new(),
+            meshes: Vec::new(),
+            offsets: vec![0],
+            names: vec![Vec::new(), Vec::new()],
+            instances: HashMap::new(),
+            notes: Vec::new(),
+        };
         // For each instance: its name and the name of its part, both in capital letters, and its scope.
         let mut instances = Vec::new();
         let mut part_names = HashMap::new();
@@ -50,9 +56,8 @@ impl<'a> Deck<'a> {
             let name = |parameter| block.name(parameter).unwrap_or_default();
             match &block.keyword[..] {
                 b"PART" | b"INSTANCE" => {
-                    let (what, own) =
-                        (if block.is("PART") { "part" } else { "instance" }, names.len());
-                    names.push(format!("{what} {}", quoted(name("NAME"))));
+                    let own = deck.names.len();
+                    deck.names.push(name("NAME").to_vec());
                     let key = name("NAME").to_ascii_uppercase();
                     match block.is("PART") {
                         true => drop(part_names.insert(key, own)),
@@ -62,37 +67,88 @@ impl<'a> Deck<'a> {
                 }
                 b"ENDPART" | b"ENDASSEMBLY" => scope = MODEL,
                 b"ASSEMBLY" | b"ENDINSTANCE" => scope = ASSEMBLY,
-                b"ELEMENT" if scope != ASSEMBLY => match with_elements {
-                    Some(other) if other != scope => {
-                        let [a, b] = [other, scope].map(|scope| &names[scope]);
-                        let problem =
-                            format!("{b} has elements beside {a}, each with numbers of its own");
-                        let remedy = "Write the input file without parts and assemblies, or one part at a time";
-                        return Err(block.error(source, problem, remedy));
-                    }
-                    _ => with_elements = Some(scope),
-                },
+                b"ELEMENT" if scope != ASSEMBLY => deck.meshes.push(scope),
                 b"NODE" => first = first.or(Some(scope)),
                 _ => {}
             }
             check(source, &block)?;
             deck.blocks.push((block, scope));
         }
-        deck.mesh = with_elements.or(first).unwrap_or(MODEL);
+        deck.meshes.sort_unstable();
+        deck.meshes.dedup();
+        if deck.meshes.is_empty() {
+            deck.meshes.push(first.unwrap_or(MODEL));
+        }
         for (name, part, own) in instances {
-            let is_of_mesh = own == deck.mesh || part_names.get(&part) == Some(&deck.mesh);
-            deck.instances.insert(name, is_of_mesh);
+            let scopes = [Some(own), part_names.get(&part).copied()].into_iter().flatten();
+            if let Some(of_mesh) = scopes.into_iter().find(|scope| deck.is_mesh(*scope)) {
+                deck.instances.insert(name, of_mesh);
+            }
         }
         deck.check_included(source)?;
+        deck.tell_ids_apart(source);
         Ok(deck)
     }
 
-    /// Lists the blocks of the mesh with the given keyword.
-    pub(super) fn of_mesh(&self, keyword: &str) -> impl Iterator<Item = &Block<'a>> {
+    /// Finds the offsets of ids if several scopes have elements: multiples of a power of ten above all ids, so that the last digits
+    /// of an id are those in the file.
+    fn tell_ids_apart(&mut self, source: &Source) {
+        let count = self.meshes.len();
+        if count == 1 {
+            return;
+        }
+        let lists = self.of_mesh("NODE").chain(self.of_mesh("ELEMENT"));
+        let largest = lists.flat_map(|(block, _)| block.first_numbers(source)).max().unwrap_or(0);
+        let mut step: u64 = 10;
+        while step <= largest {
+            step = step.saturating_mul(10);
+        }
+        self.offsets = (0..count as u64).map(|place| step.saturating_mul(place)).collect();
+        let names: Vec<String> = self.meshes.iter().map(|&scope| self.shown(scope)).collect();
+        let first = names[..count.min(3)].join(", ");
+        let more = if count > 3 { ", …" } else { "" };
+        self.notes.push(format!(
+            "{count} parts have elements ({first}{more}): each is read in coordinates of its own, without the position of its instance"
+        ));
+    }
+
+    /// Returns the name of a scope of the mesh for messages.
+    fn shown(&self, scope: usize) -> String {
+        match scope {
+            MODEL => "the model".to_owned(),
+            _ => quoted(&self.names[scope]),
+        }
+    }
+
+    /// Returns whether nodes and elements of a scope belong to the mesh.
+    fn is_mesh(&self, scope: usize) -> bool {
+        self.meshes.contains(&scope)
+    }
+
+    /// Returns the number that is added to ids of a scope of the mesh.
+    pub(super) fn offset(&self, scope: usize) -> u64 {
+        let place = self.meshes.iter().position(|&of_mesh| of_mesh == scope);
+        place.map_or(0, |place| self.offsets[place])
+    }
+
+    /// Returns the name of the part or instance that a scope is, if several scopes have elements.
+    pub(super) fn name(&self, scope: usize) -> Option<&[u8]> {
+        (self.meshes.len() > 1).then(|| &self.names[scope][..])
+    }
+
+    /// Lists the blocks of the mesh with the given keyword, each with its scope.
+    pub(super) fn of_mesh(&self, keyword: &str) -> impl Iterator<Item = (&Block<'a>, usize)> {
         let own = self.blocks.iter().filter(move |(block, scope)| {
-            *scope == self.mesh && block.keyword == keyword.as_bytes()
+            block.keyword == keyword.as_bytes() && self.is_mesh(*scope)
         });
-        own.map(|(block, _)| block)
+        own.map(|(block, scope)| (block, *scope))
+    }
+
+    /// Lists the section blocks of the mesh, which assign materials to sets of elements, each with its scope.
+    pub(super) fn sections(&self) -> impl Iterator<Item = (&Block<'a>, usize)> {
+        let own =
+            self.blocks.iter().filter(|(block, scope)| is_section(block) && self.is_mesh(*scope));
+        own.map(|(block, scope)| (block, *scope))
     }
 
     /// Lists the blocks of the assembly with the given keyword; none if the file has no assembly.
@@ -103,9 +159,10 @@ impl<'a> Deck<'a> {
         own.map(|(block, _)| block)
     }
 
-    /// Returns whether `instance`, in capital or small letters, names an instance of the mesh.
-    pub(super) fn is_of_mesh(&self, instance: &[u8]) -> bool {
-        self.instances.get(&instance.to_ascii_uppercase()) == Some(&true)
+    /// Returns the scope of the mesh that an instance is or refers to, given its name in capital or small letters. `None` for
+    /// instances without a mesh.
+    pub(super) fn instance(&self, name: &[u8]) -> Option<usize> {
+        self.instances.get(&name.to_ascii_uppercase()).copied()
     }
 
     /// Inspects the files of all `*INCLUDE` blocks. Adds a remark if included files have sets, sections or surfaces, or
@@ -263,6 +320,6 @@ fn included(
 }
 
 /// Returns whether a block is a section, such as `*SOLID SECTION`, which assigns a material to a set of elements.
-pub(super) fn is_section(block: &Block<'_>) -> bool {
+fn is_section(block: &Block<'_>) -> bool {
     block.keyword.ends_with(b"SECTION") && block.name("ELSET").is_some()
 }

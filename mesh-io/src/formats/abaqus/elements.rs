@@ -1,9 +1,9 @@
 //! Visits the elements of the mesh, with the sections, sets and surfaces that contain each element.
 
 use super::blocks::Block;
-use super::deck::Deck;
+use super::deck::{ASSEMBLY, Deck};
 use super::lists::List;
-use super::sets::{IdPositions, Sets, WorkBudget};
+use super::sets::{IdPositions, Key, Sets, WorkBudget};
 use super::{rows, types};
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
@@ -40,18 +40,17 @@ impl ElementGroups {
         cursor: &Cursor<'_>,
         lists: &[List<'_, '_>],
         mut sets: Sets,
-        sections: &[&Block<'_>],
+        sections: &[(&Block<'_>, usize)],
         visitor: &mut dyn MeshVisitor,
     ) -> Result<ElementGroups, ReadError> {
         let mut found = ElementGroups::default();
-        let names = |keyword| -> HashSet<Vec<u8>> {
-            let names = deck.of_mesh(keyword).filter_map(|block| block.name("ELSET"));
-            names.map(<[u8]>::to_ascii_uppercase).collect()
+        let key = |(block, scope): (&Block<'_>, usize)| {
+            block.name("ELSET").map(|name| (scope, name.to_ascii_uppercase()))
         };
+        let names = |keyword| -> HashSet<Key> { deck.of_mesh(keyword).filter_map(key).collect() };
         let (listed, of_lists) = (names("ELSET"), names("ELEMENT"));
-        let of_sections = sections.iter().filter_map(|block| block.name("ELSET"));
-        let of_sections: Vec<Vec<u8>> = of_sections.map(<[u8]>::to_ascii_uppercase).collect();
-        if let Some(name) =
+        let of_sections: Vec<Key> = sections.iter().copied().filter_map(key).collect();
+        if let Some((_, name)) =
             of_sections.iter().find(|&n| !listed.contains(n) && !of_lists.contains(n))
         {
             let name = quoted(name);
@@ -61,24 +60,25 @@ impl ElementGroups {
         let by_sets = sections.len() > 1 && of_sections.iter().any(|name| listed.contains(name));
         // If neither sections nor element lists define regions, `*ELSET` sets do.
         let by_members = sections.is_empty() && of_lists.is_empty() && !listed.is_empty();
-        let has_surfaces =
-            deck.of_mesh("SURFACE").chain(deck.of_assembly("SURFACE")).next().is_some();
+        let has_surfaces = deck.of_mesh("SURFACE").next().is_some()
+            || deck.of_assembly("SURFACE").next().is_some();
         let has_groups = visitor.asks_for_groups();
         if !by_sets && !by_members && !has_surfaces && !has_groups {
             return Ok(found);
         }
         let mut tags = Vec::new();
         let mut cursor = cursor.clone();
-        for List { block, kind, .. } in lists {
+        for &List { block, scope, kind, .. } in lists {
             let before = tags.len() as u32;
-            let Some(kind) = *kind else { continue };
+            let Some(kind) = kind else { continue };
             let rows = &mut rows::data_rows(&mut cursor, block);
-            rows::each_element(rows, kind, visitor.allows_parallel(), |_, tag, _| {
+            let (offset, ahead) = (deck.offset(scope), visitor.allows_parallel());
+            rows::each_element(rows, kind, offset, ahead, |_, tag, _| {
                 tags.push(tag);
                 Ok(())
             })?;
             if let Some(name) = block.name("ELSET") {
-                sets.add(name, before..tags.len() as u32);
+                sets.add(scope, name, before..tags.len() as u32);
             }
         }
         sets.read(source, deck, "ELSET");
@@ -86,8 +86,8 @@ impl ElementGroups {
         let effort = &mut WorkBudget::of(source);
         if by_sets {
             found.sections = vec![0; tags.len()];
-            for (block, section) in sections.iter().zip(1..) {
-                let set = block.name("ELSET").and_then(|name| sets.find(deck, false, name));
+            for (&(block, scope), section) in sections.iter().zip(1..) {
+                let set = block.name("ELSET").and_then(|name| sets.find(deck, scope, name));
                 let Some(set) = set else { continue };
                 for element in sets.members(set, all, source, effort)? {
                     found.sections[element as usize] = section;
@@ -95,7 +95,7 @@ impl ElementGroups {
             }
         }
         if has_groups || by_members {
-            for (number, name) in sets.named() {
+            for (number, name) in sets.named(deck) {
                 let group = found.names.len() as u32;
                 let members = sets.members(number, all, source, effort)?;
                 found.within.extend(members.into_iter().map(|element| (element, group)));
@@ -130,10 +130,8 @@ impl ElementGroups {
         all: &IdPositions,
         effort: &mut WorkBudget,
     ) -> Result<(), ReadError> {
-        let own = deck.of_mesh("SURFACE").map(|block| (block, false));
-        for (block, of_assembly) in
-            own.chain(deck.of_assembly("SURFACE").map(|block| (block, true)))
-        {
+        let of_assembly = deck.of_assembly("SURFACE").map(|block| (block, ASSEMBLY));
+        for (block, scope) in deck.of_mesh("SURFACE").chain(of_assembly) {
             let of_elements =
                 block.name("TYPE").is_none_or(|of| of.eq_ignore_ascii_case(b"ELEMENT"));
             let Some(name) = block.name("NAME").filter(|_| of_elements) else { continue };
@@ -148,9 +146,9 @@ impl ElementGroups {
                 if let [of, label, ..] = row[..]
                     && let Ok(label) = <[u8; 2]>::try_from(label)
                 {
-                    let members = match sets.find(deck, of_assembly, of) {
+                    let members = match sets.find(deck, scope, of) {
                         Some(set) => sets.members(set, all, source, effort)?,
-                        None => all.of_word(of).collect(),
+                        None => all.of_word(of, deck.offset(scope)).collect(),
                     };
                     let side = |element| (element, surface, label);
                     self.sides.extend(members.into_iter().map(side));
@@ -178,20 +176,19 @@ impl ElementGroups {
         let mut lines: Vec<(u32, [u64; 2])> = Vec::new();
         // The number of elements that only constrain their nodes, and their types.
         let (mut holding, mut types_of) = (0, BTreeSet::new());
-        for List { block, of, kind, set, of_assembly } in lists {
+        for List { block, scope, of, kind, set } in lists {
             let rows = &mut rows::data_rows(&mut cursor, block);
             let Some(kind) = *kind else {
                 send_scopes(&self.names, &mut told, &[], visitor);
-                let count =
-                    send_constrained_nodes(rows, Some(deck).filter(|_| *of_assembly), visitor)?;
+                let count = send_constrained_nodes(rows, deck, *scope, visitor)?;
                 if count > 0 {
                     holding += count;
                     types_of.insert(of);
                 }
                 continue;
             };
-            let ahead = visitor.allows_parallel();
-            rows::each_element(rows, kind, ahead, |cursor, tag, nodes| {
+            let (offset, ahead) = (deck.offset(*scope), visitor.allows_parallel());
+            rows::each_element(rows, kind, offset, ahead, |cursor, tag, nodes| {
                 let own = within.partition_point(|&(element, _)| element <= place);
                 send_scopes(&self.names, &mut told, &within[..own], visitor);
                 let section = self.sections.get(place as usize).copied().unwrap_or(0);
@@ -258,15 +255,15 @@ fn send_scopes<'f>(
     *told = now;
 }
 
-/// Visits the nodes of constraining elements as points. Returns how many elements have nodes of the mesh. `assembly` is
-/// `None` unless the elements belong to the assembly.
+/// Visits the nodes of constraining elements of a scope as points. Returns how many elements have nodes of the mesh.
 fn send_constrained_nodes(
     rows: &mut Cursor<'_>,
-    assembly: Option<&Deck<'_>>,
+    deck: &Deck<'_>,
+    scope: usize,
     visitor: &mut dyn MeshVisitor,
 ) -> Result<u64, ReadError> {
     let (mut count, mut last) = (0, None);
-    rows::each_constrained(rows, assembly, |cursor, tag, node| {
+    rows::each_constrained(rows, deck, scope, |cursor, tag, node| {
         let (kind, nodes) = (CellKind::Point, [node, 0, 0, 0]);
         visitor.element(cursor, &Element { id: tag, kind, region: [0; 2], nodes })?;
         count += u64::from(last.replace(tag) != Some(tag));

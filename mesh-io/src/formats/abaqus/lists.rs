@@ -1,7 +1,7 @@
 //! The element lists of the mesh (`*ELEMENT`), each with one element type.
 
 use super::blocks::Block;
-use super::deck::Deck;
+use super::deck::{ASSEMBLY, Deck};
 use super::sets::Sets;
 use super::types::{self, Class};
 use crate::disk::source::Source;
@@ -14,6 +14,8 @@ use crate::visit::rows::volume;
 /// An `*ELEMENT` block, whose elements have the same type.
 pub(super) struct List<'d, 'a> {
     pub(super) block: &'d Block<'a>,
+    /// The scope of the block.
+    pub(super) scope: usize,
     /// The type, in capital letters.
     pub(super) of: Vec<u8>,
     /// The kind of cell; `None` if the elements only constrain their nodes, as masses, springs and all elements of an
@@ -21,7 +23,6 @@ pub(super) struct List<'d, 'a> {
     pub(super) kind: Option<CellKind>,
     /// The number of the set that the list names by `ELSET`, counted from 1; 0 if the list names no set.
     pub(super) set: i64,
-    pub(super) of_assembly: bool,
 }
 
 /// Returns the element lists of the mesh, then of the assembly.
@@ -35,11 +36,11 @@ pub(super) fn lists<'d, 'a>(
     sets: &mut Sets,
 ) -> Result<Vec<List<'d, 'a>>, ReadError> {
     let mut lists = Vec::new();
-    for block in deck.of_mesh("ELEMENT") {
+    for (block, scope) in deck.of_mesh("ELEMENT") {
         let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
         let kind = class(source, block, &of)?;
-        let set = block.name("ELSET").map_or(0, |name| sets.number(false, name) as i64 + 1);
-        lists.push(List { block, of, kind, set, of_assembly: false });
+        let set = block.name("ELSET").map_or(0, |name| sets.number(scope, name) as i64 + 1);
+        lists.push(List { block, scope, of, kind, set });
     }
     for block in deck.of_assembly("ELEMENT") {
         let of = block.parameter("TYPE").unwrap_or_default().to_ascii_uppercase();
@@ -49,7 +50,7 @@ pub(super) fn lists<'d, 'a>(
             let remedy = "Write the input file without parts and assemblies";
             return Err(block.error(source, problem, remedy));
         }
-        lists.push(List { block, of, kind: None, set: 0, of_assembly: true });
+        lists.push(List { block, scope: ASSEMBLY, of, kind: None, set: 0 });
     }
     Ok(lists)
 }

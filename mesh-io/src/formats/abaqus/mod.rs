@@ -59,7 +59,7 @@ impl FormatReader for Abaqus {
         }
         let mut sets = Sets::default();
         let lists = lists::lists(source, deck, &mut sets)?;
-        let sections: Vec<&Block<'_>> = sections(deck).collect();
+        let sections: Vec<(&Block<'_>, usize)> = deck.sections().collect();
         let found = ElementGroups::new(source, deck, cursor, &lists, sets, &sections, visitor)?;
         found.send(deck, cursor, &lists, visitor)?;
         if visitor.asks_for_groups() {
@@ -67,13 +67,6 @@ impl FormatReader for Abaqus {
         }
         Ok(CoordinateStorage::in_place(Format::Abaqus, numbers))
     }
-}
-
-/// Lists the section blocks of the mesh, which assign materials to sets of elements.
-fn sections<'d, 'a>(deck: &'d Deck<'a>) -> impl Iterator<Item = &'d Block<'a>> {
-    let own =
-        deck.blocks.iter().filter(|(block, scope)| *scope == deck.mesh && deck::is_section(block));
-    own.map(|(block, _)| block)
 }
 
 /// Reports keywords with information beyond the mesh as unsupported.
@@ -123,13 +116,14 @@ impl Nodes {
         self.tags = visitor.asks_for_groups().then(Vec::new);
         let mut z_values = ZValues::new(visitor);
         let mut counted = LengthCounts::default();
-        for block in deck.of_mesh("NODE") {
+        for (block, scope) in deck.of_mesh("NODE") {
             let rows = &mut rows::data_rows(&mut cursor, block);
             let before = counted.all;
-            rows::send_nodes(rows, visitor, &mut z_values, &mut self.tags, &mut counted)?;
+            let offset = deck.offset(scope);
+            rows::send_nodes(rows, offset, visitor, &mut z_values, &mut self.tags, &mut counted)?;
             rows.check_vertex_count(counted.all)?;
             if let (Some(name), true) = (block.name("NSET"), visitor.asks_for_groups()) {
-                self.sets.add(name, before as u32..counted.all as u32);
+                self.sets.add(scope, name, before as u32..counted.all as u32);
             }
         }
         visitor.end_nodes(&cursor)?;
@@ -154,7 +148,7 @@ impl Nodes {
         self.sets.read(source, deck, "NSET");
         let all = IdPositions::new(&self.tags.unwrap_or_default());
         let effort = &mut WorkBudget::of(source);
-        for (number, name) in self.sets.named() {
+        for (number, name) in self.sets.named(deck) {
             let nodes = self.sets.members(number, &all, source, effort)?;
             let tag = number as i64 + 1;
             if !nodes.is_empty() {

@@ -1,7 +1,7 @@
 //! Reads the data lines of `*NODE` and `*ELEMENT`.
 
 use super::blocks::Block;
-use super::deck::Deck;
+use super::deck::{ASSEMBLY, Deck};
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
 use crate::text::parallel_rows::take_rows;
@@ -26,16 +26,18 @@ pub(super) struct LengthCounts {
     pub(super) long: u64,
 }
 
-/// Visits the nodes of a block, and adds the nodes to `counted`. Third coordinates go to `z_values`, ids to `ids` if
-/// present.
+/// Visits the nodes of a block, and adds the nodes to `counted`. `offset` is added to ids. Third coordinates go to `z_values`, ids
+/// to `ids` if present.
 pub(super) fn send_nodes(
     cursor: &mut Cursor<'_>,
+    offset: u64,
     visitor: &mut dyn MeshVisitor,
     z_values: &mut ZValues,
     ids: &mut Option<Vec<u64>>,
     counted: &mut LengthCounts,
 ) -> Result<(), ReadError> {
     all_rows(cursor, visitor, node, |cursor, visitor, (id, (x_at, is_long), at, z)| {
+        let id = id.saturating_add(offset);
         visitor.node(cursor, id, 2, x_at, at);
         z_values.push(z);
         ids.iter_mut().for_each(|ids| ids.push(id));
@@ -71,14 +73,19 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     Ok((id, (x_at, is_long), at, cursor.z_if_any(format_args!("node {id}"))?))
 }
 
-/// Reads the elements of a block, and hands the id and nodes of each element to `take`. If `ahead`, long lists are
-/// parsed on all threads. A failed call of `take` must not change any state: the row is read again to report the error.
+/// Reads the elements of a block, and hands the id and nodes of each element to `take`, each plus `offset`. If `ahead`, long lists
+/// are parsed on all threads. A failed call of `take` must not change any state: the row is read again to report the error.
 pub(super) fn each_element<'a>(
     cursor: &mut Cursor<'a>,
     kind: CellKind,
+    offset: u64,
     ahead: bool,
     mut take: impl FnMut(&Cursor<'a>, u64, [u64; 4]) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
+    let mut take = |cursor: &Cursor<'a>, id: u64, mut nodes: [u64; 4]| {
+        nodes[..kind.nodes()].iter_mut().for_each(|node| *node = node.saturating_add(offset));
+        take(cursor, id.saturating_add(offset), nodes)
+    };
     if ahead && cursor.is_long() {
         let nowhere = &Cursor::new(cursor.source);
         let plain = |cursor: &mut Cursor<'a>| {
@@ -102,11 +109,12 @@ pub(super) fn each_element<'a>(
     Ok(())
 }
 
-/// Reads elements with any number of nodes, and hands the element's id and each node to `take`. With `assembly`, only
+/// Reads elements of a scope with any number of nodes, and hands the element's id and each node to `take`. In the assembly, only
 /// nodes of the mesh's instances are read, written as `Part-1-1.7`; all other nodes are skipped.
 pub(super) fn each_constrained<'a>(
     cursor: &mut Cursor<'a>,
-    assembly: Option<&Deck<'_>>,
+    deck: &Deck<'_>,
+    scope: usize,
     mut take: impl FnMut(&Cursor<'a>, u64, u64) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     while cursor.next_row() {
@@ -121,17 +129,17 @@ pub(super) fn each_constrained<'a>(
             if cursor.is_at_end() {
                 break;
             }
-            let Some(deck) = assembly else {
+            if scope != ASSEMBLY {
                 let node = cursor.integer("a node of an element")?;
-                take(cursor, id, node)?;
+                take(cursor, id, node.saturating_add(deck.offset(scope)))?;
                 continue;
-            };
+            }
             let word = cursor.token().unwrap_or_default();
-            if let Some(point) =
-                memchr::memchr(b'.', word).filter(|&at| deck.is_of_mesh(&word[..at]))
+            if let Some(point) = memchr::memchr(b'.', word)
+                && let Some(of_mesh) = deck.instance(&word[..point])
                 && let Some(node) = integer(&word[point + 1..])
             {
-                take(cursor, id, node)?;
+                take(cursor, id, node.saturating_add(deck.offset(of_mesh)))?;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Sets of elements or nodes: defined by `*ELSET` and `*NSET`, or named by element and node lists.
 
 use super::blocks::Block;
-use super::deck::Deck;
+use super::deck::{ASSEMBLY, Deck};
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::token::{integer, unquoted};
@@ -15,8 +15,8 @@ pub(super) struct Sets {
     numbers: HashMap<Key, usize>,
 }
 
-/// The identity of a set: true for a set of the assembly, and the name in capital letters, as names ignore case.
-type Key = (bool, Vec<u8>);
+/// The identity of a set: the scope, and the name in capital letters, as names ignore case.
+pub(super) type Key = (usize, Vec<u8>);
 
 struct Set {
     key: Key,
@@ -59,9 +59,10 @@ impl IdPositions {
         &self.0[start..end.max(start)]
     }
 
-    /// Returns the positions of nodes or elements whose id is the whole number `word`; none for any other word.
-    pub(super) fn of_word(&self, word: &[u8]) -> impl Iterator<Item = u32> {
-        let found = integer(word).map(|number| self.within(number, number));
+    /// Returns the positions of nodes or elements whose id is the whole number `word` plus `offset`; none for any other word.
+    pub(super) fn of_word(&self, word: &[u8], offset: u64) -> impl Iterator<Item = u32> {
+        let number = integer(word).map(|number| number.saturating_add(offset));
+        let found = number.map(|number| self.within(number, number));
         found.unwrap_or_default().iter().map(|&(_, place)| place)
     }
 }
@@ -91,8 +92,8 @@ impl WorkBudget {
 
 impl Sets {
     /// Returns the index of the set with the given name. A set with a new name is added, without members.
-    pub(super) fn number(&mut self, of_assembly: bool, name: &[u8]) -> usize {
-        let key = (of_assembly, name.to_ascii_uppercase());
+    pub(super) fn number(&mut self, scope: usize, name: &[u8]) -> usize {
+        let key = (scope, name.to_ascii_uppercase());
         let next = self.sets.len();
         let number = *self.numbers.entry(key.clone()).or_insert(next);
         if number == next {
@@ -102,36 +103,33 @@ impl Sets {
         number
     }
 
-    /// Adds a range of positions to a set of the mesh.
-    pub(super) fn add(&mut self, name: &[u8], places: Range<u32>) {
-        let number = self.number(false, name);
+    /// Adds a range of positions to a set of a scope of the mesh.
+    pub(super) fn add(&mut self, scope: usize, name: &[u8], places: Range<u32>) {
+        let number = self.number(scope, name);
         self.sets[number].items.push(Item::Positions(places));
     }
 
     /// Reads the sets of all blocks with the keyword `ELSET` or `NSET`, in the mesh and in the assembly.
     pub(super) fn read(&mut self, source: &Source, deck: &Deck<'_>, keyword: &str) {
-        let own = deck.of_mesh(keyword).map(|block| (block, false));
-        for (block, of_assembly) in own.chain(deck.of_assembly(keyword).map(|block| (block, true)))
-        {
+        let of_assembly = deck.of_assembly(keyword).map(|block| (block, ASSEMBLY));
+        for (block, scope) in deck.of_mesh(keyword).chain(of_assembly) {
             if let Some(name) = block.name(keyword) {
-                let number = self.number(of_assembly, name);
-                let items = items(source, deck, block, of_assembly);
+                let number = self.number(scope, name);
+                let items = items(source, deck, block, scope);
                 self.sets[number].is_internal |= block.parameter("INTERNAL").is_some();
                 self.sets[number].items.extend(items);
             }
         }
     }
 
-    /// Finds a set by name, in the scope of the assembly (`of_assembly`) or of the mesh. `INSTANCE.SET` also finds a
-    /// set of the mesh if `INSTANCE` refers to the mesh.
-    pub(super) fn find(&self, deck: &Deck<'_>, of_assembly: bool, name: &[u8]) -> Option<usize> {
-        let by =
-            |of_assembly, name: &[u8]| self.numbers.get(&(of_assembly, name.to_ascii_uppercase()));
+    /// Finds a set by name in a scope. `INSTANCE.SET` also finds a set of the mesh if `INSTANCE` refers to the mesh.
+    pub(super) fn find(&self, deck: &Deck<'_>, scope: usize, name: &[u8]) -> Option<usize> {
+        let by = |scope, name: &[u8]| self.numbers.get(&(scope, name.to_ascii_uppercase()));
         let of_instance = || {
             let point = memchr::memchr(b'.', name)?;
-            by(false, &name[point + 1..]).filter(|_| deck.is_of_mesh(&name[..point]))
+            by(deck.instance(&name[..point])?, &name[point + 1..])
         };
-        by(of_assembly, name).or_else(of_instance).copied()
+        by(scope, name).or_else(of_instance).copied()
     }
 
     /// Returns the positions of a set's members, ascending and without repeats. Members of included sets count.
@@ -171,26 +169,37 @@ impl Sets {
         Ok(members)
     }
 
-    /// Lists the indices and names of sets, without internal sets. A set of the mesh gets the prefix `part.` if the
-    /// assembly has a set of equal name.
-    pub(super) fn named(&self) -> impl Iterator<Item = (usize, Vec<u8>)> {
+    /// Lists the indices and names of sets, without internal sets. A set of the mesh whose name is that of a set of another scope
+    /// gets a prefix: the name of its part if several parts have elements, else `part.`.
+    pub(super) fn named(&self, deck: &Deck<'_>) -> impl Iterator<Item = (usize, Vec<u8>)> {
+        let mut scopes_of: HashMap<&[u8], u32> = HashMap::new();
+        self.sets.iter().for_each(|set| *scopes_of.entry(&set.key.1).or_default() += 1);
         let own = self.sets.iter().enumerate().filter(|(_, set)| !set.is_internal);
-        own.map(|(number, set)| {
-            let (of_assembly, key) = &set.key;
-            let has_namesake = !of_assembly && self.numbers.contains_key(&(true, key.clone()));
-            let name =
-                if has_namesake { [&b"part."[..], &set.name].concat() } else { set.name.clone() };
+        own.map(move |(number, set)| {
+            let (scope, key) = &set.key;
+            let is_alone = *scope == ASSEMBLY || scopes_of[&key[..]] == 1;
+            let part = deck.name(*scope).unwrap_or(b"part");
+            let name = if is_alone || part.is_empty() {
+                set.name.clone()
+            } else {
+                [part, b".", &set.name].concat()
+            };
             (number, name)
         })
     }
 }
 
 /// Reads the entries in the data lines of a set's block.
-fn items(source: &Source, deck: &Deck<'_>, block: &Block<'_>, of_assembly: bool) -> Vec<Item> {
+fn items(source: &Source, deck: &Deck<'_>, block: &Block<'_>, scope: usize) -> Vec<Item> {
     // In an assembly, plain numbers are ids of the block's instance. Without an instance, nodes and elements of the
     // assembly itself are meant, and skipped.
-    let of_instance = block.name("INSTANCE").is_some_and(|name| deck.is_of_mesh(name));
-    let is_plain = !of_assembly || of_instance;
+    let of_assembly = scope == ASSEMBLY;
+    let scope = match of_assembly {
+        true => block.name("INSTANCE").and_then(|name| deck.instance(name)).unwrap_or(ASSEMBLY),
+        false => scope,
+    };
+    let is_plain = scope != ASSEMBLY;
+    let in_scope = |number: u64, scope: usize| number.saturating_add(deck.offset(scope));
     let mut items = Vec::new();
     if block.parameter("GENERATE").is_some() {
         let mut row = Vec::new();
@@ -201,7 +210,8 @@ fn items(source: &Source, deck: &Deck<'_>, block: &Block<'_>, of_assembly: bool)
                     && is_plain
                 {
                     let step = rest.first().copied().flatten().unwrap_or(1).max(1);
-                    items.push(Item::Numbers { first: *first, last: *last, step });
+                    let [first, last] = [first, last].map(|&number| in_scope(number, scope));
+                    items.push(Item::Numbers { first, last, step });
                 }
                 row.clear();
             }
@@ -212,17 +222,18 @@ fn items(source: &Source, deck: &Deck<'_>, block: &Block<'_>, of_assembly: bool)
     for (item, _) in block.items(source).filter(|(item, _)| !item.is_empty()) {
         let item = unquoted(item);
         match (integer(item), memchr::memchr(b'.', item)) {
-            (Some(number), _) if is_plain => items.push(one(number)),
+            (Some(number), _) if is_plain => items.push(one(in_scope(number, scope))),
             (Some(_), _) => {}
             // A member or a set of an instance: `Part-1-1.7` or `Part-1-1.inlet`.
-            (None, Some(point)) if of_assembly && deck.is_of_mesh(&item[..point]) => {
+            (None, Some(point)) if of_assembly && deck.instance(&item[..point]).is_some() => {
+                let of_mesh = deck.instance(&item[..point]).unwrap_or(scope);
                 let rest = &item[point + 1..];
                 items.push(match integer(rest) {
-                    Some(number) => one(number),
-                    None => Item::Set((false, rest.to_ascii_uppercase())),
+                    Some(number) => one(in_scope(number, of_mesh)),
+                    None => Item::Set((of_mesh, rest.to_ascii_uppercase())),
                 });
             }
-            _ => items.push(Item::Set((of_assembly && !of_instance, item.to_ascii_uppercase()))),
+            _ => items.push(Item::Set((scope, item.to_ascii_uppercase()))),
         }
     }
     items
