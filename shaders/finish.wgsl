@@ -68,8 +68,18 @@ fn finish(@builtin(local_invocation_index) local: u32) {
     for (var i = 0u; i <= TRACKED; i++) {
         // The worst value starts at -1, below imr² - 1 of any triangle.
         var sum = select(vec2(0.0), vec2(-1.0, 0.0), i == TRACKED);
-        for (var k = local; k < partials; k += FINISH_WORKGROUP) {
-            sum = joined(i, sum, partial_sums[i * partials + k]);
+        // Four loads are under way at once. The order of the sum is that of a plain loop.
+        let first = i * partials;
+        var k = local;
+        for (; k + 3u * FINISH_WORKGROUP < partials; k += 4u * FINISH_WORKGROUP) {
+            let a = partial_sums[first + k];
+            let b = partial_sums[first + k + FINISH_WORKGROUP];
+            let c = partial_sums[first + k + 2u * FINISH_WORKGROUP];
+            let d = partial_sums[first + k + 3u * FINISH_WORKGROUP];
+            sum = joined(i, joined(i, joined(i, joined(i, sum, a), b), c), d);
+        }
+        for (; k < partials; k += FINISH_WORKGROUP) {
+            sum = joined(i, sum, partial_sums[first + k]);
         }
         totals[local] = sum;
         for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {

@@ -2,10 +2,8 @@
 
 // Returns the displacement of a vertex, zero for vertices that are not free.
 fn displacement(v: u32) -> vec2<f32> {
-    if v >= op.free {
-        return vec2(0.0);
-    }
-    return move_of(v);
+    // Without a branch, the loads of the three corners of a triangle are under way at once.
+    return select(vec2(0.0), move_of(min(v, op.free - 1u)), v < op.free);
 }
 
 // Returns an edge after its two vertices have moved. Displacements may be much longer than the edge, so the

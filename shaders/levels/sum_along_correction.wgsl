@@ -7,8 +7,18 @@ fn sum_along_correction(@builtin(local_invocation_index) local: u32) {
     let rows = select(op.rows, 0u, rests());
     for (var i = 0u; i < 4u; i++) {
         var sum = vec2(0.0);
-        for (var k = local; k < rows; k += FINISH_WORKGROUP) {
-            sum = pair_add(sum, vectors[op.partial_sums + i * op.rows + k]);
+        // Four loads are under way at once. The order of the sum is that of a plain loop.
+        let first = op.partial_sums + i * op.rows;
+        var k = local;
+        for (; k + 3u * FINISH_WORKGROUP < rows; k += 4u * FINISH_WORKGROUP) {
+            let a = vectors[first + k];
+            let b = vectors[first + k + FINISH_WORKGROUP];
+            let c = vectors[first + k + 2u * FINISH_WORKGROUP];
+            let d = vectors[first + k + 3u * FINISH_WORKGROUP];
+            sum = pair_add(pair_add(pair_add(pair_add(sum, a), b), c), d);
+        }
+        for (; k < rows; k += FINISH_WORKGROUP) {
+            sum = pair_add(sum, vectors[first + k]);
         }
         totals[local] = sum;
         for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {

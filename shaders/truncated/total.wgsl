@@ -5,7 +5,16 @@ var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 // Returns the sum of all partial sums, the same for each invocation.
 fn total(local: u32) -> f32 {
     var sum = vec2(0.0);
-    for (var k = local; k < op.partials; k += FINISH_WORKGROUP) {
+    // Four loads are under way at once. The order of the sum is that of a plain loop.
+    var k = local;
+    for (; k + 3u * FINISH_WORKGROUP < op.partials; k += 4u * FINISH_WORKGROUP) {
+        let a = fine[sum_at(k)];
+        let b = fine[sum_at(k + FINISH_WORKGROUP)];
+        let c = fine[sum_at(k + 2u * FINISH_WORKGROUP)];
+        let d = fine[sum_at(k + 3u * FINISH_WORKGROUP)];
+        sum = pair_add(pair_add(pair_add(pair_add(sum, a), b), c), d);
+    }
+    for (; k < op.partials; k += FINISH_WORKGROUP) {
         sum = pair_add(sum, fine[sum_at(k)]);
     }
     totals[local] = sum;

@@ -93,7 +93,7 @@ pub struct DeviceCounts {
     pub waiting: Duration,
     /// Kernels compiled.
     pub kernels: u64,
-    /// Time of compilation. Some drivers compile later, at the first dispatch.
+    /// Time of compilation, the sum over all threads. Some drivers compile later, at the first dispatch.
     pub compiling: Duration,
     /// Kernels compiled after the first sweep on the device.
     pub late_kernels: u64,

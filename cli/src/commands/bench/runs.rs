@@ -276,7 +276,7 @@ fn head(args: &BenchArgs, places: &[Place]) -> String {
     }
     text += &format!(
         "\nWhole runs by {} to the default tolerance, in ms: the first on its engine and mesh, then the median of others. \
-         Levels, compilation and waits are parts of smoothing; bytes are for each vertex\n\n",
+         Levels and waits are parts of smoothing; compilation is the sum over all threads; bytes are for each vertex\n\n",
         args.scheme()
     );
     text += &line(args, COLUMNS.map(|(name, _)| name.to_owned()), "engine");
