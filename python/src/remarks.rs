@@ -106,8 +106,8 @@ impl<'a> Remarks<'a> {
     pub(crate) fn adapted(&mut self, adapted: Adapted) {
         self.warn(match adapted {
             Adapted::Stretched(stretching) => format!(
-                "points: the mesh is adapted: around one vertex in twenty, triangles are stretched {stretching:.1}-fold or \
-                 more. They become equilateral unless target=\"keep-shape\" keeps their stretching and sizes"
+                "points: the mesh is adapted: around one vertex in twenty, elements are stretched {stretching:.1}-fold or \
+                 more. They become equilateral or square unless target=\"keep-shape\" keeps their stretching and sizes"
             ),
             Adapted::Graded(gradation) => format!(
                 "points: the mesh is graded: sizes differ {gradation:.0}-fold from fine to coarse parts. They become more \

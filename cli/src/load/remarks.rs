@@ -64,8 +64,8 @@ fn with_effect(remark: &Remark, moves: bool) -> String {
 pub(crate) fn adapted(adapted: Adapted) -> String {
     match adapted {
         Adapted::Stretched(stretching) => format!(
-            "the mesh is adapted: around one vertex in twenty, triangles are stretched {stretching:.1}-fold or more; they \
-             become equilateral unless --target keep-shape keeps their stretching and sizes"
+            "the mesh is adapted: around one vertex in twenty, elements are stretched {stretching:.1}-fold or more; they \
+             become equilateral or square unless --target keep-shape keeps their stretching and sizes"
         ),
         Adapted::Graded(gradation) => format!(
             "the mesh is graded: sizes differ {gradation:.0}-fold from fine to coarse parts; they become more even unless \
