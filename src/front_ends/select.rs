@@ -88,15 +88,12 @@ pub fn vertices_inside(topology: &Topology<'_>, elements: &[Element]) -> Vec<u32
     let triangles = topology.triangles().len();
     let corners: Vec<[u32; 4]> = topology.quadrilaterals().collect();
     let mut chosen = vec![false; triangles + corners.len()];
-    for &element in elements {
-        let number = match element {
-            Element::Triangle(index) if index < triangles => index,
-            Element::Quadrilateral(index) => triangles + index,
-            _ => continue,
-        };
-        if let Some(chosen) = chosen.get_mut(number) {
-            *chosen = true;
-        }
+    let is_listed = |element: &Element| match *element {
+        Element::Triangle(index) => index < triangles,
+        Element::Quadrilateral(index) => index < corners.len(),
+    };
+    for &element in elements.iter().filter(|&element| is_listed(element)) {
+        chosen[topology.place(element)] = true;
     }
     let of_triangles = topology.triangles().iter().map(|t| &t[..]);
     let all = || of_triangles.clone().chain(corners.iter().map(|q| &q[..])).zip(&chosen);

@@ -151,7 +151,7 @@ impl<'a> Measured<'a> {
         let points = four.map(|[own, ..]| self.points[own as usize]);
         let lengths = self.surface.lengths(points.iter().map(|[_, y]| y / 4.0).sum());
         let mut quadrilateral = Quadrilateral::new(points, lengths, four.each_ref().map(of_corner));
-        let element = self.topology.triangles().len() + index;
+        let element = self.topology.place(Element::Quadrilateral(index));
         if let Some(ratios) = self.size_ratios.get() {
             quadrilateral.size_ratio = ratios[element];
         }

@@ -224,6 +224,15 @@ impl<'m> Topology<'m> {
         self.corners.element_count()
     }
 
+    /// Returns the place of an element among all elements, triangles first, by which [`Measured`](crate::measure::Measured) knows
+    /// the element. The place is at least [`element_count`](Self::element_count) if the mesh lacks the quadrilateral.
+    pub fn place(&self, element: Element) -> usize {
+        match element {
+            Element::Triangle(index) => index,
+            Element::Quadrilateral(index) => self.triangles().len() + index,
+        }
+    }
+
     /// Returns the elements of corners that ascend, each element once.
     pub fn elements(&self, corners: &[u32]) -> Vec<Element> {
         let mut elements: Vec<Element> = corners.iter().map(|&c| self.element(c)).collect();

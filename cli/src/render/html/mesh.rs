@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use crate::profiles::Profile;
 use crate::render::html::edges::ShownEdges;
 use crate::render::html::page::ViewerMesh;
-use crate::render::html::worst::{WorstElement, number};
+use crate::render::html::worst::WorstElement;
 use crate::render::picture::{
     BAD, Extent, FixedFaces, NEUTRAL, Outlines, PALE, VIRIDIS, picture_of,
 };
@@ -183,7 +183,7 @@ pub(crate) fn viewer_mesh(
     let corners: Vec<Value> = spots
         .iter()
         .map(|spot| {
-            let at = shown.binary_search(&number(topology, spot.element)).ok();
+            let at = shown.binary_search(&topology.place(spot.element)).ok();
             json!({ "element": at, "state": spot.state, "at": spot.at, "size": spot.size })
         })
         .collect();
@@ -270,7 +270,7 @@ fn indices(numbers: &[u32]) -> String {
 fn bad(topology: &Topology<'_>, points: &[[f64; 2]]) -> Result<HashSet<usize>, CliError> {
     let triangles = topology.bad_triangles(points)?.into_iter().map(|bad| bad.triangle);
     let others = topology.bad_quadrilaterals(points)?.into_iter();
-    let others = others.map(|bad| number(topology, Element::Quadrilateral(bad.quadrilateral)));
+    let others = others.map(|bad| topology.place(Element::Quadrilateral(bad.quadrilateral)));
     Ok(triangles.chain(others).collect())
 }
 
@@ -307,7 +307,7 @@ fn around(file: &LoadedMesh, topology: &Topology<'_>, spots: &[WorstElement]) ->
             }
             next += 1;
         }
-        all.extend(queue.into_iter().map(|element| number(topology, element)));
+        all.extend(queue.into_iter().map(|element| topology.place(element)));
     }
     let mut all: Vec<usize> = all.into_iter().collect();
     all.sort_unstable();
@@ -422,7 +422,7 @@ mod tests {
             for (spot, told) in spots.iter().zip(data["spots"].as_array().unwrap()) {
                 let at = told["element"].as_u64().unwrap() as usize;
                 let value = f32::from_le_bytes(values[4 * at..4 * at + 4].try_into().unwrap());
-                let index = number(&topology, spot.element);
+                let index = topology.place(spot.element);
                 assert_eq!(at >= triangles, is_other(spot));
                 match bad.contains(&index) {
                     true => assert!(value.is_nan()),

@@ -3,8 +3,8 @@
 use crate::load::LoadedMesh;
 use std::fmt::Write;
 
+use gpu_smooth::Element;
 use gpu_smooth::measure::{Measure, Measured};
-use gpu_smooth::{Element, Topology};
 
 use crate::load::{Place, as_in_file};
 use crate::render::html::page::escape;
@@ -79,14 +79,6 @@ pub(crate) fn spots_of_mesh(
     located(file, [measured; 2], measure, &listed)
 }
 
-/// Returns the number by which [`Measured`] knows an element: quadrilaterals follow the triangles.
-pub(crate) fn number(topology: &Topology<'_>, element: Element) -> usize {
-    match element {
-        Element::Triangle(index) => index,
-        Element::Quadrilateral(index) => topology.triangles().len() + index,
-    }
-}
-
 /// Measures and locates elements, each given with the index of its list.
 fn located(
     file: &LoadedMesh,
@@ -108,7 +100,7 @@ fn located(
         let place = place.location();
         let count = points.len() as f64;
         let at = [0, 1].map(|axis| points.iter().map(|point| point[axis] / count).sum());
-        let index = number(topology, element);
+        let index = topology.place(element);
         WorstElement {
             element,
             list,

@@ -17,7 +17,7 @@ use crate::render::picture::outlines::Outlines;
 use crate::render::picture::raster::Raster;
 use crate::render::picture::scene::{ColoredEdge, Panel, Scene, Spot, middle};
 use gpu_smooth::measure::{InnerEdge, Measure, Measured};
-use gpu_smooth::{MeshError, Topology, targets::Surface};
+use gpu_smooth::{Element, MeshError, Topology, targets::Surface};
 use mesh_io::atomic;
 
 use crate::terminal::numbers::fit8;
@@ -127,7 +127,7 @@ fn goodness_of(
         goodness[bad.triangle] = -1.0;
     }
     for bad in topology.bad_quadrilaterals(state.points())? {
-        goodness[topology.triangles().len() + bad.quadrilateral] = -1.0;
+        goodness[topology.place(Element::Quadrilateral(bad.quadrilateral))] = -1.0;
     }
     Ok(goodness)
 }
