@@ -1,4 +1,4 @@
-//! The work of a run, known before its first sweep.
+//! The description of a run that a device needs before the first sweep.
 
 use crate::run::sweep_params::SweepParams;
 
@@ -12,7 +12,7 @@ pub(crate) struct Work {
     pub(crate) is_measured: bool,
 }
 
-/// The method by which a run goes on after its first sweeps.
+/// The method of a run after the first sweeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ending {
     /// Further sweeps.

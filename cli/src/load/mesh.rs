@@ -50,7 +50,8 @@ impl LoadedMesh {
         }
     }
 
-    /// Returns the edges between elements of different regions, by the vertices of the mesh.
+    /// Returns the edges between elements of different regions. Vertices are those of the mesh, in which the chart may have copied
+    /// vertices of the file.
     pub(crate) fn interface_edges(&self) -> Vec<[u32; 2]> {
         let of_triangles = self.source.regions();
         let of_quadrilaterals = self.source.quadrilateral_regions();

@@ -164,8 +164,10 @@ fn whole_runs_are_timed_by_phase_on_both_engines() {
         for part in ["levels_seconds", "waiting_seconds"] {
             assert!(number(part) <= number("smooth_seconds"), "{part}: {row}");
         }
-        // All threads compile at once.
-        assert!(number("compiling_seconds") >= 0.0, "{row}");
+        // The threads of the pool and the thread of the run compile at once.
+        let threads = std::thread::available_parallelism().unwrap().get() + 1;
+        let most = threads as f64 * number("smooth_seconds");
+        assert!(number("compiling_seconds") <= most, "{row}");
         // Newton steps need no levels from the host.
         assert!(number("levels_seconds") == 0.0 && number("prepare_seconds") > 0.0, "{row}");
     }

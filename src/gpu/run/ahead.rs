@@ -1,4 +1,4 @@
-//! The kernels of a run, which are compiled before its first sweep.
+//! The list of the kernels that are compiled before the first sweep of a run.
 
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::table::Kernel;
@@ -7,8 +7,8 @@ use crate::gpu::run::{levels, truncated};
 use crate::layout::Problem;
 use crate::run::{Ending, Plan, SweepParams, Work};
 
-/// Lists the kernels of a run by a plan that does the given work, in the order of their first dispatches. Runs that accelerate
-/// corrections compile further kernels later.
+/// Lists the kernels of the given work in a run by a plan, each once, in the order of their first dispatches. A run with
+/// accelerated corrections compiles further kernels later.
 pub(super) fn kernels(
     plan: &Plan,
     work: &Work,
@@ -26,7 +26,12 @@ pub(super) fn kernels(
             true => mesh.parts.elements.iter().map(|part| part.form(form)).collect(),
             false => vec![form],
         };
-        kernels.extend(forms.into_iter().map(|form| (kernel.clone(), form)));
+        for form in forms {
+            let listed = (kernel.clone(), form);
+            if !kernels.contains(&listed) {
+                kernels.push(listed);
+            }
+        }
     };
     for &SweepParams { metric, derivatives, .. } in &work.steps {
         add(Kernel::Sweep(metric, derivatives));

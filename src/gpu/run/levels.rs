@@ -15,7 +15,6 @@ use crate::gpu::run::listing::{
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::metric::Smoothing;
-use crate::parallel::pace::pause;
 use crate::run::multilevel::Hierarchy;
 use crate::run::{EXCLUSION_PASSES, Plan};
 
@@ -78,10 +77,9 @@ impl Levels {
         let guard = dispatches.plan.base_step(1.0).shape_guard.min(NO_GUARD) as f32;
         let has_guard = leaves_out(&dispatches.plan, problem);
         // Compiled here with pauses, so that the listing finds every kernel compiled.
-        for kernel in kernels(&dispatches.plan, problem) {
-            gpu.pipelines.get(&gpu.device, &kernel, mesh.parts.form())?;
-            pause().await;
-        }
+        let kernels = kernels(&dispatches.plan, problem).into_iter();
+        let kernels: Vec<_> = kernels.map(|kernel| (kernel, mesh.parts.form())).collect();
+        gpu.compile(&kernels).await?;
         let free = problem.free_count() as u32;
         let partials = objective_invocations(problem.judged_count());
         let listing = Listing::new(gpu, mesh.parts.form());

@@ -16,7 +16,7 @@ pub(super) struct Deck<'a> {
     meshes: Vec<usize>,
     /// The number that is added to the ids of nodes and elements of each scope in `meshes`, so that no id occurs in two scopes.
     offsets: Vec<u64>,
-    /// The name of each scope: of the part or the instance, or an empty name.
+    /// The name of each scope, which is empty for the model and the assembly.
     names: Vec<Vec<u8>>,
     /// Maps the name of an instance, in capital letters, to the scope of the mesh that the instance is or refers to.
     instances: HashMap<Vec<u8>, usize>,
@@ -90,8 +90,8 @@ impl<'a> Deck<'a> {
         Ok(deck)
     }
 
-    /// Finds the offsets of ids if several scopes have elements: multiples of a power of ten above all ids, so that the last digits
-    /// of an id are those in the file.
+    /// Finds the offsets of ids if several scopes have elements. The offsets are multiples of a power of ten above all ids, so the
+    /// last digits of a raised id are the id in the file.
     fn tell_ids_apart(&mut self, source: &Source) {
         let count = self.meshes.len();
         if count == 1 {
@@ -122,13 +122,12 @@ impl<'a> Deck<'a> {
 
     /// Returns whether nodes and elements of a scope belong to the mesh.
     fn is_mesh(&self, scope: usize) -> bool {
-        self.meshes.contains(&scope)
+        self.meshes.binary_search(&scope).is_ok()
     }
 
     /// Returns the number that is added to ids of a scope of the mesh.
     pub(super) fn offset(&self, scope: usize) -> u64 {
-        let place = self.meshes.iter().position(|&of_mesh| of_mesh == scope);
-        place.map_or(0, |place| self.offsets[place])
+        self.meshes.binary_search(&scope).map_or(0, |place| self.offsets[place])
     }
 
     /// Returns the name of the part or instance that a scope is, if several scopes have elements.
