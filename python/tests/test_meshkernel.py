@@ -186,8 +186,9 @@ def test_measures_of_edges_are_those_of_meshkernel() -> None:
         cosines = np.abs(kernel.mesh2d_get_orthogonality().values)[index]
         ratios = np.asarray(kernel.mesh2d_get_smoothness().values)[index]
         np.testing.assert_allclose(measured(points, pairs, "orthogonality", surface), cosines, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(measured(points, pairs, "smoothness", surface), ratios, rtol=1e-9)
         if surface == "plane":
-            # In degrees, `size-ratio` has other areas than MeshKernel. The list has MeshKernel's smoothness.
+            # In degrees, `size-ratio` has other areas than MeshKernel.
             np.testing.assert_allclose(measured(points, pairs, "size-ratio", surface), ratios, rtol=1e-9)
         shortest = shortest_links(kernel, links)
         for k, link in enumerate(shortest.tolist()):

@@ -247,6 +247,18 @@ measures! {
         source: MESHKERNEL,
         quadrilateral: of_quadrilateral("as of a triangle", [0.0, f64::INFINITY], SQUARE),
     };
+    /// The largest jump of the area at an edge of the element; see [`InnerEdge`](crate::measure::InnerEdge). 1 for an element
+    /// without neighbors.
+    Smoothness = |t| smoothness(t.worst_edges), |q| smoothness(q.worst_edges), Definition {
+        name: "smoothness",
+        formula: "max over the neighbors N of max(S / S_N, S_N / S), the areas of MeshKernel",
+        unit: "",
+        range: FROM_ONE,
+        ideal: 1.0,
+        better: Better::Lower,
+        source: MESHKERNEL,
+        quadrilateral: of_quadrilateral("as of a triangle", FROM_ONE, 1.0),
+    };
 }
 
 fn orthogonality(worst: Option<WorstEdges>) -> f64 {
@@ -255,6 +267,10 @@ fn orthogonality(worst: Option<WorstEdges>) -> f64 {
 
 fn flow_link(worst: Option<WorstEdges>) -> f64 {
     worst.map_or(f64::NAN, |worst| worst.flow_link)
+}
+
+fn smoothness(worst: Option<WorstEdges>) -> f64 {
+    worst.map_or(f64::NAN, |worst| worst.smoothness)
 }
 
 const fn of_metric(metric: Metric) -> Definition {
@@ -293,7 +309,7 @@ impl Measure {
     };
 
     /// Returns the measure of an earlier row with equal values of all triangles, up to rounding; `None` if no earlier row has
-    /// equal values. The values of quadrilaterals may differ.
+    /// equal values. In the plane, `smoothness` equals `size-ratio` too, but not in degrees. The values of quadrilaterals may differ.
     pub const fn equal_to(self) -> Option<Measure> {
         match self {
             Measure::Metric(Metric::Edge) => Some(Measure::EdgeRatio),
@@ -314,7 +330,7 @@ impl Measure {
     ///
     /// [`Measured::edges`]: crate::measure::Measured::edges
     pub const fn is_of_edges(self) -> bool {
-        matches!(self, Measure::Orthogonality | Measure::FlowLink)
+        matches!(self, Measure::Orthogonality | Measure::FlowLink | Measure::Smoothness)
     }
 
     /// Returns the name on the command line.

@@ -17,7 +17,8 @@ fn all_measures() -> impl Iterator<Item = Measure> {
 
 /// Returns the measures that quadrilaterals have, but those between neighbors.
 fn measures() -> impl Iterator<Item = Measure> {
-    let between = [Measure::SizeRatio, Measure::Orthogonality, Measure::FlowLink];
+    let between =
+        [Measure::SizeRatio, Measure::Orthogonality, Measure::FlowLink, Measure::Smoothness];
     all_measures().filter(move |measure| !between.contains(measure))
 }
 

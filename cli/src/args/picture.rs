@@ -12,8 +12,8 @@ pub(crate) struct PictureArgs {
     /// Draw the mesh, colored by its quality, as .png or .svg
     #[arg(long, value_name = "FILE", help_heading = "Picture")]
     pub(crate) picture: Option<PathBuf>,
-    /// The measure that colors show, on a page at first (see `gpu-smooth quality --help`). orthogonality and flow-link color
-    /// edges, other measures triangles
+    /// The measure that colors show, on a page at first (see `gpu-smooth quality --help`). orthogonality, flow-link
+    /// and smoothness color edges, other measures elements
     #[arg(
         long,
         value_name = "NAME",

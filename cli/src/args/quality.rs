@@ -30,7 +30,7 @@ pub(crate) struct QualityArgs {
         help = names::measure_help()
     )]
     pub(crate) measure: Vec<Measure>,
-    /// Number of worst elements to list; of worst edges, if the first measure is orthogonality or flow-link
+    /// Number of worst elements to list; of worst edges, if the first measure is orthogonality, flow-link or smoothness
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(crate) worst: usize,
     /// Measure triangles and quadrilaterals (move), or the triangles alone (keep), as runs with the same option do.
@@ -40,8 +40,8 @@ pub(crate) struct QualityArgs {
     /// Show the statistics of each region too: physical groups, materials, references, attributes
     #[arg(long)]
     pub(crate) by_region: bool,
-    /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. orthogonality and flow-link are
-    /// those of edges, neighbors the number of elements at a vertex, boundary-corners the number of corners of a
+    /// Values that no triangle may have, as in 'min-angle<20'; may be given several times. orthogonality, flow-link
+    /// and smoothness are those of edges, neighbors the number of elements at a vertex, boundary-corners the number of corners of a
     /// triangle on the boundary, hole-edges the number of edges around a hole, and time-step the altitude over the speed of
     /// waves by the depths of the file, in seconds. The exit code is 1 if a part of the mesh has such a value. Each threshold has a line that
     /// says whether it holds and where the worst part is; -q prints the violated ones alone

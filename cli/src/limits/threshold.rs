@@ -122,6 +122,7 @@ mod tests {
         for (text, part, own) in [
             ("min-angle<20", Part::Triangle, "min-angle<20"),
             ("Flow_Link <= .1", Part::Edge, "flow-link<=0.1"),
+            ("smoothness>3", Part::Edge, "smoothness>3"),
             ("neighbors>10", Part::Vertex, "neighbors>10"),
             ("neighbors<4", Part::Vertex, "neighbors<4"),
             ("boundary-corners>=3", Part::Triangle, "boundary-corners>=3"),

@@ -23,7 +23,7 @@ pub(crate) use histogram::{Histogram, histogram};
 pub(crate) use improved::ImprovedReport;
 pub(crate) use large_angles::LargeAnglesReport;
 pub(crate) use profile::{ProfileChange, ProfileReport, Verdict};
-pub(crate) use quantities::{Finding, Quantities, Worst, of_edge};
+pub(crate) use quantities::{Finding, Quantities, Worst};
 pub(crate) use run::{
     ChangeReport, EngineReport, FaultReport, GoalReport, MeshReport, QualityReport, Refusal,
     Report, Seconds, SlideReport, UntangleReport, history,

@@ -173,7 +173,7 @@ impl<'m> Quantities<'m> {
         let topology = self.measured.topology();
         match threshold.quantity {
             Quantity::Measure(measure) if measure.is_of_edges() => {
-                let values = self.edges().iter().map(|edge| of_edge(measure, edge));
+                let values = self.edges().iter().map(|edge| edge.value(measure));
                 values.enumerate().map(valued).collect()
             }
             Quantity::Measure(measure) => {
@@ -262,14 +262,6 @@ fn altitude(corners: [[f64; 2]; 3], in_degrees: bool) -> f64 {
     let [u, v, w] = [to(p, q), to(p, r), to(q, r)];
     let longest = [u, v, w].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
     (u[0] * v[1] - u[1] * v[0]).abs() / longest
-}
-
-/// Returns the value of a measure of edges for an edge between two triangles.
-pub(crate) fn of_edge(measure: Measure, edge: &InnerEdge) -> f64 {
-    match measure {
-        Measure::FlowLink => edge.flow_link,
-        _ => edge.orthogonality,
-    }
 }
 
 impl Finding {

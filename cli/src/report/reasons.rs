@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::limits::{Part, Threshold};
 use crate::profiles::{Limit, Profile};
-use crate::report::quantities::{Quantities, of_edge};
+use crate::report::quantities::Quantities;
 
 /// The edges beyond the limits of a profile that have one reason.
 #[derive(Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub(crate) fn reasons(profile: &Profile, quantities: &Quantities<'_>) -> Vec<Rea
         let is_in = |range: &Option<Threshold>| {
             let measured =
                 range.as_ref().and_then(|range| Some((range, range.quantity.measure()?)));
-            measured.is_some_and(|(range, measure)| range.is_met(of_edge(measure, edge)))
+            measured.is_some_and(|(range, measure)| range.is_met(edge.value(measure)))
         };
         let (is_failed, is_warned) = (
             limits.iter().any(|limit| is_in(&limit.fail)),

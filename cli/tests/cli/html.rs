@@ -109,8 +109,11 @@ fn a_page_colors_edges_by_the_measures_that_the_command_line_names() {
     }
     let (_, data) = page_of(&folder, "quality in --picture-measure orthogonality");
     assert_eq!((names(&data).len(), &data["first"]), (5, &4.into()));
-    let (_, data) = page_of(&folder, "quality in -m skewness,flow-link");
-    assert_eq!(names(&data)[4..], ["flow-link"]);
+    let (_, data) = page_of(&folder, "quality in -m skewness,flow-link,smoothness");
+    assert_eq!(names(&data)[4..], ["flow-link", "smoothness"]);
+    let measured = Measured::new(&before.points, &topology).unwrap();
+    let ratios: Vec<f32> = measured.edges().iter().map(|edge| edge.smoothness as f32).collect();
+    assert_eq!(values(&data["states"][0]["edge_values"][5]), ratios);
     let (_, data) = page_of(&folder, "quality in");
     assert_eq!((names(&data).len(), indices(&data["edges"]).len()), (4, 0));
 }

@@ -57,7 +57,9 @@ fn a_threshold_of_edges_counts_edges_and_names_the_ends_of_the_worst() {
 fn the_worst_edges_are_listed_with_their_ends_if_a_measure_of_edges_is_first() {
     let folder = quadrilateral();
     let text =
-        quality(&folder, &["-m", "orthogonality,min-angle,flow-link", "--worst", "3"]).clean().out;
+        quality(&folder, &["-m", "orthogonality,min-angle,flow-link,smoothness", "--worst", "3"])
+            .clean()
+            .out;
     let list: Vec<&str> =
         text.split("worst edges by orthogonality\n").nth(1).unwrap().lines().take(4).collect();
     assert_eq!(list[3], "");
@@ -65,7 +67,8 @@ fn the_worst_edges_are_listed_with_their_ends_if_a_measure_of_edges_is_first() {
         list[0],
         &["  the edge between vertices ", " and 5 (lines ", " of in.14): orthogonality 0."],
     );
-    assert!(list[0].contains(", flow-link ") && list[0].ends_with("; can move"), "{}", list[0]);
+    assert_holds(list[0], &[", flow-link ", ", smoothness "]);
+    assert!(list[0].ends_with("; can move"), "{}", list[0]);
     assert!(!list[0].contains("min-angle"));
     let told: Value =
         serde_json::from_str(&quality(&folder, &["-m", "flow-link", "--worst", "9", "--json"]).out)

@@ -1,6 +1,7 @@
 //! Measures of the edges between two elements, by which solvers with unknowns at circumcenters judge meshes.
 
 use crate::measure::neighbors::for_each_side;
+use crate::measure::table::Measure;
 use crate::parallel::{collect, map_ranges};
 use crate::targets::Surface;
 use crate::topology::Topology;
@@ -37,6 +38,18 @@ pub struct InnerEdge {
     pub smoothness: f64,
 }
 
+impl InnerEdge {
+    /// Returns the value of a measure; NaN if [`Measure::is_of_edges`] is false.
+    pub const fn value(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Orthogonality => self.orthogonality,
+            Measure::FlowLink => self.flow_link,
+            Measure::Smoothness => self.smoothness,
+            _ => f64::NAN,
+        }
+    }
+}
+
 /// `flow_link` of an edge between equilateral triangles, 2 / 3^(3/4).
 pub(crate) const EQUILATERAL: f64 = 0.877_382_675_301_661_6;
 /// `flow_link` of an edge between squares.
@@ -49,6 +62,8 @@ pub(crate) struct WorstEdges {
     pub(crate) orthogonality: f64,
     /// Least [`InnerEdge::flow_link`]; that of equilateral triangles or of squares without neighbors.
     pub(crate) flow_link: f64,
+    /// Largest [`InnerEdge::smoothness`]; 1 without neighbors.
+    pub(crate) smoothness: f64,
 }
 
 /// The center and the area of an element.
@@ -286,12 +301,14 @@ pub(crate) fn worst_edges(
 ) -> Vec<WorstEdges> {
     let cells = Cells::new(surface, points, topology);
     collect(topology.element_count(), |t| {
-        let mut worst = WorstEdges { orthogonality: 0.0, flow_link: f64::INFINITY };
+        let mut worst =
+            WorstEdges { orthogonality: 0.0, flow_link: f64::INFINITY, smoothness: 1.0 };
         for_each_side(topology, t, |ends, other| {
             // The same order of the elements on both sides gives the same bits.
             let edge = cells.edge(ends, [t.min(other), t.max(other)]);
             worst.orthogonality = worst.orthogonality.max(edge.orthogonality);
             worst.flow_link = worst.flow_link.min(edge.flow_link);
+            worst.smoothness = worst.smoothness.max(edge.smoothness);
         });
         let ideal = if t < topology.triangles().len() { EQUILATERAL } else { SQUARE };
         let flow_link = if worst.flow_link < f64::INFINITY { worst.flow_link } else { ideal };

@@ -105,10 +105,14 @@ fn the_worst_edges_of_triangles_are_those_of_the_list() {
     let worst = worst_edges(Surface::Plane, &points, &topology);
     for (t, worst) in worst.iter().enumerate() {
         let own = edges.iter().filter(|edge| edge.elements.contains(&(t as u32)));
-        let expected = own.fold((0.0f64, f64::INFINITY), |(most, least), edge| {
-            (most.max(edge.orthogonality), least.min(edge.flow_link))
+        let expected = own.fold((0.0f64, f64::INFINITY, 1.0f64), |(most, least, ratio), edge| {
+            let (link, smoothness) = (edge.flow_link, edge.smoothness);
+            (most.max(edge.orthogonality), least.min(link), ratio.max(smoothness))
         });
-        assert_eq!((worst.orthogonality, worst.flow_link), expected, "{t}");
+        assert_eq!((worst.orthogonality, worst.flow_link, worst.smoothness), expected, "{t}");
+        // In the plane, the areas are those of `size-ratio`.
+        let ratio = measured.value(Measure::SizeRatio, t);
+        assert!((worst.smoothness / ratio - 1.0).abs() < 1e-14, "{t}");
     }
 }
 
@@ -118,7 +122,7 @@ fn a_triangle_alone_and_a_flat_triangle_have_finite_measures() {
     let mesh = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
     let topology = Topology::new(&mesh).unwrap();
     let alone = worst_edges(Surface::Plane, &points, &topology);
-    assert_eq!(alone, [WorstEdges { orthogonality: 0.0, flow_link: EQUILATERAL }]);
+    assert_eq!(alone, [WorstEdges { orthogonality: 0.0, flow_link: EQUILATERAL, smoothness: 1.0 }]);
     let [edge] = edges_of(Surface::Plane, &points, &[[0, 1, 2], [1, 0, 3]])[..] else { panic!() };
     assert!(edge.orthogonality <= 1.0 && edge.flow_link >= 0.0, "{edge:?}");
     assert_eq!(edge.smoothness, f64::INFINITY);

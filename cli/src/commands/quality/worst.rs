@@ -5,7 +5,6 @@ use gpu_smooth::measure::{Better, InnerEdge, Measure, Measured};
 
 use crate::args::QualityArgs;
 use crate::load::{LoadedMesh, Place, as_in_file};
-use crate::report::of_edge;
 
 /// One of the worst elements or edges.
 pub(crate) struct WorstPart {
@@ -83,7 +82,7 @@ fn edges(
     let mut edges = measured.edges();
     // The sort is stable, so equal values keep the order of the mesh.
     edges.sort_by(|a, b| {
-        let order = of_edge(measure, a).total_cmp(&of_edge(measure, b));
+        let order = a.value(measure).total_cmp(&b.value(measure));
         if measure.definition().better == Better::Higher { order } else { order.reverse() }
     });
     edges.truncate(args.worst);
@@ -100,7 +99,7 @@ fn edges(
             corners: points.map(|point| as_in_file(file, point)).to_vec(),
             at: as_in_file(file, mean(&points)),
             length: longest_edge(&points),
-            values: of_edges.map(|&m| (m, of_edge(m, edge))).collect(),
+            values: of_edges.map(|&m| (m, edge.value(m))).collect(),
             can_move: edge
                 .elements
                 .map(|index| measured.element(index as usize))

@@ -2,8 +2,6 @@
 
 use gpu_smooth::measure::{InnerEdge, Measure, Measured};
 
-use crate::report::of_edge;
-
 /// The edges between shown elements before and after a run, or of one mesh.
 pub(crate) struct ShownEdges {
     /// The edges at the positions of each state, all in one order.
@@ -34,6 +32,6 @@ impl ShownEdges {
     /// Returns the values of a measure in a state, in single precision; none of a measure of triangles.
     pub(crate) fn values(&self, state: usize, measure: Measure) -> impl Iterator<Item = f32> + '_ {
         let edges = if measure.is_of_edges() { &self.states[state][..] } else { &[] };
-        edges.iter().map(move |edge| of_edge(measure, edge) as f32)
+        edges.iter().map(move |edge| edge.value(measure) as f32)
     }
 }

@@ -6,7 +6,6 @@ use crate::color_scale::ColorScale;
 use crate::error::CliError;
 use crate::load::{LoadedMesh, axes_legend};
 use crate::render::picture::{png, svg};
-use crate::report::of_edge;
 use crate::request::{PictureFormat, PictureRequest};
 
 use crate::render::picture::canvas::Canvas;
@@ -143,7 +142,7 @@ fn panel<'a>(
     let measure = colors.measure();
     let edges = if measure.is_of_edges() { measured.edges() } else { Vec::new() };
     let values = match measure.is_of_edges() {
-        true => edges.iter().map(|edge| of_edge(measure, edge)).collect(),
+        true => edges.iter().map(|edge| edge.value(measure)).collect(),
         false => measured.values(measure),
     };
     let triangles = mesh.topology.triangles();
