@@ -36,6 +36,9 @@ impl KeepLayers {
             Self::Rows(count) => elements.rows(count as usize, walls)?,
             Self::Within(distance) => elements.within(distance, walls)?,
         };
+        if layers.vertices.is_empty() && layers.sides.is_empty() {
+            return Ok(layers);
+        }
         let bad = elements.topology.bad_triangles(elements.points)?;
         if !bad.is_empty() {
             let bad: HashSet<u32> = bad.iter().flat_map(|bad| bad.vertices).collect();

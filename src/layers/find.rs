@@ -4,7 +4,7 @@ use crate::error::MeshError;
 use crate::layers::elements::Elements;
 use crate::layers::march::Rows;
 use crate::layers::result::Layers;
-use crate::layers::search::{Marked, Search, on_walls};
+use crate::layers::search::{Marked, Search, on_walls, without_layers};
 use crate::layers::sectors::Sectors;
 use crate::layers::segments::Segments;
 use crate::layers::{ends, front};
@@ -22,6 +22,9 @@ impl Elements<'_> {
     /// `lines` or `walls` name a vertex that does not exist.
     pub fn layers(&self, walls: Option<&[u32]>) -> Result<Layers, MeshError> {
         self.check(walls)?;
+        if let Some(none) = without_layers(self, walls) {
+            return Ok(none);
+        }
         let found = Search::new(self, self.lines, walls);
         let wakes = found.wakes();
         if !wakes.is_empty() {
@@ -91,8 +94,7 @@ impl Elements<'_> {
 
     /// Returns the sectors of the elements, the seeds, and the front on given walls or on those with seeds.
     fn front(&self, walls: Option<&[u32]>) -> (Sectors, Vec<bool>, Vec<bool>) {
-        let sectors =
-            Sectors::new(self.points, self.topology.triangles(), &self.all_faces(), self.lines);
+        let sectors = Sectors::new(self, self.lines);
         let seeds = front::seeds(&sectors);
         let front = match walls {
             None => front::front(&sectors, &seeds),

@@ -9,7 +9,7 @@ use crate::layers::vector::median;
 pub(super) const ASPECT: f64 = 1.5;
 
 /// Least number of kept rows of a column that counts.
-const ROWS: u32 = 3;
+pub(super) const ROWS: u32 = 3;
 
 /// Least number of columns that count above a connected run of wall vertices.
 const COLUMNS: usize = 8;
@@ -38,7 +38,7 @@ pub(super) fn kept(rows: &Rows) -> Vec<bool> {
 
 /// A column of kept rows above a node of a wall.
 #[derive(Clone, Copy, Default)]
-struct Column {
+pub(super) struct Column {
     rows: u32,
     first_height: f64,
     first_aspect: f64,
@@ -47,6 +47,16 @@ struct Column {
 
 /// Returns the nodes of the front whose connected runs have a layer.
 pub(super) fn judged(sectors: &Sectors, rows: &Rows, kept: &[bool]) -> Vec<bool> {
+    judged_by(|run| is_deep(run) && grows(run), sectors, rows, kept)
+}
+
+/// Returns the nodes of the front in whose connected runs the columns are a layer by `is_layer`.
+pub(super) fn judged_by(
+    is_layer: impl Fn(&[Column]) -> bool,
+    sectors: &Sectors,
+    rows: &Rows,
+    kept: &[bool],
+) -> Vec<bool> {
     let mut column = vec![Column::default(); rows.row.len()];
     let mut root = vec![NONE; rows.row.len()];
     rows.lists[0].iter().for_each(|&n| root[n as usize] = n);
@@ -67,8 +77,21 @@ pub(super) fn judged(sectors: &Sectors, rows: &Rows, kept: &[bool]) -> Vec<bool>
     }
     let mut front = vec![false; rows.row.len()];
     rows.lists[0].iter().for_each(|&n| front[n as usize] = true);
-    let mut is_left = front.clone();
-    for &start in &rows.lists[0] {
+    for run in runs(sectors, &rows.lists[0]) {
+        let columns: Vec<Column> = run.iter().map(|&n| column[n as usize]).collect();
+        if !is_layer(&columns) {
+            run.iter().for_each(|&n| front[n as usize] = false);
+        }
+    }
+    front
+}
+
+/// Returns the connected runs along walls of a list of nodes.
+fn runs(sectors: &Sectors, nodes: &[u32]) -> Vec<Vec<u32>> {
+    let mut is_left = vec![false; sectors.len()];
+    nodes.iter().for_each(|&n| is_left[n as usize] = true);
+    let mut runs = Vec::new();
+    for &start in nodes {
         if !std::mem::take(&mut is_left[start as usize]) {
             continue;
         }
@@ -81,21 +104,26 @@ pub(super) fn judged(sectors: &Sectors, rows: &Rows, kept: &[bool]) -> Vec<bool>
                 }
             }
         }
-        let columns: Vec<Column> = run.iter().map(|&n| column[n as usize]).collect();
-        if !is_layer(&columns) {
-            run.iter().for_each(|&n| front[n as usize] = false);
-        }
+        runs.push(run);
     }
-    front
+    runs
 }
 
-/// Returns whether the columns above a run of a wall are a layer.
-fn is_layer(run: &[Column]) -> bool {
-    let high: Vec<&Column> = run.iter().filter(|c| c.rows >= ROWS).collect();
-    let aspects = high.iter().map(|c| c.first_aspect).collect();
-    let growths = high.iter().map(|c| c.last_height / c.first_height).collect();
-    high.len() >= COLUMNS
-        && high.len() as f64 >= SHARE * run.len() as f64
+/// Returns the columns above a run of a wall that have enough rows.
+fn high(run: &[Column]) -> impl Iterator<Item = &Column> {
+    run.iter().filter(|column| column.rows >= ROWS)
+}
+
+/// Returns whether the columns above a run of a wall are a layer as far as their first [`ROWS`] rows tell.
+pub(super) fn is_deep(run: &[Column]) -> bool {
+    let aspects: Vec<f64> = high(run).map(|column| column.first_aspect).collect();
+    aspects.len() >= COLUMNS
+        && aspects.len() as f64 >= SHARE * run.len() as f64
         && median(aspects).is_some_and(|aspect| aspect >= SEED_ASPECT)
-        && median(growths).is_some_and(|growth| growth >= GROWTH)
+}
+
+/// Returns whether the heights of the columns above a run of a wall grow as those of a layer.
+fn grows(run: &[Column]) -> bool {
+    let growths = high(run).map(|column| column.last_height / column.first_height).collect();
+    median(growths).is_some_and(|growth| growth >= GROWTH)
 }

@@ -1,5 +1,6 @@
 //! The elements of a mesh around its vertices, split at walls.
 
+use crate::layers::elements::Elements;
 use crate::layers::vector::angle;
 use crate::parallel::counting_sort::Groups;
 
@@ -9,6 +10,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The edges of elements between nodes. A node is a vertex, seen from the elements on one side of the walls through the
 /// vertex: a vertex of a crack has two nodes, a vertex inside the mesh has one. Elements are triangles and larger
 /// faces, counter-clockwise. An element's corner `h` stands for the half-edge from this corner to the next.
+///
+/// The elements are all of a mesh, or those near walls alone.
 pub(super) struct Sectors {
     /// Position of each node.
     pub(super) at: Vec<[f64; 2]>,
@@ -30,13 +33,50 @@ pub(super) struct Sectors {
 
 impl Sectors {
     /// Splits the vertices of a mesh at its boundary and along `lines`.
-    pub(super) fn new(
-        points: &[[f64; 2]],
-        triangles: &[[u32; 3]],
-        faces: &[Vec<u32>],
+    pub(super) fn new(elements: &Elements<'_>, lines: &[[u32; 2]]) -> Self {
+        Self::of(elements, lines, |_| true, |_| true)
+    }
+
+    /// Splits the vertices at the boundary and along the lines of the elements, with the elements that have a vertex at most `edges`
+    /// edges away from these walls. The nodes at most so far away have all their elements, and are in the order of
+    /// [`new`](Self::new).
+    pub(super) fn near_walls(elements: &Elements<'_>, edges: usize) -> Self {
+        let topology = elements.topology;
+        let mut may_be_on_wall: Vec<bool> =
+            topology.free().iter().map(|&is_free| !is_free).collect();
+        let of_faces = elements.faces.iter().flatten();
+        for &vertex in of_faces.chain(elements.lines.as_flattened()) {
+            may_be_on_wall[vertex as usize] = true;
+        }
+        let mut is_near = may_be_on_wall.clone();
+        let vertices = 0..is_near.len() as u32;
+        let mut last: Vec<u32> = vertices.filter(|&vertex| is_near[vertex as usize]).collect();
+        for _ in 0..edges {
+            let mut reached = Vec::new();
+            for corner in last.iter().flat_map(|&vertex| topology.corners_with(vertex)) {
+                for vertex in topology.corners()[corner as usize] {
+                    if !std::mem::replace(&mut is_near[vertex as usize], true) {
+                        reached.push(vertex);
+                    }
+                }
+            }
+            last = reached;
+        }
+        let may_be_on_wall = |vertex: u32| may_be_on_wall[vertex as usize];
+        Self::of(elements, elements.lines, |vertex| is_near[vertex as usize], may_be_on_wall)
+    }
+
+    /// Splits the vertices of the elements that have a vertex for which `is_near` is true. Edges between two vertices are inside the
+    /// mesh unless `may_be_on_wall` is true for both.
+    fn of(
+        elements: &Elements<'_>,
         lines: &[[u32; 2]],
+        is_near: impl Fn(u32) -> bool,
+        may_be_on_wall: impl Fn(u32) -> bool,
     ) -> Self {
-        let (origin, next) = corners(points, triangles, faces);
+        let points = elements.points;
+        let is_listed = |corners: &[u32]| corners.iter().any(|&vertex| is_near(vertex));
+        let (origin, next) = corners(elements, is_listed);
         let twin = twins(points.len(), &origin, &next, lines);
         let mut previous = vec![0; next.len()];
         (0..).zip(&next).for_each(|(h, &n)| previous[n as usize] = h);
@@ -53,7 +93,7 @@ impl Sectors {
         };
         for h in 0..origin.len() as u32 {
             if sectors.corners[h as usize] == NONE {
-                sectors.add_node(points, &origin, &previous, h);
+                sectors.add_node(points, &origin, &previous, h, &may_be_on_wall);
             }
         }
         for link in sectors.wall.iter_mut().flatten().filter(|link| **link != NONE) {
@@ -65,7 +105,14 @@ impl Sectors {
 
     /// Adds the node of the corner `h`: all corners around its vertex up to the walls. Walls of the node are corners
     /// until all nodes exist.
-    fn add_node(&mut self, points: &[[f64; 2]], origin: &[u32], previous: &[u32], h: u32) {
+    fn add_node(
+        &mut self,
+        points: &[[f64; 2]],
+        origin: &[u32],
+        previous: &[u32],
+        h: u32,
+        may_be_on_wall: &impl Fn(u32) -> bool,
+    ) {
         let node = self.at.len() as u32;
         let mut first = h;
         let is_closed = loop {
@@ -78,12 +125,14 @@ impl Sectors {
                 break true;
             }
         };
+        // Around a vertex inside the mesh, elements may be missing.
+        let is_inside = is_closed || !may_be_on_wall(origin[h as usize]);
         let point = |h: u32| points[origin[h as usize] as usize];
         let (mut last, mut fluid) = (first, 0.0);
         loop {
             self.corners[last as usize] = node;
             let before = previous[last as usize];
-            if !is_closed {
+            if !is_inside {
                 fluid += angle(point(last), point(self.next[last as usize]), point(before));
             }
             let across = self.twin[before as usize];
@@ -94,8 +143,8 @@ impl Sectors {
         }
         self.at.push(point(h));
         self.vertex.push(origin[h as usize]);
-        self.fluid.push(if is_closed { 360.0 } else { fluid });
-        self.wall.push(match is_closed {
+        self.fluid.push(if is_inside { 360.0 } else { fluid });
+        self.wall.push(match is_inside {
             true => [NONE; 2],
             false => [previous[last as usize], self.next[first as usize]],
         });
@@ -138,15 +187,15 @@ impl Sectors {
     }
 }
 
-/// Returns the vertex of each corner of all elements, counter-clockwise, and the next corner of the element.
-fn corners(
-    points: &[[f64; 2]],
-    triangles: &[[u32; 3]],
-    faces: &[Vec<u32>],
-) -> (Vec<u32>, Vec<u32>) {
-    let mut origin: Vec<u32> = triangles.as_flattened().to_vec();
+/// Returns the vertex of each corner of the elements for which `is_listed` is true, counter-clockwise, and the next corner of the
+/// element.
+fn corners(elements: &Elements<'_>, is_listed: impl Fn(&[u32]) -> bool) -> (Vec<u32>, Vec<u32>) {
+    let (points, faces) = (elements.points, elements.all_faces());
+    let triangles = elements.topology.triangles().iter();
+    let mut origin: Vec<u32> =
+        triangles.filter(|corners| is_listed(&corners[..])).flatten().copied().collect();
     let mut next: Vec<u32> = (0..origin.len() as u32).map(|h| h - h % 3 + (h + 1) % 3).collect();
-    for face in faces.iter().filter(|face| face.len() >= 3) {
+    for face in faces.iter().filter(|face| face.len() >= 3 && is_listed(face)) {
         let start = origin.len() as u32;
         let twice_area: f64 = (0..face.len())
             .map(|i| {
