@@ -94,14 +94,24 @@ impl NumberEncoding {
             NumberEncoding::Text(Precision::Text20) => {
                 out.extend_from_slice(short_text(value).as_bytes())
             }
-            NumberEncoding::Text(_) => {
-                write!(out, "{value:?}").expect("memory takes what is written to it");
-            }
+            NumberEncoding::Text(_) => write_shortest(value, out),
             NumberEncoding::Binary(order, Precision::Single) => {
                 out.extend_from_slice(&order.single_bytes(value as f32));
             }
             NumberEncoding::Binary(order, _) => out.extend_from_slice(&order.bytes(value)),
         }
+    }
+}
+
+/// Appends a number as `{:?}` does, with the fewest digits that parse back to the same bits.
+fn write_shortest(value: f64, out: &mut Vec<u8>) {
+    // Both write these numbers without an exponent. If two texts of the fewest digits are equally near, the standard library
+    // takes the greater and the crate the even text. Below 1e11, the last ten bits of such a number are zero.
+    let is_alike = value.to_bits() & 0xff != 0;
+    if is_alike && (1e-4..1e11).contains(&value.abs()) {
+        out.extend_from_slice(zmij::Buffer::new().format_finite(value).as_bytes());
+    } else {
+        write!(out, "{value:?}").expect("memory takes what is written to it");
     }
 }
 
@@ -250,6 +260,32 @@ pub(crate) trait EncodedArrays: Send + Sync {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_written_as_the_standard_library_writes_them() {
+        let check = |value: f64| {
+            let mut text = Vec::new();
+            write_shortest(value, &mut text);
+            assert_eq!(String::from_utf8(text).unwrap(), format!("{value:?}"));
+        };
+        let ends = [1e-4, 1e-5, 9.999_999_999_999_999e-5, 1e15, 1e16, 9_999_999_999_999_998.0];
+        let special = [0.0, 1.0, 0.1, 0.3, 1e23, 5e-324, f64::MAX, f64::NAN, f64::INFINITY];
+        ends.into_iter().chain(special).for_each(|value| {
+            check(value);
+            check(-value);
+        });
+        let mut state = 1_u64;
+        for round in 0..100_000 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            // All numbers, numbers of usual magnitude, of single precision, and of few digits.
+            match round % 4 {
+                0 => check(f64::from_bits(state)),
+                1 => check((state >> 11) as f64 * 10f64.powi((state % 41) as i32 - 30)),
+                2 => check(f64::from((state >> 40) as f32 / 2f32.powi((state % 60) as i32 - 30))),
+                _ => check((state >> 44) as f64 / 10f64.powi((state % 9) as i32)),
+            }
+        }
+    }
 
     #[test]
     fn places_of_numbers_are_kept_as_they_were_added() {

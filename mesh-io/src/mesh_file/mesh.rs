@@ -147,6 +147,9 @@ impl MeshFile {
     pub fn interfaces_of_elements(&self) -> (Vec<u32>, Vec<[u32; 2]>) {
         let ParsedMesh { triangles, quadrilaterals, regions, quadrilateral_regions, .. } =
             &self.parsed;
+        if regions.is_none() && quadrilaterals.is_empty() {
+            return (Vec::new(), Vec::new());
+        }
         let region = |t: usize| regions.as_ref().map_or(0, |regions| regions[t]);
         let of_triangles =
             triangles.iter().enumerate().map(|(t, corners)| (&corners[..], region(t)));

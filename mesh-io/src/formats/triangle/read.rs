@@ -129,15 +129,17 @@ impl<'s> Vertices<'s> {
         if !self.has_markers || !visitor.asks_for_groups() {
             return Ok(());
         }
-        let mut cursor = self.before.clone();
-        for row in 0..self.numbers.count {
-            cursor.row(row, self.numbers.count, "vertices")?;
+        let read = |cursor: &mut Cursor<'_>| {
             cursor.tokens(self.columns.saturating_add(1));
-            if let Some(label) = cursor.token().and_then(marker) {
+            Ok(cursor.token().and_then(marker))
+        };
+        let cursor = &mut self.before.clone();
+        each_row(cursor, self.numbers.count, "vertices", visitor, read, |_, visitor, row, label| {
+            if let Some(label) = label {
                 visitor.node_group(row as u32, "marker", &label);
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 }
 
