@@ -14,7 +14,7 @@ use crate::terminal::tell;
 /// Prints the groups of a mesh with the names that options accept, and the names of vertex data.
 pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     let file = read(&args.mesh, &ReadRequest::from(&args.reading).taking_quadrilaterals())?;
-    let groups = file.source.groups()?;
+    let groups = file.groups()?;
     let (path, format) = (file.source.path().display(), file.source.format());
     if args.json {
         let spellings = groups.unique_names();
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &GroupsArgs) -> Result<(), CliError> {
     tell::say(&format!("{path}: {format}"));
     match groups.is_empty() {
         true => tell::say("the file names no groups"),
-        false => tell::say(&table(&groups)),
+        false => tell::say(&table(groups)),
     }
     if !file.source.data_names().is_empty() {
         tell::say(&format!(

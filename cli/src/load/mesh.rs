@@ -8,11 +8,12 @@ use gpu_smooth::{
     options::Precision,
 };
 use gpu_smooth_job::{Domain, smoother_precision};
-use mesh_io::{Constraints, MeshFile, PointField, SourceLocation, WriteError, interfaces};
+use mesh_io::{Constraints, Groups, MeshFile, PointField, SourceLocation, WriteError, interfaces};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// A mesh file, and the mesh made from its points, triangles and constraints. Constrained vertices and vertices between
 /// regions are fixed, and longitudes may be continued across the date line.
@@ -21,17 +22,28 @@ pub(crate) struct LoadedMesh {
     pub(crate) source: MeshFile,
     /// The mesh to smooth. Copies of vertices, made by the chart, follow the vertices of the file.
     pub(crate) domain: Domain,
+    /// The groups of the file, once an option or a note has asked for the groups.
+    groups: OnceLock<Groups>,
 }
 
 impl LoadedMesh {
     /// Makes the mesh of a file. Constrained vertices and vertices between regions are fixed.
     pub(crate) fn new(source: MeshFile) -> Self {
-        Self { domain: Domain::of_file(&source), source }
+        Self { domain: Domain::of_file(&source), source, groups: OnceLock::new() }
     }
 
     /// Makes the mesh of a file as [`new`](Self::new) does, but with its quadrilaterals, whose vertices may move.
     pub(crate) fn of_elements(source: MeshFile) -> Self {
-        Self { domain: Domain::of_elements(&source), source }
+        Self { domain: Domain::of_elements(&source), source, groups: OnceLock::new() }
+    }
+
+    /// Returns the groups of the file. The first call parses the bytes of the file again.
+    pub(crate) fn groups(&self) -> Result<&Groups, CliError> {
+        if let Some(groups) = self.groups.get() {
+            return Ok(groups);
+        }
+        let groups = self.source.groups()?;
+        Ok(self.groups.get_or_init(|| groups))
     }
 
     /// Returns the constraints of the file, without those on vertices of quadrilaterals that may move.

@@ -38,7 +38,7 @@ impl SlideRequest {
         if self.periodic.is_empty() {
             return Ok(Vec::new());
         }
-        let groups = file.source.groups()?;
+        let groups = file.groups()?;
         let mut sides = Vec::new();
         for (pair, [a, b]) in self.periodic.iter().enumerate() {
             let find = |name: &str| match groups.find(name) {

@@ -27,7 +27,7 @@ pub(crate) fn wall_edges(file: &LoadedMesh, topology: &Topology<'_>) -> Vec<[u32
 /// [`wall_edges`]. An edge belongs to the groups that have both of its vertices. Of groups with equal vertices, such as an
 /// entity of gmsh and its physical group, only the first is a wall.
 pub(crate) fn walls(file: &LoadedMesh, edges: &[[u32; 2]]) -> Result<Vec<Wall>, CliError> {
-    let groups = file.source.groups()?;
+    let groups = file.groups()?;
     let mut lines: Vec<&Group> = Vec::new();
     for group in groups.iter().filter(|group| is_of_lines(group)) {
         let is_known = |other: &&Group| other.vertices() == group.vertices();

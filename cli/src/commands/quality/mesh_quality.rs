@@ -251,8 +251,8 @@ fn regions(
     let known = known.filter_map(|((first, counts), found)| Some((first?, counts, found)));
     let known: Vec<(Element, [usize; 2], Vec<Statistics>)> = known.collect();
     let first: Vec<Element> = known.iter().map(|(first, ..)| *first).collect();
-    let groups = file.source.groups()?;
-    let named = groups_of(&first, &groups, &file.source).into_iter();
+    let groups = file.groups()?;
+    let named = groups_of(&first, groups, &file.source).into_iter();
     let places = Place::of_elements(&file.source, &first).into_iter();
     let mut regions = Vec::with_capacity(known.len());
     for ((first, groups), (_, counts, statistics)) in places.zip(named).zip(known) {
