@@ -1,7 +1,7 @@
 //! Comparison of two states of a mesh: displacements of vertices, and changes of element sizes.
 
 use crate::error::MeshError;
-use crate::parallel::collect;
+use crate::parallel::{collect, map_ranges, ranges};
 use crate::precision::Precision;
 use crate::topology::Topology;
 
@@ -32,11 +32,22 @@ pub struct Distribution {
 /// Sums over the elements around a vertex.
 #[derive(Clone, Copy, Default)]
 struct Around {
-    /// Sum of the natural logarithms of the areas. `lengths` sums the lengths of the edges at the vertex, once per
-    /// element.
-    logarithms: f64,
+    /// Sum of the natural logarithms of the areas after, divided by the areas before.
+    growth: f64,
+    /// Sum of the lengths of the edges at the vertex before, once per element.
     lengths: f64,
     elements: u32,
+}
+
+/// An element with `N` vertices at two states of a mesh.
+struct Changed<const N: usize> {
+    vertices: [u32; N],
+    /// Sum of the lengths of the two sides at each vertex before.
+    lengths: [f64; N],
+    /// Natural logarithm of the area after, divided by the area before.
+    growth: f64,
+    /// Least altitude before and after.
+    altitudes: [f64; 2],
 }
 
 impl Change {
@@ -51,12 +62,11 @@ impl Change {
     ) -> Result<Self, MeshError> {
         topology.check_count(before)?;
         topology.check_count(after)?;
-        let (was, low_before) = around(topology, before);
-        let (is, low_after) = around(topology, after);
+        let (around, least_altitude) = around(topology, before, after);
         let is_free = |v: usize| topology.free()[v];
         // If a result is stored in single precision, even vertices that must stay get rounded coordinates.
         let is_rounded = |v: usize| before[v].map(|x| Precision::Single.rounded(x)) == after[v];
-        let has_slid = |v: usize| before[v] != after[v] && !is_rounded(v) && was[v].elements > 0;
+        let has_slid = |v: usize| before[v] != after[v] && !is_rounded(v) && around[v].elements > 0;
         let seen: Vec<usize> = (0..before.len()).filter(|&v| is_free(v) || has_slid(v)).collect();
         // If stars have been dropped, this line computes them again before several threads need them.
         if !seen.iter().all(|&v| is_free(v)) {
@@ -65,24 +75,23 @@ impl Change {
         let moved = |i: usize| {
             let v = seen[i];
             let ([x, y], [a, b]) = (before[v], after[v]);
-            (x - a).hypot(y - b) / mean_edge(topology, before, v, &was[v])
+            (x - a).hypot(y - b) / mean_edge(topology, before, v, &around[v])
         };
         let size = |i: usize| {
             let v = seen[i];
-            let change = is[v].logarithms - was[v].logarithms;
-            (0.5 * change / f64::from(was[v].elements)).abs().exp()
+            (0.5 * around[v].growth / f64::from(around[v].elements)).abs().exp()
         };
         Ok(Self {
             moved: spread(collect(seen.len(), moved)),
             size: spread(collect(seen.len(), size)),
-            least_altitude: [low_before, low_after],
+            least_altitude,
         })
     }
 }
 
 /// Returns the mean length of the edges at each vertex; NaN for vertices that no element uses.
 pub(crate) fn mean_edges(topology: &Topology<'_>, points: &[[f64; 2]]) -> Vec<f64> {
-    let (around, _) = around(topology, points);
+    let (around, _) = around(topology, points, points);
     around.iter().enumerate().map(|(v, around)| mean_edge(topology, points, v, around)).collect()
 }
 
@@ -105,45 +114,108 @@ fn mean_edge(topology: &Topology<'_>, points: &[[f64; 2]], v: usize, around: &Ar
     ends.iter().map(length).sum::<f64>() / (ends.len() as f64 - 1.0)
 }
 
-fn around(topology: &Topology<'_>, points: &[[f64; 2]]) -> (Vec<Around>, f64) {
-    let mut around = vec![Around::default(); points.len()];
-    let mut least = f64::INFINITY;
-    let logarithm = |doubled: f64| (0.5 * doubled).max(f64::MIN_POSITIVE).ln();
-    for t in topology.triangles() {
-        let (lengths, doubled) = lengths_and_area(points, t);
-        least = least.min(doubled.abs() / lengths.into_iter().fold(0.0, f64::max));
-        let logarithm = logarithm(doubled.abs());
-        for (v, [one, other]) in t.iter().zip([[0, 1], [0, 2], [1, 2]]) {
-            let at = &mut around[*v as usize];
-            at.logarithms += logarithm;
-            at.lengths += lengths[one] + lengths[other];
-            at.elements += 1;
+/// Returns the sums around each vertex, and the least altitudes before and after.
+fn around(
+    topology: &Topology<'_>,
+    before: &[[f64; 2]],
+    after: &[[f64; 2]],
+) -> (Vec<Around>, [f64; 2]) {
+    let mut sums =
+        Sums { around: vec![Around::default(); before.len()], least: [f64::INFINITY; 2] };
+    let triangles = topology.triangles();
+    sums.add(triangles.len(), |t| {
+        let corners = &triangles[t];
+        let ([a, b, c], doubled) = lengths_and_area(before, corners);
+        let (after, doubled_after) = longest_and_area(after, corners);
+        Changed {
+            vertices: *corners,
+            lengths: [a + b, a + c, b + c],
+            growth: growth(doubled, doubled_after),
+            altitudes: [doubled.abs() / a.max(b).max(c), doubled_after.abs() / after],
         }
-    }
-    for corners in topology.corner_list().of_quadrilaterals().as_chunks::<4>().0 {
-        let corners = corners.each_ref().map(|corner| (corner, lengths_and_area(points, corner)));
+    });
+    let quadrilaterals = topology.corner_list().of_quadrilaterals().as_chunks::<4>().0;
+    sums.add(quadrilaterals.len(), |q| {
+        let corners = quadrilaterals[q].each_ref();
+        let was = corners.map(|corner| lengths_and_area(before, corner));
+        let is = corners.map(|corner| longest_and_area(after, corner));
         // Each point of a convex quadrilateral is in two of its corner triangles.
-        let doubled = 0.5 * corners.iter().map(|(_, (_, doubled))| doubled).sum::<f64>();
-        for ([v, ..], (lengths, own)) in corners {
-            least = least.min(own.abs() / lengths.into_iter().fold(0.0, f64::max));
-            let at = &mut around[*v as usize];
-            at.logarithms += logarithm(doubled.abs());
-            at.lengths += lengths[0] + lengths[1];
-            at.elements += 1;
+        let doubled = 0.5 * was.iter().map(|(_, doubled)| doubled).sum::<f64>();
+        let doubled_after = 0.5 * is.iter().map(|(_, doubled)| doubled).sum::<f64>();
+        let altitudes = was.iter().map(|([a, b, c], own)| own.abs() / a.max(*b).max(*c));
+        let altitudes_after = is.iter().map(|(longest, own)| own.abs() / longest);
+        Changed {
+            vertices: corners.map(|corner| corner[0]),
+            lengths: was.map(|([a, b, _], _)| a + b),
+            growth: growth(doubled, doubled_after),
+            altitudes: [
+                altitudes.fold(f64::INFINITY, f64::min),
+                altitudes_after.fold(f64::INFINITY, f64::min),
+            ],
         }
-    }
-    (around, least)
+    });
+    (sums.around, sums.least)
 }
 
-/// Returns the lengths of the edges of a corner triangle from its first vertex to the second, from the first to the third, and
-/// from the second to the third, and twice its signed area.
+struct Sums {
+    around: Vec<Around>,
+    least: [f64; 2],
+}
+
+impl Sums {
+    /// Adds `count` elements. The elements are measured on all threads, and added in their order.
+    fn add<const N: usize>(&mut self, count: usize, element: impl Fn(usize) -> Changed<N> + Sync) {
+        /// Number of elements that one task measures, and number of elements that wait to be added.
+        const CHUNK: usize = 1 << 12;
+        const BLOCK: usize = 1 << 16;
+        for block in ranges(count, BLOCK) {
+            let measured = map_ranges(block.len(), CHUNK, |range| {
+                range.map(|i| element(block.start + i)).collect::<Vec<_>>()
+            });
+            for Changed { vertices, lengths, growth, altitudes } in measured.into_iter().flatten() {
+                for (vertex, length) in vertices.into_iter().zip(lengths) {
+                    let at = &mut self.around[vertex as usize];
+                    at.growth += growth;
+                    at.lengths += length;
+                    at.elements += 1;
+                }
+                let [before, after] = altitudes;
+                self.least = [self.least[0].min(before), self.least[1].min(after)];
+            }
+        }
+    }
+}
+
+/// Returns the natural logarithm of an area divided by another, given twice the signed areas.
+fn growth(before: f64, after: f64) -> f64 {
+    let area = |doubled: f64| (0.5 * doubled.abs()).max(f64::MIN_POSITIVE);
+    (area(after) / area(before)).ln()
+}
+
+/// Returns the edges of a corner triangle from its first vertex to the second, from the first to the third, and from the second to
+/// the third.
 #[inline]
-fn lengths_and_area(points: &[[f64; 2]], corner: &[u32; 3]) -> ([f64; 3], f64) {
+fn edges(points: &[[f64; 2]], corner: &[u32; 3]) -> [[f64; 2]; 3] {
     let [p, q, r] = corner.map(|v| points[v as usize]);
     let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
-    let (a, b, c) = (edge(p, q), edge(p, r), edge(q, r));
-    let lengths = [a, b, c].map(|[x, y]| (x * x + y * y).sqrt());
-    (lengths, a[0] * b[1] - a[1] * b[0])
+    [edge(p, q), edge(p, r), edge(q, r)]
+}
+
+/// Returns the lengths of the [`edges`] of a corner triangle, and twice its signed area.
+#[inline]
+fn lengths_and_area(points: &[[f64; 2]], corner: &[u32; 3]) -> ([f64; 3], f64) {
+    let edges = edges(points, corner);
+    let [a, b, _] = edges;
+    (edges.map(|[x, y]| (x * x + y * y).sqrt()), a[0] * b[1] - a[1] * b[0])
+}
+
+/// Returns the length of the longest edge of a corner triangle, and twice its signed area.
+#[inline]
+fn longest_and_area(points: &[[f64; 2]], corner: &[u32; 3]) -> (f64, f64) {
+    let edges = edges(points, corner);
+    let [a, b, _] = edges;
+    let squares = edges.map(|[x, y]| x * x + y * y);
+    (squares.into_iter().fold(0.0, f64::max).sqrt(), a[0] * b[1] - a[1] * b[0])
 }
 
 fn spread(mut numbers: Vec<f64>) -> Distribution {

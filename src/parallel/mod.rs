@@ -7,7 +7,7 @@ mod tasks;
 
 use std::pin::Pin;
 
-pub(crate) use tasks::{collect, for_each_chunk, for_each_part, map_parts, map_ranges};
+pub(crate) use tasks::{collect, for_each_chunk, for_each_part, map_parts, map_ranges, ranges};
 
 /// A future of an awaited call. The future is `Send`, except in a browser.
 #[cfg(not(target_family = "wasm"))]
