@@ -98,7 +98,7 @@ impl<'a> Movers<'a> {
         let degree = |mover: usize| self.marked_neighbors(mover).len();
         let near = |mover: usize| self.neighbors(mover).map(|v| self.of(v));
         let members = Members::new(self.count(), degree, near).await;
-        let pattern = members.pattern(|mover| near(mover as usize));
+        let pattern = members.pattern(|mover| near(mover as usize)).await;
         (members, pattern)
     }
 }

@@ -91,7 +91,7 @@ impl Blocks {
         for (block, (own, _)) in (0..).zip(&ranges) {
             block_of.extend(own.clone().map(|_| block));
         }
-        let lists = corners_of_blocks(problem, &ranks, &block_of, ranges.len());
+        let lists = corners_of_blocks(problem, &ranks, &block_of, ranges.len()).await;
         let made = paced::map_parts(ranges.into_iter().zip(lists), |_, ((own, groups), list)| {
             Block::new(own, groups, &order, &ranks, list)
         });
@@ -160,25 +160,31 @@ struct CornerList {
 }
 
 /// Returns the corners of each block with a vertex that moves.
-fn corners_of_blocks(
+async fn corners_of_blocks(
     problem: &Problem,
     ranks: &Ranks<'_>,
     block_of: &[u32],
     count: usize,
 ) -> Vec<CornerList> {
-    let block = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|v| ranks.of(v));
-        block_of.get(a.min(b).min(c) as usize).map(|&block| block as usize)
-    };
+    let all = problem.corners().all();
+    // The block of each corner; `NONE` for corners without a vertex that moves.
+    let blocks = paced::collect(all.len(), |corner| {
+        let [a, b, c] = all[corner].map(|v| ranks.of(v));
+        block_of.get(a.min(b).min(c) as usize).copied().unwrap_or(NONE)
+    })
+    .await;
     let mut counts = vec![0; count];
-    problem.corners().all().iter().filter_map(block).for_each(|block| counts[block] += 1);
+    let found = blocks.iter().filter(|block| **block != NONE);
+    found.for_each(|&block| counts[block as usize] += 1);
     let list = |count| CornerList { corners: Vec::with_capacity(count), triangles: 0 };
     let mut lists: Vec<CornerList> = counts.into_iter().map(list).collect();
+    let mut blocks = blocks.into_iter();
     for part in problem.corner_parts() {
-        for corner in part.corners {
-            if let Some(block) = block(corner) {
-                lists[block].corners.push(*corner);
-                lists[block].triangles += usize::from(!part.is_right);
+        for (corner, block) in part.corners.iter().zip(&mut blocks) {
+            if block != NONE {
+                let list = &mut lists[block as usize];
+                list.corners.push(*corner);
+                list.triangles += usize::from(!part.is_right);
             }
         }
     }

@@ -48,10 +48,10 @@ impl Aggregates {
         .await;
         // An unknown left over has no neighbors, or has a neighbor in an aggregate of the first pass.
         let first_pass = of.clone();
-        paced::in_order(unknowns, UNKNOWNS, |unknowns| {
-            for k in unknowns.filter(|&k| first_pass[k] == NONE) {
+        paced::for_each_chunk(&mut of, UNKNOWNS, |first, groups| {
+            for (k, group) in (first..).zip(groups).filter(|(_, group)| **group == NONE) {
                 let near = neighbors(k).map(|n| first_pass[n as usize]).find(|&g| g != NONE);
-                of[k] = near.unwrap_or(NONE);
+                *group = near.unwrap_or(NONE);
             }
         })
         .await;

@@ -1,5 +1,6 @@
 //! The connectivity of the coarser levels of Newton steps: aggregates of vertices, and aggregates of aggregates.
 
+use crate::parallel::paced;
 use crate::run::multilevel::{Aggregates, NONE};
 
 /// Largest product of the numbers of neighbors of two members that may share an aggregate as neighbors. A hub with all
@@ -25,7 +26,11 @@ pub(crate) const CHEBYSHEV: [f64; 3] = {
     [1.0 / middle, 1.0 + ratio * half / middle, 2.0 * ratio / half]
 };
 
+/// Number of rows that one task lists.
+const ROWS: usize = 1 << 10;
+
 /// The places of the blocks of a matrix, each row in ascending order of columns.
+#[derive(Default)]
 pub(crate) struct Pattern {
     pub(crate) start: Vec<u32>,
     pub(crate) columns: Vec<u32>,
@@ -34,16 +39,33 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// Makes the pattern of rows with ascending columns. Every row must have its diagonal.
-    pub(crate) fn of_rows(rows: impl Iterator<Item = Vec<u32>>) -> Self {
-        let mut pattern = Self { start: vec![0], columns: Vec::new(), diagonal: Vec::new() };
-        for (row, columns) in (0..).zip(rows) {
-            let before = columns.partition_point(|&column| column < row);
-            pattern.diagonal.push((pattern.columns.len() + before) as u32);
-            pattern.columns.extend(columns);
-            pattern.start.push(pattern.columns.len() as u32);
+    /// Makes the pattern of `count` rows on all threads. `list` lists the columns of a row in ascending order. Every row must
+    /// have its diagonal.
+    async fn of_rows(count: usize, list: impl Fn(usize, &mut Vec<u32>) + Sync + Send) -> Self {
+        let parts = paced::map_ranges(count, ROWS, |rows| {
+            let mut part = Self::default();
+            let mut columns = Vec::new();
+            for row in rows {
+                columns.clear();
+                list(row, &mut columns);
+                let before = columns.partition_point(|&column| column < row as u32);
+                part.diagonal.push((part.columns.len() + before) as u32);
+                part.columns.extend_from_slice(&columns);
+                part.start.push(part.columns.len() as u32);
+            }
+            part
+        })
+        .await;
+        let mut pattern = Self { start: vec![0], ..Self::default() };
+        pattern.start.reserve_exact(count);
+        pattern.diagonal.reserve_exact(count);
+        pattern.columns.reserve_exact(parts.iter().map(|part| part.columns.len()).sum());
+        for part in parts {
+            let first = pattern.columns.len() as u32;
+            pattern.start.extend(part.start.iter().map(|end| first + end));
+            pattern.diagonal.extend(part.diagonal.iter().map(|place| first + place));
+            pattern.columns.extend(part.columns);
         }
-        pattern.columns.shrink_to_fit();
         pattern
     }
 
@@ -77,7 +99,7 @@ impl Pattern {
         if members.count() as f64 > (1.0 - LEAST_SHRINKAGE) * rows as f64 {
             return None;
         }
-        let pattern = members.pattern(|row| self.columns(row as usize).iter().copied());
+        let pattern = members.pattern(|row| self.columns(row as usize).iter().copied()).await;
         Some((members, pattern))
     }
 }
@@ -99,9 +121,13 @@ impl Members {
         degree: impl Fn(usize) -> usize + Copy + Sync,
         neighbors: impl Fn(usize) -> N + Sync,
     ) -> Self {
+        // Most meshes have no hub, and the degree of each neighbor would be looked up four times.
+        let most = (0..count).map(degree).max().unwrap_or(0);
+        let has_hubs = most * most > MOST_DEGREES;
         let near = |member: usize| {
             neighbors(member).filter(move |&other| {
-                other != NONE && degree(member) * degree(other as usize) <= MOST_DEGREES
+                other != NONE
+                    && (!has_hubs || degree(member) * degree(other as usize) <= MOST_DEGREES)
             })
         };
         let mut aggregates = Aggregates::new(count, near).await;
@@ -121,10 +147,13 @@ impl Members {
 
     /// Returns the pattern of the aggregates' matrix. `neighbors` lists the neighbors of a member; numbers beyond all members
     /// have no aggregate.
-    pub(crate) fn pattern<N: Iterator<Item = u32>>(&self, neighbors: impl Fn(u32) -> N) -> Pattern {
-        Pattern::of_rows((0..self.count()).map(|aggregate| {
+    pub(crate) async fn pattern<N: Iterator<Item = u32>>(
+        &self,
+        neighbors: impl Fn(u32) -> N + Sync + Send,
+    ) -> Pattern {
+        Pattern::of_rows(self.count(), |aggregate, columns| {
             let near = self.of(aggregate).iter().flat_map(|&member| neighbors(member));
-            let mut columns = vec![aggregate as u32];
+            columns.push(aggregate as u32);
             for column in near.filter_map(|member| self.group.get(member as usize).copied()) {
                 // Most neighbors are in the aggregate itself, or in that of the neighbor before.
                 if column != columns[0] && columns.last() != Some(&column) {
@@ -133,8 +162,8 @@ impl Members {
             }
             columns.sort_unstable();
             columns.dedup();
-            columns
-        }))
+        })
+        .await
     }
 }
 
@@ -146,7 +175,7 @@ mod tests {
     /// The pattern of a path.
     fn path(rows: u32) -> Pattern {
         let near = |row: u32| row.saturating_sub(1)..rows.min(row + 2);
-        Pattern::of_rows((0..rows).map(|row| near(row).collect()))
+        now(Pattern::of_rows(rows as usize, |row, columns| columns.extend(near(row as u32))))
     }
 
     #[test]
@@ -171,6 +200,7 @@ mod tests {
 
     #[test]
     fn rows_without_neighbors_are_not_joined() {
-        assert!(now(Pattern::of_rows((0..40).map(|row| vec![row])).joined(1)).is_none());
+        let alone = now(Pattern::of_rows(40, |row, columns| columns.push(row as u32)));
+        assert!(now(alone.joined(1)).is_none());
     }
 }
