@@ -117,7 +117,7 @@ pub use run::{Checkpoint, CheckpointPolicy, Observer, Phase, Progress, Stop};
 pub use slide::Slide;
 pub use smoother::{Backend, Run, Smoother, smooth};
 pub use targets::{TargetField, Targets};
-pub use topology::Topology;
+pub use topology::{DetachedTopology, Topology};
 pub use untangle::Untangle;
 #[cfg(feature = "gpu")]
 pub use wgpu;

@@ -108,6 +108,19 @@ impl<'a> Smoother<'a> {
         Self::of(mesh, topology, layers, start)
     }
 
+    /// Prepares a mesh as [`Self::keeping`] does, given the topology of the mesh, such as that in which a program has searched
+    /// the layers.
+    ///
+    /// # Errors
+    /// As for [`Self::keeping`].
+    pub fn of_topology(
+        mesh: &'a Mesh,
+        topology: Topology<'a>,
+        layers: Layers,
+    ) -> Result<Self, MeshError> {
+        Self::of(Cow::Borrowed(mesh), topology, layers, Instant::now())
+    }
+
     fn of(
         mut mesh: Cow<'a, Mesh>,
         mut topology: Topology<'a>,

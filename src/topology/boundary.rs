@@ -1,30 +1,62 @@
 //! The boundary of a mesh, as edges and as loops.
 
 use crate::mesh::Element;
+use crate::parallel::counting_sort::Groups;
 use crate::topology::Topology;
+use crate::topology::corners::Corners;
 use crate::topology::stars::others_at_edge;
 
 /// A side of an element: from the vertex at `place` of a corner to the vertex at the next place. Sides of a quadrilateral
 /// start at the first place of its corners.
-#[derive(Clone, Copy)]
-struct BoundaryEdge {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct BoundaryEdge {
     corner: u32,
-    place: usize,
+    place: u32,
+}
+
+impl BoundaryEdge {
+    /// Returns the vertices at which the edge starts and ends, with its element on the left.
+    fn ends(self, corners: &Corners<'_>) -> [u32; 2] {
+        let vertices = corners.all()[self.corner as usize];
+        [vertices[self.place as usize], vertices[(self.place as usize + 1) % 3]]
+    }
+
+    /// Returns the first corner of the element across the edge, `None` for a boundary edge.
+    fn across(self, corners: &Corners<'_>, stars: &Groups) -> Option<u32> {
+        let element = corners.first(self.corner);
+        others_at_edge(corners, stars, element, self.ends(corners)).next()
+    }
+}
+
+/// Returns the boundary edges, those of exactly one element, in the order of the corners. `closed` marks vertices around which the
+/// elements form one cycle, whose edges all have two elements.
+pub(super) fn boundary_sides(
+    corners: &Corners<'_>,
+    stars: &Groups,
+    closed: &[bool],
+) -> Vec<BoundaryEdge> {
+    let mut sides = Vec::new();
+    for vertex in (0..closed.len()).filter(|&vertex| !closed[vertex]) {
+        for &corner in stars.of(vertex) {
+            let vertices = corners.all()[corner as usize];
+            // The star of a vertex has the corner of a quadrilateral whose first vertex it is.
+            let place = vertices.iter().position(|&v| v as usize == vertex).unwrap_or(0) as u32;
+            let side = BoundaryEdge { corner, place };
+            let [_, end] = side.ends(corners);
+            if !closed[end as usize] && side.across(corners, stars).is_none() {
+                sides.push(side);
+            }
+        }
+    }
+    sides.sort_unstable();
+    sides
 }
 
 impl Topology<'_> {
     /// Returns the boundary edges, those of exactly one element, in no particular order. Each edge is a pair of
     /// vertices, start and end, with the mesh on the left.
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
-        self.boundary_sides().map(|side| self.ends(side)).collect()
-    }
-
-    /// Returns the boundary edges as sides of elements.
-    fn boundary_sides(&self) -> impl Iterator<Item = BoundaryEdge> + '_ {
-        let all = (0..self.corners().len() as u32).flat_map(|corner| self.sides(corner));
-        // Each edge of a free vertex has two elements.
-        let is_inside = |side| self.ends(side).iter().any(|&v| self.free()[v as usize]);
-        all.filter(move |&side| !is_inside(side) && self.across(side).is_none())
+        self.boundary.iter().map(|&side| self.ends(side)).collect()
     }
 
     /// Returns the sides of an element that belong to a corner: all three of a triangle, one of a quadrilateral.
@@ -33,17 +65,12 @@ impl Topology<'_> {
         (0..count).map(move |place| BoundaryEdge { corner, place })
     }
 
-    /// Returns the vertices at which an edge starts and ends, with its element on the left.
-    fn ends(&self, BoundaryEdge { corner, place }: BoundaryEdge) -> [u32; 2] {
-        let vertices = self.corners()[corner as usize];
-        [vertices[place], vertices[(place + 1) % 3]]
+    fn ends(&self, side: BoundaryEdge) -> [u32; 2] {
+        side.ends(self.corner_list())
     }
 
-    /// Returns the first corner of the element across an edge, `None` for a boundary edge.
     fn across(&self, side: BoundaryEdge) -> Option<u32> {
-        let corners = self.corner_list();
-        let element = corners.first(side.corner);
-        others_at_edge(corners, self.stars(), element, self.ends(side)).next()
+        side.across(self.corner_list(), self.stars())
     }
 
     /// Returns the boundary as closed loops of vertices, with the mesh on the left. A loop lists each vertex once; a
@@ -54,7 +81,7 @@ impl Topology<'_> {
     /// starts at its least vertex, and loops are sorted by that vertex.
     pub fn boundary_loops(&self) -> Vec<Vec<u32>> {
         let mut edges: Vec<([u32; 2], BoundaryEdge)> =
-            self.boundary_sides().map(|side| (self.ends(side), side)).collect();
+            self.boundary.iter().map(|&side| (self.ends(side), side)).collect();
         edges.sort_unstable_by_key(|&(ends, _)| ends);
         let mut loops = Vec::new();
         let mut left = vec![true; edges.len()];
@@ -97,7 +124,7 @@ impl Topology<'_> {
     pub fn closed_part(&self) -> Option<Element> {
         let parts = self.edge_parts();
         let mut is_closed = vec![true; parts.len()];
-        for side in self.boundary_sides() {
+        for side in &self.boundary {
             is_closed[parts[side.corner as usize] as usize] = false;
         }
         let found = (0..parts.len()).find(|&t| parts[t] as usize == t && is_closed[t]);
@@ -146,7 +173,7 @@ impl Topology<'_> {
             if vertices[(place + 2) % 3] != before {
                 return None;
             }
-            let side = BoundaryEdge { corner, place };
+            let side = BoundaryEdge { corner, place: place as u32 };
             match self.across(side) {
                 Some(next) => (element, before) = (next, vertices[(place + 1) % 3]),
                 None => return Some(side),

@@ -7,6 +7,7 @@ use crate::mesh::{Element, Mesh};
 use crate::parallel::counting_sort::Groups;
 use crate::parallel::pace::now;
 use crate::parallel::{map_parts, map_ranges};
+use crate::topology::boundary::{BoundaryEdge, boundary_sides};
 use crate::topology::corners::Corners;
 use crate::topology::predicates;
 use crate::topology::stars::{close, doublet, outer_edge, stars as find_stars};
@@ -25,8 +26,33 @@ pub struct Topology<'m> {
     free: Vec<bool>,
     /// Boundary vertices that [`Mesh::fixed`] lists, ascending.
     fixed_on_boundary: Vec<u32>,
+    /// Edges of one element, in the order of the corners.
+    pub(super) boundary: Vec<BoundaryEdge>,
     /// The corners at each vertex. Empty after [`Self::forget_stars`], until [`Self::stars`] computes them again.
     stars: OnceLock<Groups>,
+}
+
+/// A topology apart from its mesh; see [`Topology::detach`].
+#[derive(Clone, Debug)]
+pub struct DetachedTopology {
+    topology: Topology<'static>,
+    /// Whether the corners are the triangles of the mesh.
+    lacks_corners: bool,
+    elements: usize,
+}
+
+impl DetachedTopology {
+    /// Joins the topology to its mesh, which must be unchanged but for the positions of vertices. `None` if the mesh has other
+    /// numbers of vertices and elements, and so is another mesh.
+    pub fn attach(self, mesh: &Mesh) -> Option<Topology<'_>> {
+        let Self { topology, lacks_corners, elements } = self;
+        let joined = match lacks_corners {
+            true => topology.with_corners(Corners::of(mesh)),
+            false => topology,
+        };
+        let of_mesh = mesh.triangles.len() + mesh.quadrilaterals.len();
+        (of_mesh == elements && joined.free.len() == mesh.points.len()).then_some(joined)
+    }
 }
 
 impl<'m> Topology<'m> {
@@ -80,6 +106,7 @@ impl<'m> Topology<'m> {
         if let Some((vertex, elements)) = doublet(&corners, &stars, &free) {
             return Err(MeshError::Doublet { vertex, elements });
         }
+        let boundary = boundary_sides(&corners, &stars, &free);
         let is_on_boundary = |v: &u32| !free[*v as usize];
         let mut fixed_on_boundary: Vec<u32> =
             fixed.iter().copied().filter(is_on_boundary).collect();
@@ -87,13 +114,33 @@ impl<'m> Topology<'m> {
         for &v in fixed {
             free[v as usize] = false;
         }
-        Ok(Self { corners, free, fixed_on_boundary, stars: stars.into() })
+        Ok(Self { corners, free, fixed_on_boundary, boundary, stars: stars.into() })
     }
 
     /// Copies the triangles if they are borrowed, so that the topology no longer borrows the mesh.
     pub fn into_owned(self) -> Topology<'static> {
-        let Self { corners, free, fixed_on_boundary, stars } = self;
-        Topology { corners: corners.into_owned(), free, fixed_on_boundary, stars }
+        let (corners, rest) = self.split();
+        rest.with_corners(corners.into_owned())
+    }
+
+    /// Parts the topology from its mesh without a copy, so that a struct can hold both.
+    pub fn detach(self) -> DetachedTopology {
+        let elements = self.element_count();
+        let (corners, rest) = self.split();
+        let (corners, lacks_corners) = corners.without_borrowed();
+        DetachedTopology { topology: rest.with_corners(corners), lacks_corners, elements }
+    }
+
+    /// Returns the corners, and a topology without corners.
+    fn split(self) -> (Corners<'m>, Topology<'static>) {
+        let Self { corners, free, fixed_on_boundary, boundary, stars } = self;
+        let none = Corners::of_lists(Vec::new(), &[]);
+        (corners, Topology { corners: none, free, fixed_on_boundary, boundary, stars })
+    }
+
+    fn with_corners<'n>(self, corners: Corners<'n>) -> Topology<'n> {
+        let Self { free, fixed_on_boundary, boundary, stars, .. } = self;
+        Topology { corners, free, fixed_on_boundary, boundary, stars }
     }
 
     /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, every quadrilateral convex and
@@ -452,6 +499,28 @@ mod tests {
         mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
         let clockwise = Topology::new(&mesh).unwrap();
         assert_eq!(clockwise.bad_triangles(&mesh.points), Ok(vec![]));
+    }
+
+    #[test]
+    fn a_detached_topology_is_joined_to_its_mesh_again() {
+        let mixed = fan();
+        let mut wound = fan();
+        wound.triangles[2] = [2, 3, 4];
+        let squares = Mesh { triangles: vec![], quadrilaterals: vec![[0, 1, 2, 3]], ..fan() };
+        for mesh in [mixed, wound, squares] {
+            let topology = Topology::new(&mesh).unwrap();
+            let joined = topology.clone().detach().attach(&mesh).unwrap();
+            assert_eq!(joined.corners(), topology.corners());
+            assert_eq!(joined.free(), topology.free());
+            assert_eq!(joined.boundary_edges(), topology.boundary_edges());
+            assert_eq!(joined.star(0), topology.star(0));
+            let mut other = mesh.clone();
+            other.points.push([9.0, 9.0]);
+            assert!(topology.clone().detach().attach(&other).is_none());
+            other = mesh.clone();
+            other.triangles.push([0, 1, 2]);
+            assert!(topology.detach().attach(&other).is_none());
+        }
     }
 
     #[test]

@@ -34,6 +34,14 @@ impl<'m> Corners<'m> {
         Corners { all: Cow::Owned(all), triangles: count }
     }
 
+    /// Returns the corners without those that are borrowed, and whether there are such corners.
+    pub(crate) fn without_borrowed(self) -> (Corners<'static>, bool) {
+        match self.all {
+            Cow::Owned(all) => (Corners { all: Cow::Owned(all), triangles: self.triangles }, false),
+            Cow::Borrowed(_) => (Corners { all: Cow::Owned(Vec::new()), triangles: 0 }, true),
+        }
+    }
+
     pub(crate) fn into_owned(self) -> Corners<'static> {
         Corners { all: Cow::Owned(self.all.into_owned()), triangles: self.triangles }
     }

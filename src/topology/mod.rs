@@ -19,7 +19,7 @@ pub use crate::error::{BadQuadrilateral, BadTriangle};
 pub use boundary::signed_area;
 pub(crate) use certify::certified;
 pub use certify::certify;
-pub use connectivity::Topology;
+pub use connectivity::{DetachedTopology, Topology};
 pub(crate) use corners::Corners;
 pub use crossings::Crossing;
 pub(crate) use enclosed_area::EnclosedArea;

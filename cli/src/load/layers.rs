@@ -1,7 +1,7 @@
 //! Boundary layers of a mesh that stay.
 
-use gpu_smooth::Topology;
 use gpu_smooth::layers::{KeepLayers, Layers};
+use gpu_smooth::{DetachedTopology, Topology};
 use gpu_smooth_job::{is_at_wall, overlooks_boundary, overlooks_wall, vertices_in_rows};
 use mesh_io::Group;
 
@@ -22,6 +22,8 @@ pub(super) struct KeptLayersEffect {
     pub(super) fixed: Vec<u32>,
     /// The reason if no vertex outside of the layers is free. The mesh is then unchanged.
     pub(super) nothing_to_do: Option<String>,
+    /// The topology of the mesh, if no layer fixes a vertex.
+    pub(super) topology: Option<DetachedTopology>,
 }
 
 /// Fixes the vertices of the layers that stay. If no other vertex is free, nothing is fixed and nothing is to do.
@@ -38,6 +40,7 @@ pub(super) fn keep_layers(
     let layers = find(file, &topology, kept)?;
     effect.notes = overlooked(file, &topology, kept, &layers)?;
     if layers.vertices.is_empty() {
+        effect.topology = Some(topology.detach());
         return Ok(effect);
     }
     effect.notes.push(note(file, kept, &layers)?);
@@ -59,8 +62,8 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
     let walls = match &kept.groups {
         None => None,
         Some(text) => {
-            let groups = file.source.groups()?;
-            let named = named(file, &groups, OPTION, text)?;
+            let groups = file.groups()?;
+            let named = named(file, groups, OPTION, text)?;
             Some(named.iter().flat_map(|(_, group)| group.vertices()).copied().collect::<Vec<_>>())
         }
     };
@@ -86,7 +89,7 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
 fn note(file: &LoadedMesh, kept: &KeptLayers, layers: &Layers) -> Result<String, CliError> {
     let inner = vertices_in_rows(layers);
     let mut names = Vec::new();
-    for group in file.source.groups()?.iter().filter(|group| is_of_lines(group)) {
+    for group in file.groups()?.iter().filter(|group| is_of_lines(group)) {
         if is_at_wall(layers, group.vertices()) {
             names.push(name(group));
         }
@@ -123,7 +126,7 @@ fn overlooked(
              --keep-layers rows=N{group} keeps the first N rows"
         )
     };
-    let groups = file.source.groups()?;
+    let groups = file.groups()?;
     let lines: Vec<&Group> = groups.iter().filter(|group| is_of_lines(group)).collect();
     if lines.is_empty() {
         let has_one = overlooks_boundary(layers, kept.keep, topology);

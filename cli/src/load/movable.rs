@@ -4,8 +4,7 @@ use std::collections::HashSet;
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use gpu_smooth::{Element, Topology, front_ends::select};
-use mesh_io::Groups;
+use gpu_smooth::{DetachedTopology, Element, Topology, front_ends::select};
 
 use crate::load::explain;
 use crate::load::layers::keep_layers;
@@ -25,6 +24,8 @@ pub(crate) struct MovableSelection {
     /// The reason if there is nothing to smooth: no triangle is as bad as `--only-bad` requires. The mesh is then
     /// unchanged.
     pub(crate) nothing_to_do: Option<String>,
+    /// The topology of the mesh, if the search for layers has found it, and no vertex has been fixed since.
+    pub(crate) topology: Option<DetachedTopology>,
 }
 
 impl MovableRequest {
@@ -61,6 +62,7 @@ impl MovableRequest {
             choice.notes.extend(layers.notes);
             choice.nothing_to_do = layers.nothing_to_do;
             choice.layers = layers.fixed;
+            choice.topology = layers.topology;
         }
         Ok(choice)
     }
@@ -145,9 +147,9 @@ impl<'f> SelectionResolver<'f> {
             fixed.append(&mut vertices);
         };
         if !request.fix.is_empty() {
-            let groups = self.groups()?;
+            let groups = file.groups()?;
             for text in &request.fix {
-                for (name, group) in named(file, &groups, "--fix", text)? {
+                for (name, group) in named(file, groups, "--fix", text)? {
                     if group.vertices().is_empty() {
                         return Err(refusal(file, "--fix", &format!("{group} has no elements")));
                     }
@@ -183,11 +185,11 @@ impl<'f> SelectionResolver<'f> {
         let mut lists = Vec::new();
         let of_all = self.topology.free_count();
         if !request.only.is_empty() {
-            let groups = self.groups()?;
+            let groups = file.groups()?;
             let (mut triangles, mut quadrilaterals) = (Vec::new(), Vec::new());
             let mut names = Vec::new();
             for text in &request.only {
-                for (name, group) in named(file, &groups, "--only", text)? {
+                for (name, group) in named(file, groups, "--only", text)? {
                     let has_quadrilaterals =
                         file.domain.moves_quadrilaterals() && !group.quadrilaterals().is_empty();
                     if group.triangles().is_empty() && !has_quadrilaterals {
@@ -246,10 +248,6 @@ impl<'f> SelectionResolver<'f> {
     /// Returns the word for an element of the mesh.
     fn kind(&self) -> &'static str {
         if self.file.mesh().quadrilaterals.is_empty() { "triangle" } else { "element" }
-    }
-
-    fn groups(&self) -> Result<Groups, CliError> {
-        Ok(self.file.source.groups()?)
     }
 }
 

@@ -43,9 +43,10 @@ pub(crate) fn run_pipeline<T>(
     finish: impl FnOnce(Done<'_>) -> Result<T, CliError>,
 ) -> Result<T, Failure> {
     let began = Instant::now();
-    let ReadMesh { file, choice, mut fields, form, bytes, at } = read(task, follow)?;
+    let ReadMesh { file, mut choice, mut fields, form, bytes, at } = read(task, follow)?;
+    let topology = choice.topology.take();
     let input = Input { task, file: &file, choice: &choice, form, bytes, began };
-    let opened = open(&input, &fields, engine, follow);
+    let opened = open(&input, topology, &fields, engine, follow);
     let mended;
     let subject = match opened.prepared? {
         Prepared::Ready(smoother) => Subject { smoother: *smoother, mended: None },

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use gpu_smooth::layers::Layers;
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Backend, MeshError, MeshSize, Quality, Smoother};
+use gpu_smooth::{Backend, DetachedTopology, MeshError, MeshSize, Quality, Smoother};
 use gpu_smooth_job::{Adapted, TargetFacts};
 
 use crate::error::CliError;
@@ -67,6 +67,7 @@ impl<'a> Subject<'a> {
 /// Prepares a mesh while a second thread opens its engine. Untangles the mesh if requested and necessary.
 pub(super) fn open<'a>(
     input: &Input<'a>,
+    topology: Option<DetachedTopology>,
     fields: &InterpolatedFields,
     engine: impl FnOnce(MeshSize) -> Result<OpenEngine, CliError> + Send,
     follow: &mut dyn PipelineObserver,
@@ -76,7 +77,7 @@ pub(super) fn open<'a>(
     follow.stage(Stage::Preparing { vertices: size.vertices });
     std::thread::scope(|scope| {
         let opening = scope.spawn(move || engine(size));
-        let prepared = prepared(input, fields, follow);
+        let prepared = prepared(input, topology, fields, follow);
         let taken = opening.join().map_err(|_| engine::driver_crashed());
         Opened { prepared, taken: taken.and_then(|taken| taken) }
     })
@@ -84,11 +85,12 @@ pub(super) fn open<'a>(
 
 fn prepared<'a>(
     input: &Input<'a>,
+    topology: Option<DetachedTopology>,
     fields: &InterpolatedFields,
     follow: &mut dyn PipelineObserver,
 ) -> Result<Prepared<'a>, Failure> {
     let (request, file) = (input.request(), input.file);
-    match smoother(request, file) {
+    match smoother(request, file, topology) {
         prepared if request.untangle.is_some() && untangle::can_mend(&prepared) => {
             drop(prepared);
             follow.stage(Stage::Untangling);
@@ -153,13 +155,19 @@ pub(super) fn set_up<'a>(
     Ok(Ready { smoother, mended, taken, before, size_weight, sliding, at: Instant::now() })
 }
 
-/// Prepares a mesh for smoothing. Returns [`MeshError::NothingFree`] if no vertex is free and none can slide.
+/// Prepares a mesh for smoothing, whose topology may be known already. Returns [`MeshError::NothingFree`] if no vertex is free and none can slide.
 pub(super) fn smoother<'f>(
     request: &SmoothRequest,
     file: &'f LoadedMesh,
+    topology: Option<DetachedTopology>,
 ) -> Result<Smoother<'f>, MeshError> {
+    let mesh = file.mesh();
     // The file has fixed the vertices of its layers.
-    let mut smoother = Smoother::keeping(Cow::Borrowed(file.mesh()), Layers::default())?;
+    let layers = Layers::default();
+    let mut smoother = match topology.and_then(|topology| topology.attach(mesh)) {
+        Some(topology) => Smoother::of_topology(mesh, topology, layers)?,
+        None => Smoother::keeping(Cow::Borrowed(mesh), layers)?,
+    };
     if smoother.topology().free_count() == 0 {
         let slide = request.slide.as_ref().and_then(|slide| slide.slide(file).ok());
         let slides = slide.and_then(|slide| smoother.set_slide(Some(&slide)).ok());

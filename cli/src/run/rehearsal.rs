@@ -49,12 +49,13 @@ pub(crate) fn rehearse(
     follow: &mut dyn PipelineObserver,
 ) -> Result<Rehearsal, Failure> {
     let began = Instant::now();
-    let ReadMesh { file, choice, fields, form, bytes, .. } = pipeline::read(task, follow)?;
+    let ReadMesh { file, mut choice, fields, form, bytes, .. } = pipeline::read(task, follow)?;
+    let topology = choice.topology.take();
     let input = Input { task, file: &file, choice: &choice, form, bytes, began };
     let (request, mesh) = (task.request, file.mesh());
     let size = mesh.size();
     follow.stage(Stage::Preparing { vertices: size.vertices });
-    let smoother = prepare::smoother(request, &file);
+    let smoother = prepare::smoother(request, &file, topology);
     if request.untangle.is_some() && untangle::can_mend(&smoother) {
         fields.check_untangled()?;
         let topology = Topology::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
