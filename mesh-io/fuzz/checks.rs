@@ -89,6 +89,8 @@ fn use_file(file: &MeshFile) {
     assert_eq!(file.triangle_locations(0..file.triangles().len()).len(), file.triangles().len());
     if let Ok(groups) = file.groups() {
         for group in groups.iter() {
+            let is_of_lines = group.dimension == 1 && !group.vertices().is_empty();
+            assert!(!is_of_lines || file.may_name_lines(), "{group}");
             assert!(group.vertices().iter().all(|&v| (v as usize) < vertices));
             assert!(group.triangles().iter().all(|&t| (t as usize) < file.triangles().len()));
         }

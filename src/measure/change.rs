@@ -75,7 +75,8 @@ impl Change {
         let moved = |i: usize| {
             let v = seen[i];
             let ([x, y], [a, b]) = (before[v], after[v]);
-            (x - a).hypot(y - b) / mean_edge(topology, before, v, &around[v])
+            let [dx, dy] = [x - a, y - b];
+            (dx * dx + dy * dy).sqrt() / mean_edge(topology, before, v, &around[v])
         };
         let size = |i: usize| {
             let v = seen[i];

@@ -3,12 +3,11 @@
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::{DetachedTopology, Topology};
 use gpu_smooth_job::{is_at_wall, overlooks_boundary, overlooks_wall, vertices_in_rows};
-use mesh_io::Group;
 
 use crate::error::CliError;
 use crate::kept_layers::KeptLayers;
 use crate::load::named::{named, refusal};
-use crate::load::walls::{is_of_lines, name};
+use crate::load::walls::name;
 use crate::load::{LoadedMesh, explain};
 
 /// Number of groups that a note names.
@@ -89,7 +88,7 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
 fn note(file: &LoadedMesh, kept: &KeptLayers, layers: &Layers) -> Result<String, CliError> {
     let inner = vertices_in_rows(layers);
     let mut names = Vec::new();
-    for group in file.groups()?.iter().filter(|group| is_of_lines(group)) {
+    for group in file.groups_of_lines()? {
         if is_at_wall(layers, group.vertices()) {
             names.push(name(group));
         }
@@ -126,8 +125,7 @@ fn overlooked(
              --keep-layers rows=N{group} keeps the first N rows"
         )
     };
-    let groups = file.groups()?;
-    let lines: Vec<&Group> = groups.iter().filter(|group| is_of_lines(group)).collect();
+    let lines = file.groups_of_lines()?;
     if lines.is_empty() {
         let has_one = overlooks_boundary(layers, kept.keep, topology);
         return Ok(has_one.then(|| note("the boundary", "")).into_iter().collect());

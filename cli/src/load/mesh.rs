@@ -8,7 +8,9 @@ use gpu_smooth::{
     options::Precision,
 };
 use gpu_smooth_job::{Domain, smoother_precision};
-use mesh_io::{Constraints, Groups, MeshFile, PointField, SourceLocation, WriteError, interfaces};
+use mesh_io::{
+    Constraints, Group, Groups, MeshFile, PointField, SourceLocation, WriteError, interfaces,
+};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -44,6 +46,15 @@ impl LoadedMesh {
         }
         let groups = self.source.groups()?;
         Ok(self.groups.get_or_init(|| groups))
+    }
+
+    /// Returns the groups of lines of the file. Parses the bytes of the file again only if there may be such groups.
+    pub(crate) fn groups_of_lines(&self) -> Result<Vec<&Group>, CliError> {
+        if !self.source.may_name_lines() {
+            return Ok(Vec::new());
+        }
+        let is_of_lines = |group: &&Group| group.dimension == 1 && !group.vertices().is_empty();
+        Ok(self.groups()?.iter().filter(is_of_lines).collect())
     }
 
     /// Returns the constraints of the file, without those on vertices of quadrilaterals that may move.

@@ -27,9 +27,8 @@ pub(crate) fn wall_edges(file: &LoadedMesh, topology: &Topology<'_>) -> Vec<[u32
 /// [`wall_edges`]. An edge belongs to the groups that have both of its vertices. Of groups with equal vertices, such as an
 /// entity of gmsh and its physical group, only the first is a wall.
 pub(crate) fn walls(file: &LoadedMesh, edges: &[[u32; 2]]) -> Result<Vec<Wall>, CliError> {
-    let groups = file.groups()?;
     let mut lines: Vec<&Group> = Vec::new();
-    for group in groups.iter().filter(|group| is_of_lines(group)) {
+    for group in file.groups_of_lines()? {
         let is_known = |other: &&Group| other.vertices() == group.vertices();
         if !lines.iter().any(is_known) {
             lines.push(group);
@@ -54,11 +53,6 @@ pub(crate) fn walls(file: &LoadedMesh, edges: &[[u32; 2]]) -> Result<Vec<Wall>, 
         }
     }
     Ok(walls)
-}
-
-/// Returns whether a group consists of lines.
-pub(super) fn is_of_lines(group: &Group) -> bool {
-    group.dimension == 1 && !group.vertices().is_empty()
 }
 
 /// Returns the name of a group, else its tag.

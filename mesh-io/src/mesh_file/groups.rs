@@ -56,6 +56,11 @@ impl MeshFile {
         Ok(table.finish(self.triangles(), self.points().len()))
     }
 
+    /// Returns whether [`groups`](Self::groups) may have a group of lines, without parsing the bytes of the file again.
+    pub fn may_name_lines(&self) -> bool {
+        !self.constraints().lines.is_empty() || self.reader().names_other_lines
+    }
+
     /// Parses the bytes of the file again, and returns the vertices at which groups of lines and groups of vertices end,
     /// on the boundary or inside the mesh, ascending. Programs that move vertices along lines keep these vertices, so
     /// that each group keeps its extent.

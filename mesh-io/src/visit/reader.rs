@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 pub(crate) trait FormatReader {
     /// Name of the file's list of vertices in messages.
     const VERTICES: &'static str;
+    /// Whether groups of lines may have edges that no line element or polyline of a plain reading has, such as a list of sides.
+    const NAMES_OTHER_LINES: bool = true;
     /// Loads the other files of the mesh that `given` belongs to. Returns the main file, with the other files as
     /// companions.
     ///
@@ -54,6 +56,7 @@ pub(crate) struct ReaderFunctions {
     pub(crate) destinations: fn(&Source, &Path) -> Result<Vec<PathBuf>, WriteError>,
     pub(crate) renames: fn(&Source, &Path) -> Vec<ByteEdit>,
     pub(crate) vertices: &'static str,
+    pub(crate) names_other_lines: bool,
 }
 
 impl ReaderFunctions {
@@ -65,6 +68,7 @@ impl ReaderFunctions {
             destinations: W::destinations,
             renames: W::renames,
             vertices: W::VERTICES,
+            names_other_lines: W::NAMES_OTHER_LINES,
         }
     }
 }

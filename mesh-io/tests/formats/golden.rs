@@ -32,6 +32,8 @@ fn hashes(folder: &Folder, file: &MeshFile, name: &str) -> String {
     let read = hash(points.chain(numbers.flat_map(|number| number.to_le_bytes())));
     let mut groups = Vec::new();
     for group in file.groups().unwrap().iter() {
+        let is_of_lines = group.dimension == 1 && !group.vertices().is_empty();
+        assert!(!is_of_lines || file.may_name_lines(), "{name}: {group}");
         groups.extend(format!("{} {:?} {:?}", group.dimension, group.tag, group.name).bytes());
         let members = group.vertices().iter().chain(group.triangles());
         groups.extend(members.flat_map(|member| member.to_le_bytes()));

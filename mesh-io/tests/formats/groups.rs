@@ -316,6 +316,7 @@ fn triangle_has_attributes_and_markers() {
         ("in.ele", "1 3 0\n1 1 2 3\n"),
     ]);
     assert!(plain.read("in").groups().unwrap().is_empty());
+    assert!(folder.read("in").may_name_lines() && !plain.read("in").may_name_lines());
 }
 
 #[test]

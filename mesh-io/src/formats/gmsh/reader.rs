@@ -26,6 +26,7 @@ pub(crate) struct Gmsh;
 
 impl FormatReader for Gmsh {
     const VERTICES: &'static str = "$Nodes";
+    const NAMES_OTHER_LINES: bool = false;
 
     fn visit(
         source: &Source,

@@ -52,6 +52,7 @@ const END: i32 = 54;
 
 impl FormatReader for MeditBinary {
     const VERTICES: &'static str = "Vertices";
+    const NAMES_OTHER_LINES: bool = false;
 
     fn visit(
         source: &Source,

@@ -67,6 +67,7 @@ impl<'a> List<'a> {
 
 impl FormatReader for Medit {
     const VERTICES: &'static str = "Vertices";
+    const NAMES_OTHER_LINES: bool = false;
 
     fn visit(
         source: &Source,

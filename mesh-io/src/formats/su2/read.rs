@@ -40,6 +40,7 @@ type Small = (CellKind, [u32; 4]);
 
 impl FormatReader for Su2 {
     const VERTICES: &'static str = "NPOIN";
+    const NAMES_OTHER_LINES: bool = false;
 
     fn visit(
         source: &Source,

@@ -29,6 +29,7 @@ pub(crate) struct Triangle;
 
 impl FormatReader for Triangle {
     const VERTICES: &'static str = "the .node";
+    const NAMES_OTHER_LINES: bool = false;
 
     fn load_companions(given: Source) -> Result<Source, ReadError> {
         files::load_companions(given)

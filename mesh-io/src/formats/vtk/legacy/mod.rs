@@ -34,6 +34,7 @@ pub(crate) struct Vtk;
 
 impl FormatReader for Vtk {
     const VERTICES: &'static str = "POINTS";
+    const NAMES_OTHER_LINES: bool = false;
 
     fn visit(
         source: &Source,

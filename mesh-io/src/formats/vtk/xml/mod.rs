@@ -27,6 +27,7 @@ pub(crate) struct Vtu;
 
 impl FormatReader for Vtu {
     const VERTICES: &'static str = "Points";
+    const NAMES_OTHER_LINES: bool = false;
 
     fn visit(
         source: &Source,
