@@ -30,7 +30,7 @@ use commands::{
 };
 use error::CliError;
 use request::{Meshes, SmoothRequest, mistyped};
-use terminal::{Verbosity, interrupt, panics, process, tell};
+use terminal::{Verbosity, interrupt, panics, process, tell, threads};
 
 #[cfg(fuzzing)]
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| request::checks::any_line(bytes));
@@ -50,6 +50,7 @@ pub mod colors {
 /// signals and of panics, prints to standard output and standard error, and may end the process.
 pub fn main_with(words: Vec<OsString>, program: Vec<OsString>) -> u8 {
     process::start(words, program);
+    threads::join_pool();
     let code = panics::reporting_panics(run);
     // A process whose main function is not Rust's loses what is left in the buffer.
     let _ = std::io::stdout().flush();

@@ -8,6 +8,7 @@ pub(crate) mod progress;
 mod requested;
 pub(crate) mod shell_words;
 pub(crate) mod tell;
+pub(crate) mod threads;
 mod verbosity;
 
 pub(crate) use verbosity::Verbosity;
