@@ -7,21 +7,54 @@ use crate::mesh::MeshSize;
 use crate::options::Options;
 use crate::smoother::Backend;
 
-/// Vertex updates per second and core of the CPU engine, measured with imr on two cores (`docs/performance.md`).
-const CPU_UPDATES_PER_CORE: f64 = 16e6;
-/// Time to start a GPU's driver, device and kernels, in seconds. A cautious assumption, as no graphics card has been
-/// measured yet; Mesa's software driver takes 0.06 to 0.25.
-const GPU_START: f64 = 0.3;
-/// Vertex updates per second of a discrete GPU. A cautious assumption, not measured.
-const DISCRETE_UPDATES: f64 = 1e9;
-/// Vertex updates per second of a GPU that shares the CPU's memory, or of an unknown kind. A cautious assumption, not
-/// measured.
-const INTEGRATED_UPDATES: f64 = 150e6;
-/// The work of a run with corrections from coarser levels, in sweeps: about 12 sweeps, and 5 corrections of 1.5 sweeps
-/// each.
-const CORRECTED_SWEEPS: f64 = 20.0;
-/// Sweeps of a run without corrections: over-relaxed imr takes this many to come within 1e-6 of its limit.
-const PLAIN_SWEEPS: f64 = 130.0;
+/// Times of a part of a run in microseconds for each vertex: on one thread, and on one core if all cores share the work.
+struct Work {
+    alone: f64,
+    shared: f64,
+}
+
+impl Work {
+    /// Returns the time in seconds for each vertex on this number of cores.
+    fn on(&self, cores: usize) -> f64 {
+        1e-6 * (self.alone + self.shared / cores as f64)
+    }
+}
+
+/// The model of the time of a run, without reading, preparing and writing the mesh, which take equally long for all engines.
+///
+/// A run on a device takes the start, the work of the host, and its sweeps at the rate of the device. docs/performance.md states
+/// how the constants were obtained.
+struct Model {
+    /// A run of the default method on the CPU. Measured on one and on two cores, with 250,000 and a million vertices by `imr`.
+    cpu: Work,
+    /// Work of the host in a run on a device: coarser levels, judgment and checks. From a study of the library, not measured
+    /// beside a card.
+    host: Work,
+    /// Vertex updates per second and core of sweeps alone on the CPU, measured with `imr` on two cores.
+    cpu_updates_per_core: f64,
+    /// Time to start a GPU's driver, device and kernels, in seconds. An assumption: Mesa's software driver takes 0.06 to 0.25.
+    start: f64,
+    /// Vertex updates per second of a discrete GPU: that of a laptop, which is an eighth of that of a card of a data center. From
+    /// the instructions and the bytes of a sweep, not measured.
+    discrete_updates: f64,
+    /// Likewise, of a GPU that shares the CPU's memory, or of an unknown kind.
+    integrated_updates: f64,
+    /// The work of a run of the default method on a device, in sweeps: some 8 sweeps, and 2 Newton steps of some 6 sweeps each.
+    stepped_sweeps: f64,
+    /// Sweeps of a run without steps: over-relaxed imr takes this many to come within 1e-6 of its limit.
+    plain_sweeps: f64,
+}
+
+const MODEL: Model = Model {
+    cpu: Work { alone: 0.1, shared: 3.6 },
+    host: Work { alone: 0.13, shared: 0.65 },
+    cpu_updates_per_core: 16e6,
+    start: 0.3,
+    discrete_updates: 1e9,
+    integrated_updates: 0.2e9,
+    stepped_sweeps: 20.0,
+    plain_sweeps: 130.0,
+};
 
 /// Returns the backend on which a run is estimated to end soonest, and the reason; see
 /// [`Backend::auto_tried`]. `kept` has the adapter and its device.
@@ -34,8 +67,8 @@ pub(super) fn choose(
     if options.max_sweeps == 0 {
         return (Backend::Cpu, BackendReason::NoSweeps);
     }
-    let (cores, sweeps) = (rayon::current_num_threads(), expected_sweeps(options));
-    let best = pays_from(FASTEST, cores, sweeps);
+    let (cores, sweeps) = (rayon::current_num_threads(), ExpectedSweeps::of(options));
+    let best = pays_from(FASTEST, cores, &sweeps);
     if best.is_none_or(|least| size.vertices < least) {
         return (Backend::Cpu, BackendReason::CpuIsFaster { adapter: None, pays_from: best });
     }
@@ -44,7 +77,7 @@ pub(super) fn choose(
         if summary.is_software() {
             return (Backend::Cpu, BackendReason::OnlySoftware(summary));
         }
-        match pays_from(summary.kind, cores, sweeps) {
+        match pays_from(summary.kind, cores, &sweeps) {
             Some(pays_from) if size.vertices >= pays_from => {
                 match adapter.gpu().and_then(|gpu| gpu.check_size(size).map(|()| gpu)) {
                     Ok(gpu) => (Backend::Gpu(gpu), BackendReason::GpuIsFaster { pays_from }),
@@ -66,29 +99,51 @@ const FASTEST: &str = "discrete GPU";
 /// software adapter, as the CPU engine is always faster.
 fn gpu_updates(kind: &str) -> Option<f64> {
     match kind {
-        "discrete GPU" => Some(DISCRETE_UPDATES),
+        "discrete GPU" => Some(MODEL.discrete_updates),
         "CPU" => None,
-        _ => Some(INTEGRATED_UPDATES),
+        _ => Some(MODEL.integrated_updates),
     }
 }
 
-/// Returns the work that a run is likely to take, in sweeps, corrections included.
-fn expected_sweeps(options: &Options) -> f64 {
-    // With EDGE as its base, which is not smooth, a run with corrections takes as many sweeps as one without.
-    let is_short = options.is_multilevel() && options.scheme.base().is_smooth();
-    let usual = if is_short { CORRECTED_SWEEPS } else { PLAIN_SWEEPS };
-    usual.min(options.max_sweeps.into())
+/// The work that a run is likely to take.
+struct ExpectedSweeps {
+    /// The number of sweeps, steps included.
+    count: f64,
+    /// Whether the run takes Newton steps of all vertices. If not, the run has sweeps alone.
+    has_steps: bool,
+}
+
+impl ExpectedSweeps {
+    fn of(options: &Options) -> Self {
+        // With EDGE as its base, which is not smooth, a run with corrections takes as many sweeps as one without.
+        let has_steps = options.is_multilevel() && options.scheme.base().is_smooth();
+        let usual = if has_steps { MODEL.stepped_sweeps } else { MODEL.plain_sweeps };
+        Self { count: usual.min(options.max_sweeps.into()), has_steps }
+    }
+
+    /// Returns the time of the sweeps on the CPU, in seconds for each vertex.
+    fn on_cpu(&self, cores: usize) -> f64 {
+        match self.has_steps {
+            true => MODEL.cpu.on(cores) * self.count / MODEL.stepped_sweeps,
+            false => self.count / (MODEL.cpu_updates_per_core * cores as f64),
+        }
+    }
+
+    /// Returns the time of the sweeps and of the work of the host in a run on a device, in seconds for each vertex.
+    fn on_device(&self, cores: usize, updates: f64) -> f64 {
+        let host = if self.has_steps { MODEL.host.on(cores) } else { 0.0 };
+        host + self.count / updates
+    }
 }
 
 /// Returns the mesh size in vertices, rounded up to two digits, from which an adapter of this kind finishes before the
 /// CPU. `None` if the CPU always finishes first.
-fn pays_from(kind: &str, cores: usize, sweeps: f64) -> Option<usize> {
-    let cpu_updates = CPU_UPDATES_PER_CORE * cores as f64;
-    let saved = sweeps * (1.0 / cpu_updates - 1.0 / gpu_updates(kind)?);
+fn pays_from(kind: &str, cores: usize, sweeps: &ExpectedSweeps) -> Option<usize> {
+    let saved = sweeps.on_cpu(cores) - sweeps.on_device(cores, gpu_updates(kind)?);
     if saved <= 0.0 {
         return None;
     }
-    let least = GPU_START / saved;
+    let least = MODEL.start / saved;
     let unit = 10f64.powf(least.log10().floor() - 1.0).max(1.0);
     Some(((least / unit).ceil() * unit) as usize)
 }
@@ -99,21 +154,26 @@ mod tests {
     use crate::metric::Metric;
     use crate::options::Method;
 
+    const STEPPED: ExpectedSweeps = ExpectedSweeps { count: 20.0, has_steps: true };
+
     #[test]
     fn a_gpu_pays_from_where_its_start_is_made_up_for() {
-        // 500,000 vertices, 20 sweeps, 32 million a second: 0.3125 s on the CPU, 0.310 s on the card.
-        assert_eq!(pays_from("discrete GPU", 2, 20.0), Some(500_000));
+        // On two cores, 1.9 µs for a vertex on the CPU, and 0.475 µs with a card: 0.3 s are saved with 211,000 vertices.
+        assert_eq!(pays_from("discrete GPU", 2, &STEPPED), Some(220_000));
         for kind in ["integrated GPU", "virtual GPU", "other"] {
-            assert_eq!(pays_from(kind, 2, 20.0), Some(620_000));
+            assert_eq!(pays_from(kind, 2, &STEPPED), Some(230_000));
         }
         // The threshold rises with the number of cores, until the CPU is as fast as the GPU.
-        assert_eq!(pays_from("discrete GPU", 16, 20.0), Some(5_200_000));
-        assert_eq!(pays_from("integrated GPU", 10, 20.0), None);
-        assert_eq!(pays_from("discrete GPU", 63, 20.0), None);
-        for (cores, sweeps) in [(1, 20.0), (2, 20.0), (4, 130.0), (8, 1.0)] {
+        assert_eq!(pays_from("discrete GPU", 16, &STEPPED), Some(2_300_000));
+        assert_eq!(pays_from("integrated GPU", 10, &STEPPED), Some(1_900_000));
+        assert_eq!(pays_from("integrated GPU", 32, &STEPPED), None);
+        assert_eq!(pays_from("discrete GPU", 63, &STEPPED), None);
+        let few = ExpectedSweeps { count: 8.0, has_steps: true };
+        let plain = ExpectedSweeps { count: 130.0, has_steps: false };
+        for (cores, sweeps) in [(1, &STEPPED), (2, &STEPPED), (4, &plain), (2, &few)] {
             let least = pays_from("discrete GPU", cores, sweeps).unwrap() as f64;
-            let cpu = least * sweeps / (CPU_UPDATES_PER_CORE * cores as f64);
-            let gpu = GPU_START + least * sweeps / DISCRETE_UPDATES;
+            let cpu = least * sweeps.on_cpu(cores);
+            let gpu = MODEL.start + least * sweeps.on_device(cores, MODEL.discrete_updates);
             assert!(gpu <= cpu && cpu <= 1.1 * gpu, "{cores} cores: {gpu} s, {cpu} s");
         }
     }
@@ -122,18 +182,25 @@ mod tests {
     fn a_run_that_takes_many_sweeps_pays_for_a_gpu_earlier() {
         let expected = |scheme: Metric, method, max_sweeps| {
             let scheme = scheme.into();
-            expected_sweeps(&Options { scheme, method, max_sweeps, ..Options::default() })
+            let options = Options { scheme, method, max_sweeps, ..Options::default() };
+            let ExpectedSweeps { count, has_steps } = ExpectedSweeps::of(&options);
+            (count, has_steps)
         };
-        assert_eq!(expected(Metric::Imr, Method::Auto, 1000), 20.0);
-        assert_eq!(expected(Metric::Imr, Method::RELAXED, 1000), 130.0);
-        assert_eq!(expected(Metric::Edge, Method::Auto, 1000), 130.0);
-        assert_eq!(expected(Metric::Edge, Method::Auto, 7), 7.0);
-        assert_eq!(pays_from("discrete GPU", 2, 0.0), None);
+        assert_eq!(expected(Metric::Imr, Method::Auto, 1000), (20.0, true));
+        assert_eq!(expected(Metric::Imr, Method::RELAXED, 1000), (130.0, false));
+        assert_eq!(expected(Metric::Edge, Method::Auto, 1000), (130.0, false));
+        assert_eq!(expected(Metric::Edge, Method::Auto, 7), (7.0, false));
+        let sweeps = |count| ExpectedSweeps { count, has_steps: false };
+        assert!(
+            pays_from("discrete GPU", 2, &sweeps(130.0))
+                < pays_from("discrete GPU", 2, &sweeps(20.0))
+        );
+        assert_eq!(pays_from("discrete GPU", 2, &sweeps(0.0)), None);
     }
 
     #[test]
     fn a_software_adapter_never_pays() {
-        assert_eq!(pays_from("CPU", 1, 1e6), None);
+        assert_eq!(pays_from("CPU", 1, &STEPPED), None);
     }
 
     #[test]
