@@ -136,6 +136,7 @@ mod tests {
             destinations: |_, path| Ok(vec![path.to_owned()]),
             renames: |_, _| Vec::new(),
             vertices: "the list",
+            names_other_lines: false,
         };
         let text = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
         let source = Source::new(Path::new("a.off"), text.to_vec()).unwrap();
@@ -170,6 +171,7 @@ mod tests {
             destinations: |_, path| Ok(vec![path.to_owned()]),
             renames: |_, _| Vec::new(),
             vertices: "the list",
+            names_other_lines: false,
         };
         let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
             element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1e39 0 0\n0 1 0\n3 0 1 2\n";
