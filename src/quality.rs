@@ -1,10 +1,13 @@
 //! Quality statistics of a mesh.
 
+use fearless_simd::{Level, prelude::*};
+
 use crate::error::MeshError;
 use crate::mesh::Element;
 use crate::metric::{Corner, Ideal, Metric, opposite_angles};
 use crate::parallel::pace::now;
 use crate::parallel::paced;
+use crate::patch::lanes::{LANES, Lanes, with_instructions};
 use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates;
@@ -114,22 +117,28 @@ impl Quality {
         }
         let mean_area = total_area / corners.equivalent_triangles();
 
-        let triangle = |corner: &[u32; 3], index: usize| {
-            let movable = corner.iter().any(|&v| topology.free()[v as usize]);
-            let lengths = surface.lengths_in(points, corner);
-            one::<false>(points, corner, lengths, mean_area, index, movable)
+        let shape = |corner: &[u32; 3]| {
+            Shape::of(points, corner, surface.lengths_in(points, corner), mean_area)
         };
         let tallies = paced::map_parts(triangles.chunks(1024), |chunk, part| {
-            let add = |tally: Tally, (t, corner): (usize, &[u32; 3])| {
-                tally.and(&triangle(corner, chunk * 1024 + t))
-            };
-            part.iter().enumerate().fold(Tally::EMPTY, add)
+            let mut tally = Tally::EMPTY;
+            with_instructions!(Level::new(), simd => {
+                let mut first = 0;
+                while first < part.len() {
+                    let four = &part[first..part.len().min(first + LANES)];
+                    let index = chunk * 1024 + first;
+                    let movable = |t: &[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
+                    tally.add(simd, four, index, shape, movable);
+                    first += LANES;
+                }
+            });
+            tally
         });
         let mut total = tallies.await.iter().fold(Tally::EMPTY, Tally::and);
         let right_corner = |corner: &[u32; 3], index: usize| {
             let movable = topology.can_move(corners.element(index as u32));
             let lengths = surface.lengths_in(points, corner);
-            one::<true>(points, corner, lengths, mean_area, index, movable)
+            Tally::of_right(&Shape::of(points, corner, lengths, mean_area), index, movable)
         };
         let tallies = paced::map_parts(right.chunks(1024), |chunk, part| {
             let first = triangles.len() + chunk * 1024;
@@ -175,49 +184,139 @@ impl Quality {
     }
 }
 
-/// Returns the tally of a triangle, or of a corner of a quadrilateral if `RIGHT`.
-fn one<const RIGHT: bool>(
-    points: &[[f64; 2]],
-    corners: &[u32; 3],
-    lengths: [f64; 2],
-    mean_area: f64,
-    index: usize,
-    movable: bool,
-) -> Tally {
-    let orientation = predicates::orientation(points, corners);
-    let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
-    let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
-    let mut corner = Corner { a, b, ideal: Ideal::of_area(mean_area / unit / unit) };
-    let doubled = corner.doubled_area().abs();
-    let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
-    let mut cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
-    if RIGHT {
-        // The other two angles are between a side and a diagonal.
-        cotangents = [cotangents[0]; 3];
-        corner = corner.of_right_angle();
+/// The shape of a triangle, or of a corner of a quadrilateral.
+#[derive(Clone, Copy)]
+struct Shape {
+    corner: Corner<f64>,
+    /// The cotangents of the three angles.
+    cotangents: [f64; 3],
+    /// The unit of the edges of the corner, a power of two.
+    unit: f64,
+    /// Whether the exact area is positive.
+    is_positive: bool,
+}
+
+impl Shape {
+    #[inline(always)]
+    fn of(points: &[[f64; 2]], corners: &[u32; 3], lengths: [f64; 2], mean_area: f64) -> Self {
+        let orientation = predicates::orientation(points, corners);
+        let is_positive = orientation > 0.0 && orientation < f64::INFINITY;
+        let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
+        let corner = Corner { a, b, ideal: Ideal::of_area(mean_area / unit / unit) };
+        let doubled = corner.doubled_area().abs();
+        let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
+        let cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
+        Self { corner, cotangents, unit, is_positive }
     }
-    // The exact predicate decides, not the rounded area, so a ratio is infinite only if the triangle is inverted or
-    // flat.
-    let mut sums = Metric::every_excess(&corner);
-    for (square, metric) in sums.iter_mut().zip(Metric::ALL) {
-        *square += metric.ideal_squared();
-        if metric.properties().barrier {
-            *square = if is_positive { square.min(f64::MAX) } else { f64::INFINITY };
+
+    /// Returns the inverse mean ratio, infinite if the exact area is not positive.
+    #[inline(always)]
+    fn inverse_mean_ratio(&self) -> f64 {
+        // The exact predicate decides, not the rounded area, so a ratio is infinite only if the triangle is inverted or
+        // flat.
+        match self.is_positive {
+            true => self.corner.inverse_mean_ratio().min(f64::MAX),
+            false => f64::INFINITY,
         }
     }
-    let imr = match is_positive {
-        true => corner.inverse_mean_ratio().min(f64::MAX),
-        false => f64::INFINITY,
-    };
-    Tally {
-        sums,
-        cotangents: [
-            cotangents.into_iter().fold(f64::INFINITY, f64::min),
-            cotangents.into_iter().fold(f64::NEG_INFINITY, f64::max),
-        ],
-        worst: (imr, index),
-        worst_movable: if movable { imr } else { 0.0 },
-        inverted: usize::from(!is_positive),
+
+    /// Returns q² by a metric, given q² - ideal².
+    #[inline(always)]
+    fn square(&self, excess: f64, metric: Metric) -> f64 {
+        let square = excess + metric.ideal_squared();
+        match (metric.properties().barrier, self.is_positive) {
+            (false, _) => square,
+            (true, true) => square.min(f64::MAX),
+            (true, false) => f64::INFINITY,
+        }
+    }
+}
+
+impl Tally {
+    /// Returns the tally of a corner of a quadrilateral.
+    fn of_right(shape: &Shape, index: usize, movable: bool) -> Self {
+        let corner = shape.corner.of_right_angle();
+        // The other two angles are between a side and a diagonal.
+        let shape = Shape { corner, cotangents: [shape.cotangents[0]; 3], ..*shape };
+        let mut tally = Self::EMPTY;
+        let excesses = Metric::every_excess(&corner);
+        for ((sum, excess), &metric) in tally.sums.iter_mut().zip(excesses).zip(Metric::ALL) {
+            *sum += shape.square(excess, metric);
+        }
+        tally.add_extremes(&shape, index, movable);
+        tally
+    }
+
+    /// Adds up to four triangles. `first` is the index of the first triangle. `shape` returns the shape of a triangle, and `movable`
+    /// whether the triangle has a free vertex.
+    #[inline(always)]
+    fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        triangles: &[[u32; 3]],
+        first: usize,
+        shape: impl Fn(&[u32; 3]) -> Shape,
+        movable: impl Fn(&[u32; 3]) -> bool,
+    ) {
+        let mut shapes = [shape(&triangles[0]); LANES];
+        let mut lane = 0;
+        while lane < triangles.len() {
+            if lane > 0 {
+                shapes[lane] = shape(&triangles[lane]);
+            }
+            self.add_extremes(&shapes[lane], first + lane, movable(&triangles[lane]));
+            lane += 1;
+        }
+        let excesses = Self::excesses(simd, &shapes);
+        for (k, &metric) in Metric::ALL.iter().enumerate() {
+            for (shape, of_lane) in shapes[..triangles.len()].iter().zip(&excesses[k]) {
+                self.sums[k] += shape.square(*of_lane, metric);
+            }
+        }
+    }
+
+    /// Returns q² - ideal² of four triangles by each metric.
+    #[inline(always)]
+    fn excesses<S: Simd>(simd: S, shapes: &[Shape; LANES]) -> [[f64; LANES]; Metric::ALL.len()] {
+        /// Least ratio of two units with which no product of edges underflows in the larger unit.
+        const SIMILAR: f64 = 1e-60;
+        let units = shapes.each_ref().map(|shape| shape.unit);
+        let most = units.into_iter().fold(0.0, f64::max);
+        let least = units.into_iter().fold(f64::INFINITY, f64::min);
+        let are_similar = most.is_finite() && least >= SIMILAR * most;
+        if !are_similar {
+            let each = shapes.each_ref().map(|shape| Metric::every_excess(&shape.corner));
+            return std::array::from_fn(|k| each.each_ref().map(|own| own[k]));
+        }
+        // Units are powers of two, so that the change of the unit rounds nothing.
+        let of = |get: fn(&Corner<f64>) -> f64| {
+            let scaled = shapes.each_ref().map(|shape| get(&shape.corner) * (shape.unit / most));
+            Lanes::simd_from(simd, scaled)
+        };
+        let largest = shapes.iter().find(|shape| shape.unit == most).unwrap_or(&shapes[0]);
+        let four = Corner {
+            a: [of(|corner| corner.a[0]), of(|corner| corner.a[1])],
+            b: [of(|corner| corner.b[0]), of(|corner| corner.b[1])],
+            ideal: largest.corner.ideal,
+        };
+        let excesses = Metric::every_excess(&four);
+        std::array::from_fn(|k| std::array::from_fn(|lane| excesses[k][lane]))
+    }
+
+    /// Adds the angles, the inverse mean ratio and the orientation of an element.
+    #[inline(always)]
+    fn add_extremes(&mut self, shape: &Shape, index: usize, movable: bool) {
+        let [a, b, c] = shape.cotangents;
+        self.cotangents[0] = self.cotangents[0].min(a).min(b).min(c);
+        self.cotangents[1] = self.cotangents[1].max(a).max(b).max(c);
+        let ratio = shape.inverse_mean_ratio();
+        if ratio > self.worst.0 {
+            self.worst = (ratio, index);
+        }
+        if movable {
+            self.worst_movable = self.worst_movable.max(ratio);
+        }
+        self.inverted += usize::from(!shape.is_positive);
     }
 }
 
@@ -285,6 +384,45 @@ mod tests {
         assert_eq!(q.f(Metric::Area), 0.0);
         assert_eq!(q.inverted, 0);
         assert_eq!(q.worst_movable_imr, 0.0);
+    }
+
+    /// Triangles are measured four at a time, with the bits that each has alone.
+    #[test]
+    fn triangles_measured_together_have_the_sums_of_triangles_measured_alone() {
+        let mut state = 5_u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1_u32 << 31)
+        };
+        for spread in [0, 3, 90] {
+            let mut mesh = Mesh::default();
+            for k in 0..501 {
+                let size = 10f64.powi(if spread == 0 { 0 } else { k % spread - spread / 2 });
+                let first = mesh.points.len() as u32;
+                mesh.triangles.push([first, first + 1, first + 2]);
+                mesh.points.extend([(); 3].map(|()| [size * random(), size * random()]));
+            }
+            let topology = Topology::new(&mesh).unwrap();
+            let mut points = mesh.points.clone();
+            let found = Quality::of(&points, &topology).unwrap();
+            let area = |t: &[u32; 3]| 0.5 * predicates::orientation(&points, t).abs();
+            let mean = topology.triangles().iter().map(area).sum::<f64>() / 501.0;
+            for &metric in Metric::ALL.iter() {
+                let mut sum = 0.0;
+                for corners in topology.triangles() {
+                    let shape = Shape::of(&points, corners, [1.0; 2], mean);
+                    let excess = Metric::every_excess(&shape.corner)[metric as usize];
+                    sum += shape.square(excess, metric);
+                }
+                assert_eq!(found.f(metric), sum / 501.0, "{metric}, {spread}");
+            }
+            points[7][0] = f64::INFINITY;
+            let broken = Quality::of(&points, &topology).unwrap();
+            assert_eq!(
+                (broken.f(Metric::Imr), broken.inverted),
+                (f64::INFINITY, found.inverted + 1)
+            );
+        }
     }
 
     #[test]
