@@ -2,7 +2,7 @@
 //! [`Measure::ALL`].
 
 use crate::measure::definition::{Better, Definition, QuadrilateralDefinition};
-use crate::measure::edges::{EQUILATERAL, SQUARE, WorstEdges};
+use crate::measure::edges::{EQUILATERAL, InnerEdge, SQUARE, WorstEdges};
 use crate::measure::quadrilateral::Quadrilateral;
 use crate::measure::triangle::{LEAST_SKEWNESS, Triangle};
 use crate::metric::Metric;
@@ -271,6 +271,18 @@ fn flow_link(worst: Option<WorstEdges>) -> f64 {
 
 fn smoothness(worst: Option<WorstEdges>) -> f64 {
     worst.map_or(f64::NAN, |worst| worst.smoothness)
+}
+
+impl InnerEdge {
+    /// Returns the value of a measure; NaN if [`Measure::is_of_edges`] is false.
+    pub const fn value(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Orthogonality => self.orthogonality,
+            Measure::FlowLink => self.flow_link,
+            Measure::Smoothness => self.smoothness,
+            _ => f64::NAN,
+        }
+    }
 }
 
 const fn of_metric(metric: Metric) -> Definition {

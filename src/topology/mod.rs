@@ -11,6 +11,7 @@ mod enclosed_area;
 mod hanging;
 mod nesting;
 pub(crate) mod predicates;
+mod sides;
 mod stars;
 mod turns;
 mod winding;

@@ -1,7 +1,6 @@
 //! Measures of the edges between two elements, by which solvers with unknowns at circumcenters judge meshes.
 
 use crate::measure::neighbors::for_each_side;
-use crate::measure::table::Measure;
 use crate::parallel::{collect, map_ranges};
 use crate::targets::Surface;
 use crate::topology::Topology;
@@ -36,18 +35,6 @@ pub struct InnerEdge {
     pub flow_link: f64,
     /// The larger of both areas divided by the smaller; infinite if an element is flat.
     pub smoothness: f64,
-}
-
-impl InnerEdge {
-    /// Returns the value of a measure; NaN if [`Measure::is_of_edges`] is false.
-    pub const fn value(&self, measure: Measure) -> f64 {
-        match measure {
-            Measure::Orthogonality => self.orthogonality,
-            Measure::FlowLink => self.flow_link,
-            Measure::Smoothness => self.smoothness,
-            _ => f64::NAN,
-        }
-    }
 }
 
 /// `flow_link` of an edge between equilateral triangles, 2 / 3^(3/4).
