@@ -223,7 +223,7 @@ measures! {
         source: "ANSYS Fluent User's Guide, Mesh Quality: cell size change, as the larger over the smaller area",
         quadrilateral: of_quadrilateral("as of a triangle", FROM_ONE, 1.0),
     };
-    /// The worst orthogonality of an edge of the element; see [`InnerEdge`](crate::measure::InnerEdge). 0 for an element
+    /// The worst orthogonality of an edge of the element; see [`InnerEdge`]. 0 for an element
     /// without neighbors.
     Orthogonality = |t| orthogonality(t.worst_edges), |q| orthogonality(q.worst_edges), Definition {
         name: "orthogonality",
@@ -235,7 +235,7 @@ measures! {
         source: MESHKERNEL,
         quadrilateral: of_quadrilateral("as of a triangle", [0.0, 1.0], 0.0),
     };
-    /// The shortest flow link of the element; see [`InnerEdge`](crate::measure::InnerEdge). 0.877 for an element without
+    /// The shortest flow link of the element; see [`InnerEdge`]. 0.877 for an element without
     /// neighbors, and 1 between squares.
     FlowLink = |t| flow_link(t.worst_edges), |q| flow_link(q.worst_edges), Definition {
         name: "flow-link",
@@ -247,7 +247,7 @@ measures! {
         source: MESHKERNEL,
         quadrilateral: of_quadrilateral("as of a triangle", [0.0, f64::INFINITY], SQUARE),
     };
-    /// The largest jump of the area at an edge of the element; see [`InnerEdge`](crate::measure::InnerEdge). 1 for an element
+    /// The largest jump of the area at an edge of the element; see [`InnerEdge`]. 1 for an element
     /// without neighbors.
     Smoothness = |t| smoothness(t.worst_edges), |q| smoothness(q.worst_edges), Definition {
         name: "smoothness",
