@@ -57,7 +57,7 @@
 //!
 //! # Limits
 //!
-//! Triangles only; list vertices of other elements in [`Mesh::fixed`]. Vertices and triangle corners are
+//! Triangles and quadrilaterals; list vertices of other elements in [`Mesh::fixed`]. Vertices and corners are
 //! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles. A mesh in another plane of space than
 //! that of x and y is smoothed in the coordinates of its [`Plane`](front_ends::Plane).
 //!

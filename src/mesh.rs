@@ -59,7 +59,7 @@ impl fmt::Display for Element {
 
 /// Size of a mesh, for [`Backend::auto`](crate::Backend::auto), `Gpu::required_limits` and `Gpu::check_size`.
 /// [`Mesh::size`] returns the size of a mesh. An application that does not know its meshes yet passes the largest size
-/// that it expects.
+/// that it expects: for up to n vertices 2 n triangles, or 4 n if the meshes may have quadrilaterals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshSize {
     /// Number of vertices.

@@ -41,6 +41,16 @@ mod readme {
         Ok(())
     }
 
+    fn check(smoothed: Vec<[f64; 2]>, mesh: Mesh) -> Result<f64> {
+        use gpu_smooth::{Metric, Quality, Topology};
+
+        let quality = Quality::of(&smoothed, &Topology::new(&mesh)?)?;
+        assert_eq!(quality.inverted, 0);
+        println!("f {}, least angle {}°", quality.f(Metric::Imr), quality.min_angle);
+
+        Ok(quality.worst_imr)
+    }
+
     fn smooth_slices(points: Vec<[f64; 2]>, triangles: Vec<[u32; 3]>) -> Result<Vec<[f64; 2]>> {
         // 1. One blocking call on plain slices, without further fixed vertices.
         let options = Options::default();
@@ -60,11 +70,12 @@ mod readme {
         Ok((outcome, reason))
     }
 
-    fn untangle(mesh: Mesh) -> Result<Untangled> {
+    fn untangle(mesh: Mesh) -> Result<(Untangled, Mesh)> {
         // A tangled mesh is made feasible first.
         let untangled = Untangle::new(&mesh).run()?;
+        let mesh = Mesh { points: untangled.points.clone(), ..mesh };
 
-        Ok(untangled)
+        Ok((untangled, mesh))
     }
 
     async fn await_a_run(
@@ -91,6 +102,8 @@ mod readme {
         let on_device = DeviceMesh::new(&gpu, &mesh)?;
         let vertices = on_device.bind_vertices(&VertexBuffer::new(vertex_buffer.slice(..), 12))?;
         let mut sweeps = Sweeps::new(&on_device, &options).block()?;
+        // once, so that the buffer has the positions before the first import
+        vertices.encode_export(&mut encoder);
         // and in each frame
         vertices.encode_import(&mut encoder);
         sweeps.encode_sweeps(&mut encoder, 5);

@@ -69,6 +69,9 @@ impl BoundVertices {
     /// Encodes the import. When the command buffer runs, the positions of all vertices, including fixed vertices, are
     /// read from the application's vertex buffer.
     ///
+    /// The buffer must hold the positions: before the first import, the application has written them, or has encoded an
+    /// [export](Self::encode_export). An import from an empty buffer moves all vertices to the origin.
+    ///
     /// A vertex whose floats equal its position as exported has not been moved by the application, and keeps its full
     /// precision. Different floats count as a move by the application. Infinite and NaN coordinates are ignored, and
     /// the vertex stays in place.

@@ -1,7 +1,7 @@
 //! The table of kernels.
 //!
-//! A kernel is a row of the table below and its WGSL file; everything else (source, pipelines, labels, preparation,
-//! tests) loops over the table or asks the row.
+//! A kernel is a row of the table below and its WGSL file. Source, pipelines, labels, preparation and tests loop over the table or
+//! ask the row. The kernels that a run compiles before its first sweep are listed in `gpu/run/ahead.rs`.
 
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::layouts::BindLayout;
