@@ -41,14 +41,14 @@ mod readme {
         Ok(())
     }
 
-    fn check(smoothed: Vec<[f64; 2]>, mesh: Mesh) -> Result<f64> {
+    fn check(smoothed: Vec<[f64; 2]>, mesh: Mesh) -> Result<(f64, f64)> {
         use gpu_smooth::{Metric, Quality, Topology};
 
         let quality = Quality::of(&smoothed, &Topology::new(&mesh)?)?;
         assert_eq!(quality.inverted, 0);
-        println!("f {}, least angle {}°", quality.f(Metric::Imr), quality.min_angle);
+        let (f, least_angle) = (quality.f(Metric::Imr), quality.min_angle);
 
-        Ok(quality.worst_imr)
+        Ok((f, least_angle))
     }
 
     fn smooth_slices(points: Vec<[f64; 2]>, triangles: Vec<[u32; 3]>) -> Result<Vec<[f64; 2]>> {
