@@ -37,9 +37,9 @@ impl Sectors {
         Self::of(elements, lines, |_| true, |_| true)
     }
 
-    /// Splits the vertices at the boundary and along the lines of the elements, with the elements that have a vertex at most `edges`
-    /// edges away from these walls. The nodes at most so far away have all their elements, and are in the order of
-    /// [`new`](Self::new).
+    /// Splits the vertices at the boundary and along the lines of the elements. The sectors have only the elements with a vertex that
+    /// is at most `edges` edges away from these walls. Nodes within this distance have all their elements, and have the order that
+    /// [`new`](Self::new) gives them.
     pub(super) fn near_walls(elements: &Elements<'_>, edges: usize) -> Self {
         let topology = elements.topology;
         let mut may_be_on_wall: Vec<bool> =

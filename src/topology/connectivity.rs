@@ -36,7 +36,7 @@ pub struct Topology<'m> {
 #[derive(Clone, Debug)]
 pub struct DetachedTopology {
     topology: Topology<'static>,
-    /// Whether the corners are the triangles of the mesh.
+    /// Whether the topology borrowed its corners from the triangles of the mesh, and so has none without the mesh.
     lacks_corners: bool,
     elements: usize,
 }
@@ -123,7 +123,8 @@ impl<'m> Topology<'m> {
         rest.with_corners(corners.into_owned())
     }
 
-    /// Parts the topology from its mesh without a copy, so that a struct can hold both.
+    /// Separates the topology from its mesh, without copying triangles. A program can then store the mesh and its topology in one
+    /// struct, and join the two by [`DetachedTopology::attach`].
     pub fn detach(self) -> DetachedTopology {
         let elements = self.element_count();
         let (corners, rest) = self.split();

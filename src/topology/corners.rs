@@ -34,7 +34,7 @@ impl<'m> Corners<'m> {
         Corners { all: Cow::Owned(all), triangles: count }
     }
 
-    /// Returns the corners without those that are borrowed, and whether there are such corners.
+    /// Returns owned corners as they are, and an empty list for borrowed corners. The second value is true for borrowed corners.
     pub(crate) fn without_borrowed(self) -> (Corners<'static>, bool) {
         match self.all {
             Cow::Owned(all) => (Corners { all: Cow::Owned(all), triangles: self.triangles }, false),

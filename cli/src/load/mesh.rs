@@ -39,7 +39,7 @@ impl LoadedMesh {
         Self { domain: Domain::of_elements(&source), source, groups: OnceLock::new() }
     }
 
-    /// Returns the groups of the file. The first call parses the bytes of the file again.
+    /// Returns the groups of the file. The first call reads the groups from the bytes of the file.
     pub(crate) fn groups(&self) -> Result<&Groups, CliError> {
         if let Some(groups) = self.groups.get() {
             return Ok(groups);
@@ -48,7 +48,7 @@ impl LoadedMesh {
         Ok(self.groups.get_or_init(|| groups))
     }
 
-    /// Returns the groups of lines of the file. Parses the bytes of the file again only if there may be such groups.
+    /// Returns the groups of lines of the file. If the file cannot name lines, no bytes are parsed.
     pub(crate) fn groups_of_lines(&self) -> Result<Vec<&Group>, CliError> {
         if !self.source.may_name_lines() {
             return Ok(Vec::new());

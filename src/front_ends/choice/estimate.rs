@@ -34,10 +34,10 @@ struct Model {
     cpu_updates_per_core: f64,
     /// Time to start a GPU's driver, device and kernels, in seconds. An assumption: Mesa's software driver takes 0.06 to 0.25.
     start: f64,
-    /// Vertex updates per second of a discrete GPU: that of a laptop, which is an eighth of that of a card of a data center. From
+    /// Vertex updates per second of a discrete GPU in a laptop; a card of a data center does eight times as many. Calculated from
     /// the instructions and the bytes of a sweep, not measured.
     discrete_updates: f64,
-    /// Likewise, of a GPU that shares the CPU's memory, or of an unknown kind.
+    /// Vertex updates per second of a GPU that shares the CPU's memory, or of an unknown kind. Calculated, not measured.
     integrated_updates: f64,
     /// The work of a run of the default method on a device, in sweeps: some 8 sweeps, and 2 Newton steps of some 6 sweeps each.
     stepped_sweeps: f64,
