@@ -14,7 +14,7 @@ use crate::untangle::energy::Corner;
 pub use device::{BindLayout, DeviceCounts, Kernel, device_counts, run_on_gpu};
 
 pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
-pub use crate::metric::{Dual, InvariantSlopes, Invariants, Properties, Real, Slopes};
+pub use crate::metric::{Dual, Invariants, Properties, Real};
 pub use crate::run::{Plan, Stepwise, StopRule, SweepParams};
 
 /// Starts a run of sweeps on the CPU from `positions`, which are normalized and in the problem's order.

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Points, points};
+use crate::patch::lanes::{LANES, Points, in_lanes, points};
 use crate::patch::{Circle, is_kept, keeps_altitude};
 
 /// Positions before and after a move of the free vertices.
@@ -24,8 +24,7 @@ impl Along<'_> {
         vertices: [u32; LANES],
     ) -> (Points<S>, Points<S>) {
         let [a, b, c, d] = vertices;
-        let moved = [self.to(a), self.to(b), self.to(c), self.to(d)];
-        let moved = points(simd, &moved, [0, 1, 2, 3]);
+        let moved = in_lanes(simd, [self.place(a), self.place(b), self.place(c), self.place(d)]);
         (points(simd, self.positions, vertices), moved)
     }
 
@@ -54,8 +53,16 @@ impl Along<'_> {
     /// Returns the position of a vertex after the move.
     #[inline(always)]
     pub(super) fn to(&self, vertex: u32) -> DVec2 {
+        *self.place(vertex)
+    }
+
+    #[inline(always)]
+    fn place(&self, vertex: u32) -> &DVec2 {
         let vertex = vertex as usize;
-        self.moved.get(vertex).copied().unwrap_or_else(|| self.positions[vertex])
+        match self.moved.get(vertex) {
+            Some(moved) => moved,
+            None => &self.positions[vertex],
+        }
     }
 
     /// Returns the positions of all vertices after the move.

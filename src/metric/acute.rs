@@ -5,6 +5,7 @@ use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::EdgeSlopes;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::Slopes;
 use crate::metric::{angles, imr};
 
 pub(super) const PROPERTIES: Properties = Properties {
@@ -41,7 +42,7 @@ pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
 /// edges by the position of the vertex.
 #[inline(always)]
 pub(super) fn expansion<T: Real, E: EdgeSlopes>(t: &Corner<T>, edges: E) -> Dual<T> {
-    let shape = t.expansion(edges, &imr::slopes(&t.invariants()));
+    let shape = imr::slopes(&t.invariants()).expansion(t, edges);
     let is_right = !E::IS_OWN && t.ideal.is_right;
     let shape = if is_right { shape * SHAPE_OF_RIGHT } else { shape };
     shape + angles::expansion(t, edges)

@@ -4,6 +4,7 @@ use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::EdgeSlopes;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::Slopes;
 use crate::metric::{angles, soft_size};
 
 pub(super) const PROPERTIES: Properties = Properties {
@@ -35,5 +36,5 @@ pub(super) fn excess<T: Real>(t: &Corner<T>) -> T {
 /// edges by the position of the vertex.
 #[inline(always)]
 pub(super) fn expansion<T: Real>(t: &Corner<T>, edges: impl EdgeSlopes) -> Dual<T> {
-    t.expansion(edges, &soft_size::slopes(&t.invariants())) + angles::expansion(t, edges)
+    soft_size::slopes(&t.invariants()).expansion(t, edges) + angles::expansion(t, edges)
 }

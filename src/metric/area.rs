@@ -1,8 +1,9 @@
 //! The metric AREA, the relative deviation of the area from the mean.
 
-use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
+use crate::metric::corner::Invariants;
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::InvariantSlopes;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "area",
@@ -32,14 +33,14 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 /// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
-pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> InvariantSlopes<T> {
     let q = (t.area - t.mean) * (1.0 / t.mean);
-    Slopes::ByInvariants(InvariantSlopes {
+    InvariantSlopes {
         unit: q.constant(1.0 / t.mean),
         value: q * q,
         excess: None,
         area: Some(q * 2.0),
         excess_area: None,
         area_area: Some(q.constant(2.0)),
-    })
+    }
 }

@@ -1,6 +1,6 @@
 //! The arguments of metrics: the edges of a triangle from one vertex, and the invariants of the triangle.
 
-use crate::metric::dual::{Dual, Real};
+use crate::metric::dual::Real;
 use crate::metric::edge_slopes::{EdgeSlopes, HEIGHT};
 
 /// A triangle seen from one vertex: the edge vectors to the other two vertices, in counter-clockwise order, and the
@@ -105,22 +105,10 @@ impl<T: Real> Corner<T> {
         }
     }
 
-    /// Returns value, gradient and Hessian of a function of the invariants with respect to the visited vertex, by the
-    /// chain rule. `edges` has the slopes of the edges by the position of the vertex.
-    #[inline(always)]
-    pub(crate) fn expansion(&self, edges: impl EdgeSlopes, slopes: &Slopes<T>) -> Dual<T> {
-        match slopes {
-            Slopes::ByShape { inverse_area, shape, value, first, second } => {
-                self.expansion_by_shape(edges, *inverse_area, *shape, *value, *first, *second)
-            }
-            Slopes::ByInvariants(slopes) => self.expansion_by_invariants(edges, slopes),
-        }
-    }
-
     /// Returns the gradients of excess and area by the visited vertex. The distortion (u, v) has the gradients (α, -γ)
     /// and (γ, α), with γ = w (2β - α) and w = 1/√3. The area is a linear function of the position of the vertex.
     #[inline(always)]
-    fn gradients(&self, edges: impl EdgeSlopes) -> ([T; 2], [T; 2]) {
+    pub(super) fn gradients(&self, edges: impl EdgeSlopes) -> ([T; 2], [T; 2]) {
         let [u, v] = self.distortion();
         let ([ax, ay], [bx, by]) = (self.a, self.b);
         let (alpha, beta) = (edges.alpha(), edges.beta());
@@ -133,94 +121,9 @@ impl<T: Real> Corner<T> {
 
     /// Returns the factor c of the excess's Hessian c I: 2w (α² - αβ + β²), with w = 1/√3.
     #[inline(always)]
-    fn curvature(edges: impl EdgeSlopes) -> f64 {
+    pub(super) fn curvature(edges: impl EdgeSlopes) -> f64 {
         let (alpha, beta) = (edges.alpha(), edges.beta());
         2.0 * W * (alpha * alpha - alpha * beta + beta * beta)
-    }
-
-    /// Computes [`Self::expansion`] for a function of the shape m = excess / area, given its first two derivatives.
-    #[inline(always)]
-    fn expansion_by_shape(
-        &self,
-        edges: impl EdgeSlopes,
-        inverse_area: T,
-        shape: T,
-        value: T,
-        first: T,
-        second: T,
-    ) -> Dual<T> {
-        let ([ex, ey], [dx, dy]) = self.gradients(edges);
-        // ∇m = (∇excess - m ∇area) / area, and the Hessian of m is (c I - ∇m ∇areaᵀ - ∇area ∇mᵀ) / area, with c the
-        // curvature of the excess. The Hessian of f(m) is f' times the Hessian of m, plus f'' ∇m ∇mᵀ. Both terms add up
-        // to ∇m sᵀ + s ∇mᵀ + c f' I / area with s = f'' ∇m / 2 - f' ∇area / area.
-        let (mx, my) = ((ex - shape * dx) * inverse_area, (ey - shape * dy) * inverse_area);
-        let (slope, half) = (first * inverse_area, second * 0.5);
-        let (sx, sy) = (half * mx - slope * dx, half * my - slope * dy);
-        let (xx, yy, own) = (mx * sx, my * sy, slope * Self::curvature(edges));
-        Dual {
-            value,
-            gradient: [first * mx, first * my],
-            hessian: [xx + xx + own, mx * sy + my * sx, yy + yy + own],
-        }
-    }
-
-    /// Computes [`Self::expansion`] for a function of excess and area that is linear in the excess.
-    #[inline(always)]
-    fn expansion_by_invariants(
-        &self,
-        edges: impl EdgeSlopes,
-        slopes: &InvariantSlopes<T>,
-    ) -> Dual<T> {
-        let InvariantSlopes { unit, value, excess, area, excess_area, area_area } = *slopes;
-        let ([ex, ey], [dx, dy]) = self.gradients(edges);
-        let (ex, ey, dx, dy) = (ex * unit, ey * unit, dx * unit, dy * unit);
-        // (px, py) is the gradient of ∂f/∂excess, (rx, ry) the gradient of ∂f/∂area.
-        let (px, py) = (times(excess_area, dx), times(excess_area, dy));
-        let rx = sum(times(excess_area, ex), times(area_area, dx));
-        let ry = sum(times(excess_area, ey), times(area_area, dy));
-        let own = times(times(excess, unit), unit.constant(Self::curvature(edges)));
-        let zero = unit.constant(0.0);
-        Dual {
-            value,
-            gradient: [
-                or(sum(times(excess, ex), times(area, dx)), zero),
-                or(sum(times(excess, ey), times(area, dy)), zero),
-            ],
-            hessian: [
-                or(sum(own, sum(times(px, ex), times(rx, dx))), zero),
-                or(sum(times(px, ey), times(rx, dy)), zero),
-                or(sum(own, sum(times(py, ey), times(ry, dy))), zero),
-            ],
-        }
-    }
-}
-
-// Sums and products of derivatives. `None` is a derivative that is zero for every triangle and costs nothing. The
-// functions are no closures, as closures would not be compiled with the instructions of the lanes.
-
-#[inline(always)]
-#[allow(clippy::manual_map)]
-pub(super) fn times<T: Real>(slope: Option<T>, by: T) -> Option<T> {
-    match slope {
-        Some(slope) => Some(slope * by),
-        None => None,
-    }
-}
-
-#[inline(always)]
-fn sum<T: Real>(a: Option<T>, b: Option<T>) -> Option<T> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(a + b),
-        (Some(one), None) | (None, Some(one)) => Some(one),
-        (None, None) => None,
-    }
-}
-
-#[inline(always)]
-pub(super) fn or<T: Real>(slope: Option<T>, zero: T) -> T {
-    match slope {
-        Some(slope) => slope,
-        None => zero,
     }
 }
 
@@ -252,44 +155,4 @@ pub struct Invariants<T> {
     pub mean: f64,
     /// Factor of the terms of size; see [`Ideal::size_weight`].
     pub size_weight: f64,
-}
-
-/// Value and derivatives of a function of the [`Invariants`]. A metric chooses the form. The more special the form, the
-/// cheaper the metric's sweeps.
-#[derive(Clone, Copy, Debug)]
-pub enum Slopes<T> {
-    /// A function of the shape m = excess / area alone.
-    ByShape {
-        /// The inverse of the area.
-        inverse_area: T,
-        /// The shape m.
-        shape: T,
-        /// The value of the function.
-        value: T,
-        /// The derivative with respect to m.
-        first: T,
-        /// The second derivative with respect to m.
-        second: T,
-    },
-    /// A function of excess and area that is linear in the excess.
-    ByInvariants(InvariantSlopes<T>),
-}
-
-/// Value and partial derivatives of a function of excess and area that is linear in the excess. Each derivative is
-/// named after its variables, the invariants times `unit`, and so has no dimension. `None` is a derivative that is zero
-/// for every triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct InvariantSlopes<T> {
-    /// Inverse of an area, either the doubled area of the triangle or the doubled mean area.
-    pub unit: T,
-    /// Value of the function.
-    pub value: T,
-    /// Derivative by unit · excess.
-    pub excess: Option<T>,
-    /// Derivative by unit · area.
-    pub area: Option<T>,
-    /// Mixed second derivative.
-    pub excess_area: Option<T>,
-    /// Second derivative by unit · area.
-    pub area_area: Option<T>,
 }

@@ -5,8 +5,9 @@
 //! complex numbers, with w = exp(2πi/3). Its excess is |D|²/√3, its doubled area (|C|² - |D|²)/(2√3). So both invariants,
 //! and all derivatives, follow from C and D.
 
-use crate::metric::corner::{Corner, InvariantSlopes, Slopes, or, times};
+use crate::metric::corner::Corner;
 use crate::metric::dual::Real;
+use crate::metric::slopes::Derivatives;
 use crate::metric::table::{AnyFormulas, Metric, OfInvariants};
 
 /// √3/2, the imaginary part of w.
@@ -19,51 +20,6 @@ type Vector<T> = [T; 2];
 
 /// Least divisor in place of zero, far below any quantity of a triangle in normalized units.
 const TINY: f64 = 1e-150;
-
-/// The first and second derivatives of a function of excess and area.
-#[derive(Clone, Copy, Debug)]
-struct Derivatives<T> {
-    excess: T,
-    area: T,
-    excess_excess: T,
-    excess_area: T,
-    area_area: T,
-}
-
-impl<T: Real> Derivatives<T> {
-    #[inline(always)]
-    fn of(slopes: &Slopes<T>) -> Self {
-        match *slopes {
-            Slopes::ByShape { inverse_area: inverse, shape: m, first, second, .. } => {
-                let square = inverse * inverse;
-                Self {
-                    excess: first * inverse,
-                    area: first * m * inverse * -1.0,
-                    excess_excess: second * square,
-                    excess_area: (second * m + first) * square * -1.0,
-                    area_area: (second * m + first * 2.0) * m * square,
-                }
-            }
-            Slopes::ByInvariants(InvariantSlopes {
-                unit,
-                excess,
-                area,
-                excess_area,
-                area_area,
-                ..
-            }) => {
-                let (zero, square) = (unit.constant(0.0), unit * unit);
-                Self {
-                    excess: or(times(excess, unit), zero),
-                    area: or(times(area, unit), zero),
-                    excess_excess: zero,
-                    excess_area: or(times(excess_area, square), zero),
-                    area_area: or(times(area_area, square), zero),
-                }
-            }
-        }
-    }
-}
 
 /// The second derivatives of q² of a triangle by displacements of its corners, as numbers of its parts C and D.
 ///
@@ -88,8 +44,7 @@ pub(crate) struct Curvature<T = f64> {
 
 impl<T: Real> Curvature<T> {
     #[inline(always)]
-    fn of(corner: &Corner<T>, slopes: &Slopes<T>) -> Self {
-        let by = Derivatives::of(slopes);
+    fn of(corner: &Corner<T>, by: &Derivatives<T>) -> Self {
         let ([ax, ay], [bx, by_]) = (corner.a, corner.b);
         // w̄ a + w b and w a + w̄ b.
         let (middle, half) =
@@ -101,7 +56,7 @@ impl<T: Real> Curvature<T> {
         let third = by.area_area * (1.0 / 3.0);
         let cross = by.excess_area * (2.0 / 3.0);
         let mixed = [third, cross - third, by.excess_excess * (4.0 / 3.0) - cross * 2.0 + third];
-        let rows = Self::rows(&by, conformal, anticonformal);
+        let rows = Self::rows(by, conformal, anticonformal);
         Self { conformal, anticonformal, own, mixed, rows }
     }
 
@@ -157,7 +112,7 @@ pub(crate) trait Curved: Copy + Send + Sync {
 impl Curved for OfInvariants {
     #[inline(always)]
     fn curvature<T: Real>(self, corner: &Corner<T>) -> Curvature<T> {
-        Curvature::of(corner, &self.slopes(&corner.invariants()))
+        Curvature::of(corner, &self.derivatives(&corner.invariants()))
     }
 }
 

@@ -1,8 +1,9 @@
 //! The metric IMR, the inverse mean ratio.
 
-use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::corner::Invariants;
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::ShapeSlopes;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "imr",
@@ -32,10 +33,10 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 /// Returns [`value`] and its derivatives by the shape m = excess / area.
 #[inline(always)]
-pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> ShapeSlopes<T> {
     let inverse_area = t.area.constant(1.0) / t.area;
     let m = t.excess * inverse_area;
-    Slopes::ByShape {
+    ShapeSlopes {
         inverse_area,
         shape: m,
         value: m * (m + 2.0),

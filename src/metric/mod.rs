@@ -19,6 +19,7 @@ mod rms;
 mod scheme;
 mod shape_and_size;
 mod shape_size;
+mod slopes;
 pub(crate) mod smoothing;
 mod soft_size;
 mod table;
@@ -27,10 +28,10 @@ mod tmop_2;
 mod tmop_80;
 mod tmop_94;
 
+#[doc(hidden)]
+pub use corner::Invariants;
 pub(crate) use corner::of_right_angle;
 pub use corner::{Corner, Ideal};
-#[doc(hidden)]
-pub use corner::{InvariantSlopes, Invariants, Slopes};
 pub(crate) use curvature::{Curvature, Curved, H, OfImr};
 #[doc(hidden)]
 pub use dual::{Dual, Real};

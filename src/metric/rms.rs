@@ -1,8 +1,9 @@
 //! The metric RMS, the root mean square of the edge lengths.
 
-use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
+use crate::metric::corner::Invariants;
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::InvariantSlopes;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "rms",
@@ -32,14 +33,14 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 /// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
-pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> InvariantSlopes<T> {
     let one = t.area.constant(1.0);
-    Slopes::ByInvariants(InvariantSlopes {
+    InvariantSlopes {
         unit: t.area.constant(1.0 / t.mean),
         value: value(t),
         excess: Some(one),
         area: Some(one),
         excess_area: None,
         area_area: None,
-    })
+    }
 }

@@ -1,8 +1,9 @@
 //! The metric SHAPE-SIZE, which measures shape and size together.
 
-use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
+use crate::metric::corner::Invariants;
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::InvariantSlopes;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "shape-size",
@@ -35,18 +36,18 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 /// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
-pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> InvariantSlopes<T> {
     let scale = 1.0 / t.mean;
     let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
     let inverse = tau.constant(1.0) / tau;
     let square = inverse * inverse;
     let cube = square * inverse;
-    Slopes::ByInvariants(InvariantSlopes {
+    InvariantSlopes {
         unit: e.constant(scale),
         value: (e * (square + 1.0) + off * off * inverse) * 2.0,
         excess: Some((square + 1.0) * 2.0),
         area: Some((off * (tau + 1.0) * square - e * cube * 2.0) * 2.0),
         excess_area: Some(cube * -4.0),
         area_area: Some((e * inverse * 3.0 + 1.0) * cube * 4.0),
-    })
+    }
 }

@@ -1,8 +1,9 @@
 //! Smooth replacement of EDGE: a p-norm, with a penalty near the shape guard.
 
-use crate::metric::corner::{Corner, Slopes};
+use crate::metric::corner::Corner;
 use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::EdgeSlopes;
+use crate::metric::slopes::{ShapeSlopes, Slopes};
 
 /// Parameters of the smooth function that replaces EDGE for Newton's method. Smooth metrics ignore them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,7 @@ impl Smoothing {
         let first = value * below * per_shape * k;
         let inverse_area = one / t.doubled_area();
         let second = first * per_shape * (k - 1.0);
-        t.expansion(edges, &Slopes::ByShape { inverse_area, shape, value, first, second })
+        ShapeSlopes { inverse_area, shape, value, first, second }.expansion(t, edges)
     }
 
     /// Returns a triangle's inverse mean ratio minus 1, and the inverse mean ratio divided by the guard.

@@ -3,10 +3,11 @@
 //! A metric is a row of the table below and two files, `NAME.rs` and `NAME.wgsl`. Everything else (command line, help,
 //! shader composition, property tests, GPU-against-f64 tests, benchmarks) loops over [`Metric::ALL`].
 
-use crate::metric::corner::{Corner, Invariants, Slopes};
+use crate::metric::corner::{Corner, Invariants};
 use crate::metric::dual::{Dual, Real};
 use crate::metric::edge_slopes::{EdgeSlopes, Own};
 use crate::metric::properties::Properties;
+use crate::metric::slopes::{Derivatives, Slopes};
 use crate::metric::smoothing::Smoothing;
 use crate::metric::{
     acute, acute_size, ar, area, edge, imr, rms, shape_size, soft_size, tmop_2, tmop_80, tmop_94,
@@ -141,12 +142,22 @@ macro_rules! metrics {
                 }
             }
 
-            /// Returns q² - ideal² with its derivatives by the invariants.
+            /// Returns value, gradient and Hessian of q² - ideal² with respect to the visited vertex.
             #[inline(always)]
-            pub(crate) fn slopes<T: Real>(self, t: &Invariants<T>) -> Slopes<T> {
+            fn expansion_of<T: Real>(self, corner: &Corner<T>, edges: impl EdgeSlopes) -> Dual<T> {
+                let t = corner.invariants();
                 match self {
-                    $(Self::$variant => $file::slopes(t),)*
-                    $(Self::$rare => $rare_file::slopes(t),)*
+                    $(Self::$variant => $file::slopes(&t).expansion(corner, edges),)*
+                    $(Self::$rare => $rare_file::slopes(&t).expansion(corner, edges),)*
+                }
+            }
+
+            /// Returns the derivatives of q² by excess and area.
+            #[inline(always)]
+            pub(super) fn derivatives<T: Real>(self, t: &Invariants<T>) -> Derivatives<T> {
+                match self {
+                    $(Self::$variant => $file::slopes(t).derivatives(),)*
+                    $(Self::$rare => $rare_file::slopes(t).derivatives(),)*
                 }
             }
         }
@@ -300,7 +311,7 @@ impl Formulas for OfInvariants {
         edges: impl EdgeSlopes,
         _: Smoothing,
     ) -> Dual<T> {
-        corner.expansion(edges, &self.slopes(&corner.invariants()))
+        self.expansion_of(corner, edges)
     }
 }
 

@@ -1,8 +1,9 @@
 //! The metric TMOP-2, the inverse mean ratio less one, which weighs bad shapes less than IMR does.
 
-use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::corner::Invariants;
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::ShapeSlopes;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "tmop-2",
@@ -31,10 +32,10 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 /// Returns [`value`] and its derivatives by the shape excess / area.
 #[inline(always)]
-pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> ShapeSlopes<T> {
     let inverse_area = t.area.constant(1.0) / t.area;
     let m = t.excess * inverse_area;
-    Slopes::ByShape {
+    ShapeSlopes {
         inverse_area,
         shape: m,
         value: m,

@@ -1,8 +1,9 @@
 //! The metric TMOP-80, which weighs shape and size equally.
 
-use crate::metric::corner::{InvariantSlopes, Invariants, Slopes};
+use crate::metric::corner::Invariants;
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
+use crate::metric::slopes::InvariantSlopes;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "tmop-80",
@@ -36,18 +37,18 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 /// Returns [`value`] and its derivatives by the invariants.
 #[inline(always)]
-pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> InvariantSlopes<T> {
     let (scale, weight) = (1.0 / t.mean, t.size_weight);
     let (e, tau, off) = (t.excess * scale, t.area * scale, (t.area - t.mean) * scale);
     let inverse = tau.constant(1.0) / tau;
     let square = inverse * inverse;
     let size = off * (tau + 1.0) * inverse;
-    Slopes::ByInvariants(InvariantSlopes {
+    InvariantSlopes {
         unit: e.constant(scale),
         value: e * inverse * 0.5 + size * size * (0.25 * weight),
         excess: Some(inverse * 0.5),
         area: Some((size * (square + 1.0) * weight - e * square) * 0.5),
         excess_area: Some(square * -0.5),
         area_area: Some(e * square * inverse + (square * square * 3.0 + 1.0) * (0.5 * weight)),
-    })
+    }
 }

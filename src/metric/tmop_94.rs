@@ -1,9 +1,10 @@
 //! The metric TMOP-94 of shape and size. Size has less weight than in TMOP-80 and more than in SOFT-SIZE.
 
-use crate::metric::corner::{Invariants, Slopes};
+use crate::metric::corner::Invariants;
 use crate::metric::dual::Real;
 use crate::metric::properties::Properties;
 use crate::metric::shape_and_size;
+use crate::metric::slopes::InvariantSlopes;
 
 pub(super) const PROPERTIES: Properties = Properties {
     name: "tmop-94",
@@ -35,6 +36,6 @@ pub(super) fn value<T: Real>(t: &Invariants<T>) -> T {
 
 /// Returns q² and its derivatives by the invariants.
 #[inline(always)]
-pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> Slopes<T> {
+pub(super) fn slopes<T: Real>(t: &Invariants<T>) -> InvariantSlopes<T> {
     shape_and_size::slopes(t, WEIGHT)
 }

@@ -4,7 +4,7 @@
 //! nor on which numbers share a vector.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f64x4, mask64x4};
+use fearless_simd::{f64x2, f64x4, mask64x4};
 use glam::DVec2;
 
 use crate::metric::Real;
@@ -175,9 +175,23 @@ fn apart<S: Simd, R>(simd: S, function: impl FnOnce() -> R) -> R {
 #[inline(always)]
 pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANES]) -> Points<S> {
     let [a, b, c, d] = vertices;
-    let (a, b) = (positions[a as usize], positions[b as usize]);
-    let (c, d) = (positions[c as usize], positions[d as usize]);
-    [Lanes::simd_from(simd, [a.x, b.x, c.x, d.x]), Lanes::simd_from(simd, [a.y, b.y, c.y, d.y])]
+    let (a, b) = (&positions[a as usize], &positions[b as usize]);
+    in_lanes(simd, [a, b, &positions[c as usize], &positions[d as usize]])
+}
+
+/// Returns four points, one in each lane.
+#[inline(always)]
+pub(crate) fn in_lanes<S: Simd>(simd: S, [a, b, c, d]: [&DVec2; LANES]) -> Points<S> {
+    // Whole points are loaded and then shuffled. Lanes made of an array of coordinates would be written to memory one by one
+    // and read back at once, for which a processor has to wait.
+    let (a, b) = (point(simd, a), point(simd, b));
+    let (ab, cd) = (a.combine(b), point(simd, c).combine(point(simd, d)));
+    [ab.unzip_low(cd), ab.unzip_high(cd)]
+}
+
+#[inline(always)]
+fn point<S: Simd>(simd: S, point: &DVec2) -> f64x2<S> {
+    simd.load_array_ref_f64x2(point.as_ref())
 }
 
 /// Gathers the numbers of four vertices into lanes.

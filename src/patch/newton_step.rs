@@ -136,6 +136,9 @@ fn lengthened<T: Numbers>(
     let Direction { vector: [dx, dy], slope, .. } = *direction;
     let share = slope.negative() / squares;
     let flat = share.constant(FLAT_RATIO).lt(share) & squares.constant(MIN_FLAT_SUM).lt(squares);
+    if flat.none() {
+        return length;
+    }
     let rest = Real::max(
         share.constant(1.0) - share * FLAT_EXPONENT,
         share.constant(1.0 / max_lengthening),

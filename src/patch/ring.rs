@@ -62,11 +62,14 @@ impl<'a, S: Simd, const MAPPED: bool> Rings<'a, S, MAPPED> {
         let b = &problem.ring_of(b)[..degree];
         let c = &problem.ring_of(c)[..degree];
         let d = &problem.ring_of(d)[..degree];
-        ring.clear();
-        for i in 0..degree {
-            ring.push(points(simd, positions, [a[i], b[i], c[i], d[i]]));
+        if ring.len() <= degree {
+            ring.resize(degree + 1, [Lanes::splat(simd, 0.0); 2]);
         }
-        ring.push(ring[0]);
+        let ring = &mut ring[..=degree];
+        for i in 0..degree {
+            ring[i] = points(simd, positions, [a[i], b[i], c[i], d[i]]);
+        }
+        ring[degree] = ring[0];
         let mut inverse_map = None;
         if MAPPED {
             let targets = problem.targets();
