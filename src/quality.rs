@@ -7,7 +7,8 @@ use crate::mesh::Element;
 use crate::metric::{Corner, Ideal, Metric, opposite_angles};
 use crate::parallel::pace::now;
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Lanes, with_instructions};
+use crate::patch::FourTriangles;
+use crate::patch::lanes::{LANES, Lanes, Points, with_instructions};
 use crate::targets::Surface;
 use crate::topology::Topology;
 use crate::topology::predicates;
@@ -33,6 +34,9 @@ pub struct Quality {
     /// Number of elements that are inverted or flat, or not convex.
     pub inverted: usize,
 }
+
+/// Mean areas by which no formula of a triangle of usual size overflows or loses bits; see [`FourTriangles`].
+const USUAL_AREA: std::ops::Range<f64> = 1e-120..1e120;
 
 /// Sums and extremes over a set of elements.
 #[derive(Clone)]
@@ -109,8 +113,23 @@ impl Quality {
             0.5 * predicates::orientation(points, t).abs() * x * y
         };
         let areas = |_, chunk: &[[u32; 3]]| chunk.iter().map(area).sum::<f64>();
+        let is_plane = surface == Surface::Plane;
+        let areas_by_four = |_, chunk: &[[u32; 3]]| {
+            let mut sum = 0.0;
+            with_instructions!(Level::new(), simd => {
+                let (fours, rest) = chunk.as_chunks();
+                for four in fours {
+                    match FourTriangles::of(simd, points, four).filter(|_| is_plane) {
+                        Some(four) => add_in_order(&mut sum, four.doubled_area * 0.5),
+                        None => four.iter().for_each(|t| sum += area(t)),
+                    }
+                }
+                rest.iter().for_each(|t| sum += area(t));
+            });
+            sum
+        };
         let mut total_area =
-            paced::map_parts(triangles.chunks(1024), areas).await.iter().sum::<f64>();
+            paced::map_parts(triangles.chunks(1024), areas_by_four).await.iter().sum::<f64>();
         if !right.is_empty() {
             let areas = paced::map_parts(right.chunks(1024), areas).await;
             total_area += 0.5 * areas.iter().sum::<f64>();
@@ -120,6 +139,7 @@ impl Quality {
         let shape = |corner: &[u32; 3]| {
             Shape::of(points, corner, surface.lengths_in(points, corner), mean_area)
         };
+        let is_usual = is_plane && USUAL_AREA.contains(&mean_area);
         let tallies = paced::map_parts(triangles.chunks(1024), |chunk, part| {
             let mut tally = Tally::EMPTY;
             with_instructions!(Level::new(), simd => {
@@ -128,7 +148,14 @@ impl Quality {
                     let four = &part[first..part.len().min(first + LANES)];
                     let index = chunk * 1024 + first;
                     let movable = |t: &[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
-                    tally.add(simd, four, index, shape, movable);
+                    let usual = match four.try_into() {
+                        Ok(four) if is_usual => FourTriangles::of(simd, points, four),
+                        _ => None,
+                    };
+                    match usual {
+                        Some(usual) => tally.add_usual(&usual, mean_area, four, index, movable),
+                        None => tally.add(simd, four, index, shape, movable),
+                    }
                     first += LANES;
                 }
             });
@@ -247,6 +274,45 @@ impl Tally {
         tally
     }
 
+    /// Adds four triangles with the bits of [`add`](Self::add), for which no unit need be changed.
+    #[inline(always)]
+    fn add_usual<S: Simd>(
+        &mut self,
+        four: &FourTriangles<S>,
+        mean_area: f64,
+        triangles: &[[u32; 3]],
+        first: usize,
+        movable: impl Fn(&[u32; 3]) -> bool,
+    ) {
+        let &FourTriangles { a, b, c, .. } = four;
+        let corner = Corner { a, b, ideal: Ideal::of_area(mean_area) };
+        let excesses = Metric::every_excess(&corner);
+        for (k, &metric) in Metric::ALL.iter().enumerate() {
+            let square = excesses[k] + metric.ideal_squared();
+            let has_barrier = metric.properties().barrier;
+            let most = if has_barrier { square.min(f64::MAX) } else { square };
+            add_in_order(&mut self.sums[k], most);
+        }
+        let doubled = corner.doubled_area();
+        let (u, v) = (cotangent(a, b, doubled), -cotangent(a, c, doubled));
+        let w = cotangent(b, c, doubled);
+        let ratios = corner.squared_length_sum() * (3f64.sqrt() / 6.0) / doubled;
+        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+        let mut lane = 0;
+        while lane < LANES {
+            self.cotangents[0] = self.cotangents[0].min(least[lane]);
+            self.cotangents[1] = self.cotangents[1].max(most[lane]);
+            let ratio = ratios[lane].min(f64::MAX);
+            if ratio > self.worst.0 {
+                self.worst = (ratio, first + lane);
+            }
+            if ratio > self.worst_movable && movable(&triangles[lane]) {
+                self.worst_movable = ratio;
+            }
+            lane += 1;
+        }
+    }
+
     /// Adds up to four triangles. `first` is the index of the first triangle. `shape` returns the shape of a triangle, and `movable`
     /// whether the triangle has a free vertex.
     #[inline(always)]
@@ -318,6 +384,18 @@ impl Tally {
         }
         self.inverted += usize::from(!shape.is_positive);
     }
+}
+
+/// Returns the cotangents of the angles between edges, given twice the areas.
+#[inline(always)]
+fn cotangent<S: Simd>(u: Points<S>, v: Points<S>, doubled: Lanes<S>) -> Lanes<S> {
+    (u[0] * v[0] + u[1] * v[1]) / doubled
+}
+
+/// Adds four numbers to a sum, one after another.
+#[inline(always)]
+fn add_in_order<S: Simd>(sum: &mut f64, four: Lanes<S>) {
+    *sum = *sum + four[0] + four[1] + four[2] + four[3];
 }
 
 /// Edges of a triangle, divided by `unit` so that no product of edges overflows and the longest edge does not vanish.
@@ -416,6 +494,15 @@ mod tests {
                 }
                 assert_eq!(found.f(metric), sum / 501.0, "{metric}, {spread}");
             }
+            let mut extremes = Tally::EMPTY;
+            for (index, corners) in topology.triangles().iter().enumerate() {
+                extremes.add_extremes(&Shape::of(&points, corners, [1.0; 2], mean), index, true);
+            }
+            let angles = extremes.cotangents.map(|cotangent| 1f64.atan2(cotangent).to_degrees());
+            assert_eq!([found.max_angle, found.min_angle], angles, "{spread}");
+            assert_eq!(found.worst_imr, extremes.worst.0, "{spread}");
+            assert_eq!(found.worst, Element::Triangle(extremes.worst.1), "{spread}");
+            assert_eq!(found.inverted, extremes.inverted, "{spread}");
             points[7][0] = f64::INFINITY;
             let broken = Quality::of(&points, &topology).unwrap();
             assert_eq!(

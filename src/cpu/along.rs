@@ -53,15 +53,15 @@ impl Along<'_> {
     /// Returns the position of a vertex after the move.
     #[inline(always)]
     pub(super) fn to(&self, vertex: u32) -> DVec2 {
-        *self.place(vertex)
+        DVec2::from_array(*self.place(vertex))
     }
 
     #[inline(always)]
-    fn place(&self, vertex: u32) -> &DVec2 {
+    fn place(&self, vertex: u32) -> &[f64; 2] {
         let vertex = vertex as usize;
         match self.moved.get(vertex) {
-            Some(moved) => moved,
-            None => &self.positions[vertex],
+            Some(moved) => moved.as_ref(),
+            None => self.positions[vertex].as_ref(),
         }
     }
 

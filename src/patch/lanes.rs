@@ -4,7 +4,7 @@
 //! nor on which numbers share a vector.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f64x2, f64x4, mask64x4};
+use fearless_simd::{f64x4, mask64x4};
 use glam::DVec2;
 
 use crate::metric::Real;
@@ -175,23 +175,19 @@ fn apart<S: Simd, R>(simd: S, function: impl FnOnce() -> R) -> R {
 #[inline(always)]
 pub(crate) fn points<S: Simd>(simd: S, positions: &[DVec2], vertices: [u32; LANES]) -> Points<S> {
     let [a, b, c, d] = vertices;
-    let (a, b) = (&positions[a as usize], &positions[b as usize]);
-    in_lanes(simd, [a, b, &positions[c as usize], &positions[d as usize]])
+    let (a, b) = (positions[a as usize].as_ref(), positions[b as usize].as_ref());
+    in_lanes(simd, [a, b, positions[c as usize].as_ref(), positions[d as usize].as_ref()])
 }
 
 /// Returns four points, one in each lane.
 #[inline(always)]
-pub(crate) fn in_lanes<S: Simd>(simd: S, [a, b, c, d]: [&DVec2; LANES]) -> Points<S> {
+pub(crate) fn in_lanes<S: Simd>(simd: S, [a, b, c, d]: [&[f64; 2]; LANES]) -> Points<S> {
     // Whole points are loaded and then shuffled. Lanes made of an array of coordinates would be written to memory one by one
     // and read back at once, for which a processor has to wait.
-    let (a, b) = (point(simd, a), point(simd, b));
-    let (ab, cd) = (a.combine(b), point(simd, c).combine(point(simd, d)));
+    let (a, b) = (simd.load_array_ref_f64x2(a), simd.load_array_ref_f64x2(b));
+    let (c, d) = (simd.load_array_ref_f64x2(c), simd.load_array_ref_f64x2(d));
+    let (ab, cd) = (a.combine(b), c.combine(d));
     [ab.unzip_low(cd), ab.unzip_high(cd)]
-}
-
-#[inline(always)]
-fn point<S: Simd>(simd: S, point: &DVec2) -> f64x2<S> {
-    simd.load_array_ref_f64x2(point.as_ref())
 }
 
 /// Gathers the numbers of four vertices into lanes.

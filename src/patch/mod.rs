@@ -16,6 +16,7 @@ mod role;
 pub(crate) mod search_rule;
 #[cfg(test)]
 mod tests;
+mod triangles;
 
 pub(crate) use acceptance::{
     AT_DISC, Circle, GROWTH, MIN_CIRCLE_CURVATURE, is_kept, is_no_worse, is_positive, is_within,
@@ -34,3 +35,4 @@ pub(crate) use newton_step::{Objective, newton_step, step_alone};
 pub(crate) use ring::{LanePatch, Rings, Scratch};
 pub(crate) use role::{AroundVertex, Role};
 pub(crate) use search_rule::SearchRule;
+pub(crate) use triangles::FourTriangles;

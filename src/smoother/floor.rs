@@ -1,6 +1,7 @@
 //! The floor under the worst elements: a run with default options leaves no smaller angle and no larger inverse mean
 //! ratio than the mesh before the run had, among the elements that can move and in the coordinates as stored.
 
+use fearless_simd::Level;
 use glam::DVec2;
 
 use crate::error::MeshError;
@@ -8,7 +9,10 @@ use crate::layout::Problem;
 use crate::options::{Options, WorstBy};
 use crate::outcome::Floored;
 use crate::parallel::paced;
+use crate::patch::FourTriangles;
+use crate::patch::lanes::{LANES, with_instructions};
 use crate::slide::OnCurves;
+use crate::targets::Surface;
 use crate::whole::altitude;
 use crate::worst::{Penalties, WorstShapes};
 
@@ -88,19 +92,38 @@ impl Movable<'_> {
             std::array::from_fn(|k| a[k].and(b[k]))
         };
         let corners = self.smoother.topology.corner_list();
-        let mut worst = none;
-        for (list, is_right) in [(corners.triangles(), false), (corners.of_quadrilaterals(), true)]
-        {
-            let add = |worst: [WorstShapes; LISTS], t: &[u32; 3]| {
-                let of = |k: usize| WorstShapes::of(self.surface, lists[k], t, is_right);
-                std::array::from_fn(|k| worst[k].and(of(k)))
-            };
-            let of_part =
-                |_, part: &[[u32; 3]]| part.iter().filter(|t| self.can_move(t)).fold(none, add);
-            let parts = paced::map_parts(list.chunks(CHUNK), of_part).await;
-            worst = parts.iter().fold(worst, both);
-        }
-        worst
+        let is_plane = self.surface == Surface::Plane;
+        let of_triangles = |_, part: &[[u32; 3]]| {
+            let mut worst = none;
+            with_instructions!(Level::new(), simd => {
+                for four in part.chunks(LANES) {
+                    for (worst, points) in worst.iter_mut().zip(lists) {
+                        let usual = match four.try_into() {
+                            Ok(four) if is_plane => FourTriangles::of(simd, points, four),
+                            _ => None,
+                        };
+                        match usual {
+                            Some(usual) => worst.add_four(&usual, |k| self.can_move(&four[k])),
+                            None => *worst = worst.and(self.worst_of(points, four, false)),
+                        }
+                    }
+                }
+            });
+            worst
+        };
+        let parts = paced::map_parts(corners.triangles().chunks(CHUNK), of_triangles).await;
+        let worst = parts.iter().fold(none, both);
+        let of_quadrilaterals =
+            |_, part: &[[u32; 3]]| lists.map(|points| self.worst_of(points, part, true));
+        let parts = corners.of_quadrilaterals().chunks(CHUNK);
+        paced::map_parts(parts, of_quadrilaterals).await.iter().fold(worst, both)
+    }
+
+    /// Returns the worst shapes of those of some corners that can move, all of triangles or all of quadrilaterals.
+    fn worst_of(&self, points: &[[f64; 2]], corners: &[[u32; 3]], is_right: bool) -> WorstShapes {
+        let moving = corners.iter().filter(|t| self.can_move(t));
+        let shapes = moving.map(|t| WorstShapes::of(self.surface, points, t, is_right));
+        shapes.fold(WorstShapes::NONE, WorstShapes::and)
     }
 }
 

@@ -9,12 +9,12 @@ use crate::parallel::paced;
 
 /// Bound below which the products of a determinant may have lost bits to underflow. About 2^-960, far above the least
 /// positive `f64`.
-const UNDERFLOW: f64 = 1e-289;
+pub(crate) const UNDERFLOW: f64 = 1e-289;
 
 /// Relative rounding error of a determinant. If the determinant of a triangle exceeds this share of the sum of its two
 /// products, rounding cannot have changed its sign (Shewchuk, Discrete Comput. Geom. 18, 1997, the bound of ORIENT2D's
 /// first stage).
-const ROUNDING: f64 = (3.0 + 8.0 * f64::EPSILON) * 0.5 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = (3.0 + 8.0 * f64::EPSILON) * 0.5 * f64::EPSILON;
 
 /// Returns twice the signed area of a triangle. The sign is exact (Shewchuk's adaptive predicate), the value is
 /// rounded, but zero only if the triangle is flat. The result is NaN or infinite if a coordinate is.

@@ -1,5 +1,9 @@
 //! The worst shapes among the triangles of a mesh, in the coordinates as they are stored.
 
+use fearless_simd::prelude::*;
+
+use crate::patch::FourTriangles;
+use crate::patch::lanes::{LANES, Lanes, Points};
 use crate::targets::Surface;
 use crate::topology::predicates::orientation;
 
@@ -55,6 +59,28 @@ impl WorstShapes {
         match doubled_area > 0.0 && cotangent > 0.0 && imr > 0.0 {
             true => Self { cotangent, imr },
             false => Self::FLAT,
+        }
+    }
+
+    /// Adds four triangles of the plane of which those count for which `counts` is true, given their places. The numbers have the
+    /// bits of [`of`](Self::of).
+    #[inline(always)]
+    pub(crate) fn add_four<S: Simd>(
+        &mut self,
+        four: &FourTriangles<S>,
+        counts: impl Fn(usize) -> bool,
+    ) {
+        let &FourTriangles { a, b, c, doubled_area } = four;
+        let (u, v, w) = (dot(a, b), -dot(a, c), dot(b, c));
+        let squares = dot(a, a) + dot(b, b) + dot(c, c);
+        let (cotangent, imr) =
+            (u.max(v).max(w) / doubled_area, squares / (doubled_area * TWO_SQRT_3));
+        let is_worse = cotangent.simd_gt(self.cotangent) | imr.simd_gt(self.imr);
+        if is_worse.all_false() {
+            return;
+        }
+        for lane in (0..LANES).filter(|&lane| counts(lane)) {
+            *self = self.and(Self { cotangent: cotangent[lane], imr: imr[lane] });
         }
     }
 
@@ -116,6 +142,11 @@ impl Products {
         let squares = sides + dot(c, c);
         Self { dots: [dot(a, b), -dot(a, c), dot(b, c)], squares, sides, doubled_area }
     }
+}
+
+#[inline(always)]
+fn dot<S: Simd>(u: Points<S>, v: Points<S>) -> Lanes<S> {
+    u[0] * v[0] + u[1] * v[1]
 }
 
 #[cfg(test)]

@@ -10,53 +10,13 @@ use super::levels::Extent;
 use super::matrix::{ROWS, Square};
 use super::scalar::{Scalar, narrowed};
 use super::slides::Line;
+use super::terms::{Map, Terms, at_corners, before_shear, of_lane, squares_at};
 use crate::layout::Problem;
-use crate::metric::{Corner, Curvature, Curved, H, Metric, OfImr, TargetMap};
+use crate::metric::{Corner, Curvature, Curved, Metric, OfImr};
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Lanes, Points, with_instructions};
+use crate::patch::lanes::{LANES, Lanes, Points, points, with_instructions};
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::{Pattern, UNKNOWNS};
-
-/// The Hessian of a triangle: see [`Curvature`]. Lengths are in units of |C|, so that the numbers keep their digits for
-/// triangles of any stretching.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Terms<T> {
-    pub(super) conformal: [T; 2],
-    pub(super) anticonformal: [T; 2],
-    pub(super) own: [T; 2],
-    pub(super) mixed: [T; 3],
-}
-
-/// The target map of a triangle: a displacement p becomes s p + t p̄ in complex numbers, with real s.
-#[derive(Clone, Copy)]
-pub(super) struct Map<T> {
-    pub(super) scale: T,
-    pub(super) stretch: [T; 2],
-}
-
-impl Map<f64> {
-    fn of(map: &TargetMap<f64>) -> Self {
-        let [xx, xy, yy] = map.0;
-        Self { scale: 0.5 * (xx + yy), stretch: [0.5 * (xx - yy), xy] }
-    }
-}
-
-impl<T: Scalar> Map<T> {
-    /// Transforms the changes of C and D by a displacement to those of the transformed triangle: C' = s C + t D̄ and D' =
-    /// s D + t C̄. The same map leads back from forces on C' and D' to forces on C and D.
-    #[inline(always)]
-    pub(super) fn apply(&self, c: [T; 2], d: [T; 2]) -> [[T; 2]; 2] {
-        let Self { scale, stretch: [x, y] } = *self;
-        [
-            [scale * c[0] + x * d[0] + y * d[1], scale * c[1] + y * d[0] - x * d[1]],
-            [scale * d[0] + x * c[0] + y * c[1], scale * d[1] + y * c[0] - x * c[1]],
-        ]
-    }
-
-    fn narrowed<U: Scalar>(&self) -> Map<U> {
-        Map { scale: U::of(self.scale.wide()), stretch: self.stretch.map(|x| U::of(x.wide())) }
-    }
-}
 
 /// The input of a step: positions, blocks of triangles, and the admitted moves of sliding vertices.
 pub(super) struct Source<'a, T> {
@@ -182,53 +142,118 @@ impl<T: Scalar> Source<'_, T> {
     fn block<S: Simd>(&self, simd: S, curved: impl Curved, block: &Block, part: &mut Part<'_, T>) {
         part.terms.clear();
         part.maps.clear();
+        let has_targets = self.problem.targets().is_some();
         let mut first = 0;
         while first < block.corners.len() {
-            let four = curved.curvature(&self.corners(simd, block, first));
             let count = LANES.min(block.corners.len() - first);
-            let mut lane = 0;
-            while lane < count {
-                let t = &block.corners[first + lane];
-                let vertices = vertices_of(block, t);
-                let is_right = first + lane >= block.triangles;
-                let mut curvature = of_lane(&four, lane);
-                if is_right {
-                    curvature = curvature.times(RIGHT_WEIGHT);
+            if has_targets || first + count > block.triangles {
+                let four = curved.curvature(&self.corners(simd, block, first));
+                let mut lane = 0;
+                while lane < count {
+                    self.add_mapped(block, first + lane, curvature_of_lane(&four, lane), part);
+                    lane += 1;
                 }
-                let map = self.problem.target_map(&vertices).map(|map| Map::of(&map));
-                part.terms.push(terms_of(&curvature));
-                part.maps.extend(map.as_ref().map(Map::narrowed));
-                let Curvature { conformal: c, anticonformal: d, own, rows, .. } = &mut curvature;
-                let mut force = [[own[0] * c[0], own[0] * c[1]], [own[1] * d[0], own[1] * d[1]]];
-                if let Some(map) = map {
-                    force = map.apply(force[0], force[1]);
-                    rows.iter_mut().for_each(|row| *row = map.apply(row[0], row[1]));
-                }
-                let mut force = at_corners(force);
-                let mut rows = [at_corners(rows[0]), at_corners(rows[1]), at_corners(rows[2])];
-                if is_right {
-                    force = before_shear(force);
-                    rows = rows.map(before_shear);
-                }
-                if block.has_sliding_corner(t) {
-                    self.project(block, t, &mut rows);
-                }
-                let mut k = 0;
-                while k < 3 {
-                    let sum = &mut part.sums[t[k] as usize];
-                    let ([a, b], [c, d], [e, f]) = (rows[0][k], rows[1][k], rows[2][k]);
-                    sum[0] += force[k][0];
-                    sum[1] += force[k][1];
-                    sum[2] += a * a + c * c + e * e;
-                    sum[3] += a * b + c * d + e * f;
-                    sum[4] += b * b + d * d + f * f;
-                    k += 1;
-                }
-                self.couple(block, &rows, t, &vertices, part);
-                lane += 1;
+            } else {
+                let four = curved.curvature(&self.triangles(simd, block, first));
+                self.add_triangles(&four, block, first, count, part);
             }
             first += LANES;
         }
+    }
+
+    /// Adds up to four triangles without target maps, from `first` on.
+    #[inline(always)]
+    fn add_triangles<S: Simd>(
+        &self,
+        four: &Curvature<Lanes<S>>,
+        block: &Block,
+        first: usize,
+        count: usize,
+        part: &mut Part<'_, T>,
+    ) {
+        let Curvature { conformal: c, anticonformal: d, own, rows, .. } = four;
+        let terms = Terms::of(four);
+        let force = at_corners([[c[0] * own[0], c[1] * own[0]], [d[0] * own[1], d[1] * own[1]]]);
+        let rows = [at_corners(rows[0]), at_corners(rows[1]), at_corners(rows[2])];
+        let squares = [squares_at(&rows, 0), squares_at(&rows, 1), squares_at(&rows, 2)];
+        let mut lane = 0;
+        while lane < count {
+            let t = &block.corners[first + lane];
+            let vertices = vertices_of(block, t);
+            part.terms.push(terms.lane(lane).narrowed());
+            let row =
+                |[p, q, r]: &[Points<S>; 3]| [of_lane(p, lane), of_lane(q, lane), of_lane(r, lane)];
+            let mut rows = [row(&rows[0]), row(&rows[1]), row(&rows[2])];
+            let slides = block.has_sliding_corner(t);
+            if slides {
+                self.project(block, t, &mut rows);
+            }
+            let mut k = 0;
+            while k < 3 {
+                let square = match slides {
+                    true => squares_at(&rows, k),
+                    false => of_lane(&squares[k], lane),
+                };
+                add_at(&mut part.sums[t[k] as usize], of_lane(&force[k], lane), square);
+                k += 1;
+            }
+            self.couple(block, &rows, t, &vertices, part);
+            lane += 1;
+        }
+    }
+
+    /// Adds the corner `index` of a block, with its target map if there is one, given its derivatives.
+    #[inline(always)]
+    fn add_mapped(
+        &self,
+        block: &Block,
+        index: usize,
+        mut curvature: Curvature,
+        part: &mut Part<'_, T>,
+    ) {
+        let t = &block.corners[index];
+        let vertices = vertices_of(block, t);
+        let is_right = index >= block.triangles;
+        if is_right {
+            curvature = curvature.times(RIGHT_WEIGHT);
+        }
+        let map = self.problem.target_map(&vertices).map(|map| Map::of(&map));
+        part.terms.push(Terms::of(&curvature).narrowed());
+        part.maps.extend(map.as_ref().map(Map::narrowed));
+        let Curvature { conformal: c, anticonformal: d, own, rows, .. } = &mut curvature;
+        let mut force = [[own[0] * c[0], own[0] * c[1]], [own[1] * d[0], own[1] * d[1]]];
+        if let Some(map) = map {
+            force = map.apply(force[0], force[1]);
+            rows.iter_mut().for_each(|row| *row = map.apply(row[0], row[1]));
+        }
+        let mut force = at_corners(force);
+        let mut rows = [at_corners(rows[0]), at_corners(rows[1]), at_corners(rows[2])];
+        if is_right {
+            force = before_shear(force);
+            rows = rows.map(before_shear);
+        }
+        if block.has_sliding_corner(t) {
+            self.project(block, t, &mut rows);
+        }
+        let mut k = 0;
+        while k < 3 {
+            add_at(&mut part.sums[t[k] as usize], force[k], squares_at(&rows, k));
+            k += 1;
+        }
+        self.couple(block, &rows, t, &vertices, part);
+    }
+
+    /// Returns four triangles of a block, from `first` on. The last triangle stands for missing ones.
+    #[inline(always)]
+    fn triangles<S: Simd>(&self, simd: S, block: &Block, first: usize) -> Corner<Lanes<S>> {
+        let last = block.triangles - 1;
+        let vertices = |lane: usize| vertices_of(block, &block.corners[last.min(first + lane)]);
+        let [t, u, v, w] = [vertices(0), vertices(1), vertices(2), vertices(3)];
+        let p = points(simd, self.positions, [t[0], u[0], v[0], w[0]]);
+        let q = points(simd, self.positions, [t[1], u[1], v[1], w[1]]);
+        let r = points(simd, self.positions, [t[2], u[2], v[2], w[2]]);
+        let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+        Corner { a, b, ideal: self.problem.ideal() }
     }
 
     /// Returns the corners of four triangles of a block, from `first` on. The last triangle stands for missing ones.
@@ -332,14 +357,14 @@ fn vertices_of(block: &Block, t: &[u32; 3]) -> [u32; 3] {
 
 /// Returns the derivatives of one of four triangles.
 #[inline(always)]
-fn of_lane<S: Simd>(four: &Curvature<Lanes<S>>, lane: usize) -> Curvature {
-    let Curvature { conformal: c, anticonformal: d, own, mixed, rows } = four;
-    let row = |[x, y]: &[Points<S>; 2]| [[x[0][lane], x[1][lane]], [y[0][lane], y[1][lane]]];
+fn curvature_of_lane<S: Simd>(four: &Curvature<Lanes<S>>, lane: usize) -> Curvature {
+    let Curvature { conformal, anticonformal, own, mixed, rows } = four;
+    let row = |[x, y]: &[Points<S>; 2]| [of_lane(x, lane), of_lane(y, lane)];
     Curvature {
-        conformal: [c[0][lane], c[1][lane]],
-        anticonformal: [d[0][lane], d[1][lane]],
-        own: [own[0][lane], own[1][lane]],
-        mixed: [mixed[0][lane], mixed[1][lane], mixed[2][lane]],
+        conformal: of_lane(conformal, lane),
+        anticonformal: of_lane(anticonformal, lane),
+        own: of_lane(own, lane),
+        mixed: of_lane(mixed, lane),
         rows: [row(&rows[0]), row(&rows[1]), row(&rows[2])],
     }
 }
@@ -360,53 +385,17 @@ fn inverse_along<T: Scalar>(second: f64, line: &Line<T>) -> [T; 3] {
     narrowed([x * x * by, x * y * by, y * y * by])
 }
 
-/// Returns the terms of a triangle with lengths in units of |C|.
-#[inline(always)]
-fn terms_of<T: Scalar>(curvature: &Curvature) -> Terms<T> {
-    let Curvature { conformal: c, anticonformal: d, own, mixed, .. } = *curvature;
-    let square = c[0] * c[0] + c[1] * c[1];
-    let by = 1.0 / square.sqrt();
-    Terms {
-        conformal: [T::of(c[0] * by), T::of(c[1] * by)],
-        anticonformal: [T::of(d[0] * by), T::of(d[1] * by)],
-        own: [T::of(own[0]), T::of(own[1])],
-        mixed: [T::of(mixed[0] * square), T::of(mixed[1] * square), T::of(mixed[2] * square)],
-    }
-}
-
-/// Returns the forces on the three corners of a triangle, given those on C and D: F + G, w F + w̄ G and w̄ F + w G.
-#[inline(always)]
-fn at_corners([c, d]: [[f64; 2]; 2]) -> [[f64; 2]; 3] {
-    let sum = [c[0] + d[0], c[1] + d[1]];
-    let turned = [-H * (c[1] - d[1]), H * (c[0] - d[0])];
-    [
-        sum,
-        [turned[0] - 0.5 * sum[0], turned[1] - 0.5 * sum[1]],
-        [-turned[0] - 0.5 * sum[0], -turned[1] - 0.5 * sum[1]],
-    ]
-}
-
 /// The weight of a corner of a quadrilateral.
 const RIGHT_WEIGHT: f64 = 0.25;
 
-/// Returns the forces on the vertices of a corner of a quadrilateral, given those on the vertices of its sheared triangle. The
-/// third vertex of the triangle is p + (q - p)/2 + √3/2 (r - p) for the vertices p, q and r.
+/// Adds the force and the diagonal block of a triangle to those of its vertex.
 #[inline(always)]
-pub(super) fn before_shear<T: Scalar>([p, q, r]: [[T; 2]; 3]) -> [[T; 2]; 3] {
-    let (half, h, rest) = (T::of(0.5), T::of(H), T::of(0.5 - H));
-    [
-        [p[0] + rest * r[0], p[1] + rest * r[1]],
-        [q[0] + half * r[0], q[1] + half * r[1]],
-        [h * r[0], h * r[1]],
-    ]
-}
-
-/// Returns the displacements of the vertices of the sheared triangle of a corner, given those of the corner's vertices.
-#[inline(always)]
-pub(super) fn sheared<T: Scalar>([p, q, r]: [[T; 2]; 3]) -> [[T; 2]; 3] {
-    let (half, h, rest) = (T::of(0.5), T::of(H), T::of(0.5 - H));
-    let third = [0, 1].map(|k| rest * p[k] + half * q[k] + h * r[k]);
-    [p, q, third]
+fn add_at(sum: &mut AtVertex, force: [f64; 2], square: [f64; 3]) {
+    sum[0] += force[0];
+    sum[1] += force[1];
+    sum[2] += square[0];
+    sum[3] += square[1];
+    sum[4] += square[2];
 }
 
 impl Extent {

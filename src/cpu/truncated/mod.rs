@@ -12,6 +12,7 @@ mod product;
 mod scalar;
 mod slides;
 mod solve;
+mod terms;
 #[cfg(test)]
 mod tests;
 

@@ -3,8 +3,9 @@
 use fearless_simd::Level;
 
 use super::blocks::{Block, Blocks, receive};
-use super::derivatives::{Map, Numbers, Terms, before_shear, sheared};
+use super::derivatives::Numbers;
 use super::scalar::Scalar;
+use super::terms::{Map, Terms, before_shear, sheared};
 use crate::metric::H;
 use crate::parallel::paced;
 use crate::patch::lanes::with_instructions;

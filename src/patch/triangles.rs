@@ -1,0 +1,69 @@
+//! Four triangles of the plane, one in each lane.
+
+use fearless_simd::prelude::*;
+
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, in_lanes};
+use crate::topology::predicates::{ROUNDING, UNDERFLOW};
+
+/// Limits of the longest coordinate of edges between which no product of edges overflows or loses bits.
+const USUAL: [f64; 2] = [1e-60, 1e60];
+
+/// Four triangles of the plane whose exact areas are surely positive, in coordinates as stored. The numbers have the bits that
+/// formulas of one triangle give.
+#[derive(Clone, Copy)]
+pub(crate) struct FourTriangles<S: Simd> {
+    /// The edge from the first corner to the second.
+    pub(crate) a: Points<S>,
+    /// The edge from the first corner to the third.
+    pub(crate) b: Points<S>,
+    /// The edge from the second corner to the third.
+    pub(crate) c: Points<S>,
+    /// Twice the area, as [`orientation`](crate::topology::predicates::orientation) returns it.
+    pub(crate) doubled_area: Lanes<S>,
+}
+
+impl<S: Simd> FourTriangles<S> {
+    /// Returns four triangles with vertices at `points`. `None` if an area is so small that only exact arithmetic tells its sign,
+    /// if a triangle is inverted, or if the size of a triangle is beyond [`USUAL`] limits.
+    #[inline(always)]
+    pub(crate) fn of(
+        simd: S,
+        points: &[[f64; 2]],
+        [t, u, v, w]: &[[u32; 3]; LANES],
+    ) -> Option<Self> {
+        let p = corners(simd, points, [t[0], u[0], v[0], w[0]]);
+        let q = corners(simd, points, [t[1], u[1], v[1], w[1]]);
+        let r = corners(simd, points, [t[2], u[2], v[2], w[2]]);
+        let (a, b) = (edge(p, q), edge(p, r));
+        let c = edge(q, r);
+        let (left, right) = ((p[0] - r[0]) * (q[1] - r[1]), (p[1] - r[1]) * (q[0] - r[0]));
+        let doubled_area = left - right;
+        let least = (left.abs() + right.abs()) * ROUNDING + UNDERFLOW;
+        let size = longer(longer(longest(a), longest(b)), longest(c));
+        let is_usual = size.simd_gt(USUAL[0]) & size.simd_lt(USUAL[1]);
+        let of_edges = a[0] * b[1] - a[1] * b[0];
+        let is_positive: Mask<S> = doubled_area.simd_gt(least) & of_edges.simd_gt(0.0);
+        (is_usual & is_positive).all_true().then_some(Self { a, b, c, doubled_area })
+    }
+}
+
+#[inline(always)]
+fn corners<S: Simd>(simd: S, points: &[[f64; 2]], [a, b, c, d]: [u32; LANES]) -> Points<S> {
+    let (a, b) = (&points[a as usize], &points[b as usize]);
+    in_lanes(simd, [a, b, &points[c as usize], &points[d as usize]])
+}
+
+#[inline(always)]
+fn edge<S: Simd>(from: Points<S>, to: Points<S>) -> Points<S> {
+    [to[0] - from[0], to[1] - from[1]]
+}
+
+#[inline(always)]
+fn longest<S: Simd>(edge: Points<S>) -> Lanes<S> {
+    longer(edge[0].abs(), edge[1].abs())
+}
+
+#[inline(always)]
+fn longer<S: Simd>(x: Lanes<S>, y: Lanes<S>) -> Lanes<S> {
+    SimdFloat::max(x, y)
+}
