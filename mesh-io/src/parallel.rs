@@ -50,7 +50,8 @@ fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
         // Handing one task to another thread and waiting for its end takes longer than most tasks.
         return (0..count).for_each(task);
     }
-    (0..count).into_par_iter().for_each(task);
+    // Ranges are divided down to single tasks, so that no thread keeps a long range at the end.
+    (0..count).into_par_iter().with_max_len(1).for_each(task);
 }
 
 #[cfg(test)]
