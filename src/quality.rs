@@ -1,6 +1,6 @@
 //! Quality statistics of a mesh.
 
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::prelude::*;
 
 use crate::error::MeshError;
 use crate::mesh::Element;
@@ -113,20 +113,19 @@ impl Quality {
             0.5 * predicates::orientation(points, t).abs() * x * y
         };
         let areas = |_, chunk: &[[u32; 3]]| chunk.iter().map(area).sum::<f64>();
-        let is_plane = surface == Surface::Plane;
         let areas_by_four = |_, chunk: &[[u32; 3]]| {
-            let mut sum = 0.0;
-            with_instructions!(Level::new(), simd => {
+            with_instructions!(simd => {
                 let (fours, rest) = chunk.as_chunks();
+                let mut sum = 0.0;
                 for four in fours {
-                    match FourTriangles::of(simd, points, four).filter(|_| is_plane) {
+                    match FourTriangles::of(simd, surface, points, four) {
                         Some(four) => add_in_order(&mut sum, four.doubled_area * 0.5),
                         None => four.iter().for_each(|t| sum += area(t)),
                     }
                 }
                 rest.iter().for_each(|t| sum += area(t));
-            });
-            sum
+                sum
+            }, alone => chunk.iter().map(area).sum::<f64>())
         };
         let mut total_area =
             paced::map_parts(triangles.chunks(1024), areas_by_four).await.iter().sum::<f64>();
@@ -139,26 +138,31 @@ impl Quality {
         let shape = |corner: &[u32; 3]| {
             Shape::of(points, corner, surface.lengths_in(points, corner), mean_area)
         };
-        let is_usual = is_plane && USUAL_AREA.contains(&mean_area);
+        let is_usual = USUAL_AREA.contains(&mean_area);
+        let movable = |t: &[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
         let tallies = paced::map_parts(triangles.chunks(1024), |chunk, part| {
             let mut tally = Tally::EMPTY;
-            with_instructions!(Level::new(), simd => {
-                let mut first = 0;
-                while first < part.len() {
-                    let four = &part[first..part.len().min(first + LANES)];
-                    let index = chunk * 1024 + first;
-                    let movable = |t: &[u32; 3]| t.iter().any(|&v| topology.free()[v as usize]);
-                    let usual = match four.try_into() {
-                        Ok(four) if is_usual => FourTriangles::of(simd, points, four),
-                        _ => None,
+            let first = chunk * 1024;
+            let alone = |tally: &mut Tally, triangles: &[[u32; 3]], first: usize| {
+                for (index, t) in (first..).zip(triangles) {
+                    tally.add_alone(&shape(t), index, movable(t));
+                }
+            };
+            with_instructions!(simd => {
+                let (fours, rest) = part.as_chunks();
+                for (k, four) in fours.iter().enumerate() {
+                    let at = first + LANES * k;
+                    let usual = match is_usual {
+                        true => FourTriangles::of(simd, surface, points, four),
+                        false => None,
                     };
                     match usual {
-                        Some(usual) => tally.add_usual(&usual, mean_area, four, index, movable),
-                        None => tally.add(simd, four, index, shape, movable),
+                        Some(usual) => tally.add_usual(&usual, mean_area, four, at, movable),
+                        None => alone(&mut tally, four, at),
                     }
-                    first += LANES;
                 }
-            });
+                alone(&mut tally, rest, first + part.len() - rest.len());
+            }, alone => alone(&mut tally, part, first));
             tally
         });
         let mut total = tallies.await.iter().fold(Tally::EMPTY, Tally::and);
@@ -217,8 +221,6 @@ struct Shape {
     corner: Corner<f64>,
     /// The cotangents of the three angles.
     cotangents: [f64; 3],
-    /// The unit of the edges of the corner, a power of two.
-    unit: f64,
     /// Whether the exact area is positive.
     is_positive: bool,
 }
@@ -233,7 +235,7 @@ impl Shape {
         let doubled = corner.doubled_area().abs();
         let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
         let cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
-        Self { corner, cotangents, unit, is_positive }
+        Self { corner, cotangents, is_positive }
     }
 
     /// Returns the inverse mean ratio, infinite if the exact area is not positive.
@@ -274,7 +276,7 @@ impl Tally {
         tally
     }
 
-    /// Adds four triangles with the bits of [`add`](Self::add), for which no unit need be changed.
+    /// Adds four triangles with the bits of [`add_alone`](Self::add_alone), for which no unit need be changed.
     #[inline(always)]
     fn add_usual<S: Simd>(
         &mut self,
@@ -313,60 +315,14 @@ impl Tally {
         }
     }
 
-    /// Adds up to four triangles. `first` is the index of the first triangle. `shape` returns the shape of a triangle, and `movable`
-    /// whether the triangle has a free vertex.
-    #[inline(always)]
-    fn add<S: Simd>(
-        &mut self,
-        simd: S,
-        triangles: &[[u32; 3]],
-        first: usize,
-        shape: impl Fn(&[u32; 3]) -> Shape,
-        movable: impl Fn(&[u32; 3]) -> bool,
-    ) {
-        let mut shapes = [shape(&triangles[0]); LANES];
-        let mut lane = 0;
-        while lane < triangles.len() {
-            if lane > 0 {
-                shapes[lane] = shape(&triangles[lane]);
-            }
-            self.add_extremes(&shapes[lane], first + lane, movable(&triangles[lane]));
-            lane += 1;
+    /// Adds a triangle.
+    #[inline(never)]
+    fn add_alone(&mut self, shape: &Shape, index: usize, movable: bool) {
+        self.add_extremes(shape, index, movable);
+        let excesses = Metric::every_excess(&shape.corner);
+        for ((sum, excess), &metric) in self.sums.iter_mut().zip(excesses).zip(Metric::ALL) {
+            *sum += shape.square(excess, metric);
         }
-        let excesses = Self::excesses(simd, &shapes);
-        for (k, &metric) in Metric::ALL.iter().enumerate() {
-            for (shape, of_lane) in shapes[..triangles.len()].iter().zip(&excesses[k]) {
-                self.sums[k] += shape.square(*of_lane, metric);
-            }
-        }
-    }
-
-    /// Returns q² - ideal² of four triangles by each metric.
-    #[inline(always)]
-    fn excesses<S: Simd>(simd: S, shapes: &[Shape; LANES]) -> [[f64; LANES]; Metric::ALL.len()] {
-        /// Least ratio of two units with which no product of edges underflows in the larger unit.
-        const SIMILAR: f64 = 1e-60;
-        let units = shapes.each_ref().map(|shape| shape.unit);
-        let most = units.into_iter().fold(0.0, f64::max);
-        let least = units.into_iter().fold(f64::INFINITY, f64::min);
-        let are_similar = most.is_finite() && least >= SIMILAR * most;
-        if !are_similar {
-            let each = shapes.each_ref().map(|shape| Metric::every_excess(&shape.corner));
-            return std::array::from_fn(|k| each.each_ref().map(|own| own[k]));
-        }
-        // Units are powers of two, so that the change of the unit rounds nothing.
-        let of = |get: fn(&Corner<f64>) -> f64| {
-            let scaled = shapes.each_ref().map(|shape| get(&shape.corner) * (shape.unit / most));
-            Lanes::simd_from(simd, scaled)
-        };
-        let largest = shapes.iter().find(|shape| shape.unit == most).unwrap_or(&shapes[0]);
-        let four = Corner {
-            a: [of(|corner| corner.a[0]), of(|corner| corner.a[1])],
-            b: [of(|corner| corner.b[0]), of(|corner| corner.b[1])],
-            ideal: largest.corner.ideal,
-        };
-        let excesses = Metric::every_excess(&four);
-        std::array::from_fn(|k| std::array::from_fn(|lane| excesses[k][lane]))
     }
 
     /// Adds the angles, the inverse mean ratio and the orientation of an element.

@@ -1,6 +1,6 @@
 //! The objective over all elements, on the CPU.
 
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::cpu::along::Along;
@@ -82,7 +82,7 @@ async fn mean(
     }
     let formulas = metric.formulas();
     let of_part = |_, part: CornerPart<'_>| {
-        with_instructions!(Level::new(), simd => {
+        with_instructions!(simd => {
             excess::<_, true, true>(simd, formulas, smoothing, problem, positions, part.corners)
         })
     };
@@ -113,7 +113,7 @@ pub(crate) async fn mean_excess_along(
     if !right.corners.is_empty() {
         let formulas = step.metric.formulas();
         let of_part = |_, part: CornerPart<'_>| {
-            with_instructions!(Level::new(), simd => {
+            with_instructions!(simd => {
                 excess_along::<_, true, true>(simd, formulas, problem, along, step, part.corners)
             })
         };

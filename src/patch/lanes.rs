@@ -4,11 +4,21 @@
 //! nor on which numbers share a vector.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f64x4, mask64x4};
+use fearless_simd::{Level, f64x4, mask64x4};
 use glam::DVec2;
 
 use crate::metric::Real;
 use crate::patch::numbers::{self, Numbers};
+
+/// Returns the instructions of this processor, but those of any processor of the target while a test leaves vectors out.
+#[inline(always)]
+pub(crate) fn level() -> Level {
+    #[cfg(test)]
+    if ARE_VECTORS_LEFT_OUT.load(std::sync::atomic::Ordering::Relaxed) {
+        return Level::baseline();
+    }
+    Level::new()
+}
 
 /// Evaluates an expression with `$f` bound to the formulas of a metric, `$simd` to the best instruction set for which
 /// the code is compiled, and the constant `$general` to whether the copy of the code serves target maps and bounds.
@@ -20,7 +30,7 @@ use crate::patch::numbers::{self, Numbers};
 macro_rules! with_lanes {
     ($maps:expr, $bounded:expr, $metric:expr, $simd:ident, $f:ident, $general:ident => $body:expr) => {
         'done: {
-            let level = fearless_simd::Level::new();
+            let level = $crate::patch::lanes::level();
             if $crate::patch::lanes::HAS_COPIES && $maps.is_none() && !$bounded {
                 #[allow(dead_code)]
                 const $general: bool = false;
@@ -53,17 +63,35 @@ macro_rules! with_lanes {
                 );
             }
             let $f = $metric.formulas();
-            $crate::patch::lanes::with_instructions!(level, $simd => $body)
+            $crate::patch::lanes::with_instructions!($simd => $body)
         }
     };
 }
 pub(crate) use with_lanes;
 
 /// Evaluates an expression with `$simd` bound to the instruction set for which the expression is compiled: AVX2 on x86
-/// if the processor has AVX2.
+/// if the processor has AVX2. Without such instructions, evaluates the expression `$alone` if one is given: code that needs no
+/// vectors. Large code for vectors of processors that have none takes minutes to compile.
 macro_rules! with_instructions {
-    ($level:expr, $simd:ident => $body:expr) => {{
-        let level = $level;
+    ($simd:ident => $body:expr, alone => $alone:expr) => {{
+        let level = $crate::patch::lanes::level();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match level.as_avx2() {
+            Some($simd) => fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $body,
+            ),
+            None => $alone,
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        match level.is_fallback() {
+            true => $alone,
+            false => fearless_simd::dispatch!(level, $simd => $body),
+        }
+    }};
+    ($simd:ident => $body:expr) => {{
+        let level = $crate::patch::lanes::level();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         match level.as_avx2() {
             Some($simd) => fearless_simd::Simd::vectorize(
@@ -166,8 +194,9 @@ impl<S: Simd> Numbers for Lanes<S> {
     }
 }
 
+/// Calls a function that is compiled as separate code with the instructions of `simd`; see [`Real::apart`].
 #[inline(never)]
-fn apart<S: Simd, R>(simd: S, function: impl FnOnce() -> R) -> R {
+pub(crate) fn apart<S: Simd, R>(simd: S, function: impl FnOnce() -> R) -> R {
     simd.vectorize(function)
 }
 
@@ -218,4 +247,19 @@ pub(crate) fn vertex_maps<S: Simd>(
         Lanes::simd_from(simd, numbers)
     };
     [lane(0), lane(1), lane(2)]
+}
+
+#[cfg(test)]
+static ARE_VECTORS_LEFT_OUT: std::sync::atomic::AtomicBool =
+    std::sync::atomic::AtomicBool::new(false);
+
+/// Calls a function that uses the instructions of any processor of the target alone. Tests at the same time do so too, which
+/// changes no bit of theirs.
+#[cfg(test)]
+pub(crate) fn without_vectors<R>(of: impl FnOnce() -> R) -> R {
+    use std::sync::atomic::Ordering::Relaxed;
+    ARE_VECTORS_LEFT_OUT.store(true, Relaxed);
+    let found = of();
+    ARE_VECTORS_LEFT_OUT.store(false, Relaxed);
+    found
 }

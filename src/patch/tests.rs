@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::ops::Mul;
 
-use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use glam::DVec2;
 
@@ -65,7 +64,7 @@ fn a_newton_step_in_lanes_has_the_bits_of_the_step_of_each_vertex_alone() {
         for shape_guard in [f64::INFINITY, 1.5] {
             let (formulas, smoothing) = (metric.formulas(), Smoothing::of(3));
             let rule = rule(metric, 1.5);
-            let together = with_instructions!(Level::new(), simd => {
+            let together = with_instructions!(simd => {
                 let mut scratch = Scratch::new();
                 let rings = Rings::<_, false>::gather(
                     simd, &problem, problem.positions(), [0; LANES], &mut scratch,

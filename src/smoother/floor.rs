@@ -1,7 +1,6 @@
 //! The floor under the worst elements: a run with default options leaves no smaller angle and no larger inverse mean
 //! ratio than the mesh before the run had, among the elements that can move and in the coordinates as stored.
 
-use fearless_simd::Level;
 use glam::DVec2;
 
 use crate::error::MeshError;
@@ -10,9 +9,8 @@ use crate::options::{Options, WorstBy};
 use crate::outcome::Floored;
 use crate::parallel::paced;
 use crate::patch::FourTriangles;
-use crate::patch::lanes::{LANES, with_instructions};
+use crate::patch::lanes::with_instructions;
 use crate::slide::OnCurves;
-use crate::targets::Surface;
 use crate::whole::altitude;
 use crate::worst::{Penalties, WorstShapes};
 
@@ -92,24 +90,21 @@ impl Movable<'_> {
             std::array::from_fn(|k| a[k].and(b[k]))
         };
         let corners = self.smoother.topology.corner_list();
-        let is_plane = self.surface == Surface::Plane;
         let of_triangles = |_, part: &[[u32; 3]]| {
-            let mut worst = none;
-            with_instructions!(Level::new(), simd => {
-                for four in part.chunks(LANES) {
+            let alone = |triangles| lists.map(|points| self.worst_of(points, triangles, false));
+            with_instructions!(simd => {
+                let (fours, rest) = part.as_chunks();
+                let mut worst = alone(rest);
+                for four in fours {
                     for (worst, points) in worst.iter_mut().zip(lists) {
-                        let usual = match four.try_into() {
-                            Ok(four) if is_plane => FourTriangles::of(simd, points, four),
-                            _ => None,
-                        };
-                        match usual {
+                        match FourTriangles::of(simd, self.surface, points, four) {
                             Some(usual) => worst.add_four(&usual, |k| self.can_move(&four[k])),
                             None => *worst = worst.and(self.worst_of(points, four, false)),
                         }
                     }
                 }
-            });
-            worst
+                worst
+            }, alone => alone(part))
         };
         let parts = paced::map_parts(corners.triangles().chunks(CHUNK), of_triangles).await;
         let worst = parts.iter().fold(none, both);

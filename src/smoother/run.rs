@@ -163,8 +163,13 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
+    use crate::metric::Metric;
     use crate::options::WorstBy;
     use crate::parallel::pace::polled;
+    use crate::patch::lanes::without_vectors;
+    use crate::quality::Quality;
+    use crate::run::truncated::fixtures;
+    use crate::targets::Surface;
 
     /// Returns a lattice of squares cut in two, with its inner vertices moved, and one of them nearly onto an edge.
     fn lattice(n: u32) -> Mesh {
@@ -187,6 +192,30 @@ mod tests {
         let moved = [0, 1].map(|i| points[p][i] + (1.0 - 1e-7) * (middle(i) - points[p][i]));
         points[p] = moved;
         Mesh { points, triangles, ..Mesh::default() }
+    }
+
+    /// Processors without vector instructions take other code in places.
+    #[test]
+    fn runs_have_the_bits_of_a_processor_without_vectors() {
+        let mixed = fixtures::quadrilaterals(17, |cell| cell % 3 == 0);
+        let meshes = [lattice(20), mixed, fixtures::hub(40), fixtures::lattice(15, 30.0)];
+        for mesh in &meshes {
+            let smoother = Smoother::new(mesh).unwrap();
+            for metric in [Metric::Imr, Metric::Rms, Metric::SoftSize] {
+                let options = Options { scheme: metric.into(), ..Options::default() };
+                let run = || {
+                    let outcome = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
+                    let bits: Vec<u64> =
+                        outcome.points.as_flattened().iter().map(|x| x.to_bits()).collect();
+                    let quality = [Surface::Plane, Surface::Sphere].map(|surface| {
+                        let all = [&mesh.points, &outcome.points];
+                        all.map(|points| Quality::on(surface, points, smoother.topology()).unwrap())
+                    });
+                    (bits, quality)
+                };
+                assert_eq!(run(), without_vectors(run), "{metric}");
+            }
+        }
     }
 
     /// With a budget of zero, each thread does one task in a poll: at most [`DEGREE_BLOCK`] visits of a sweep.

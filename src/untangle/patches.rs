@@ -1,6 +1,5 @@
 //! Loops of untangling over vertices and corners, in groups of four (one in each lane).
 
-use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use glam::DVec2;
 
@@ -45,7 +44,7 @@ impl Tangle<'_> {
     ) -> Vec<[DVec2; LANES]> {
         let mut found = vec![[DVec2::ZERO; LANES]; batches.len()];
         for_each_chunk(&mut found, BATCHES, |first, found| {
-            with_instructions!(Level::new(), simd => {
+            with_instructions!(simd => {
                 let (mut scratch, mut corners) = (Vec::new(), Vec::new());
                 for (found, &batch) in found.iter_mut().zip(&batches[first..]) {
                     let at = points(simd, self.positions, batch);
@@ -69,7 +68,7 @@ impl Tangle<'_> {
     pub(super) fn energy(&self, epsilon: f64) -> f64 {
         let sums = map_parts(
             self.problem.triangles().chunks(TRIANGLES),
-            |_, triangles| with_instructions!(Level::new(), simd => self.energy_of(simd, triangles, epsilon)),
+            |_, triangles| with_instructions!(simd => self.energy_of(simd, triangles, epsilon)),
         );
         let sum: f64 = sums.into_iter().sum();
         if !self.problem.has_quadrilaterals() {

@@ -1,7 +1,7 @@
 //! The pass over all triangles that computes the numbers of a Newton step: the gradient, the Hessian of each triangle, and
 //! the sums of its positive semidefinite part at the vertices and over aggregates.
 
-use fearless_simd::{Level, prelude::*};
+use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use super::blocks::{Block, Blocks, receive, split};
@@ -14,7 +14,7 @@ use super::terms::{Map, Terms, at_corners, before_shear, of_lane, squares_at};
 use crate::layout::Problem;
 use crate::metric::{Corner, Curvature, Curved, Metric, OfImr};
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Lanes, Points, points, with_instructions};
+use crate::patch::lanes::{LANES, Lanes, Points, apart, points, with_instructions};
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::{Pattern, UNKNOWNS};
 
@@ -79,10 +79,14 @@ impl<T: Scalar> Source<'_, T> {
                 groups: couplings.groups(block),
                 sums: vec![AtVertex::default(); block.vertices.len()],
             };
-            with_instructions!(Level::new(), simd => match metric.curved() {
+            part.terms.clear();
+            part.maps.clear();
+            with_instructions!(simd => match metric.curved() {
                 Some(_) if metric == Metric::Imr => self.block(simd, OfImr, block, &mut part),
                 Some(curved) => self.block(simd, curved, block, &mut part),
                 None => {}
+            }, alone => if let Some(curved) = metric.curved() {
+                self.block_alone(curved, block, &mut part);
             });
             let Part { sums, entries, .. } = part;
             shared.copy_from_slice(&sums[block.foreign()]);
@@ -140,22 +144,30 @@ impl<T: Scalar> Source<'_, T> {
 
     #[inline(always)]
     fn block<S: Simd>(&self, simd: S, curved: impl Curved, block: &Block, part: &mut Part<'_, T>) {
-        part.terms.clear();
-        part.maps.clear();
         let has_targets = self.problem.targets().is_some();
         let mut first = 0;
         while first < block.corners.len() {
             let count = LANES.min(block.corners.len() - first);
-            if has_targets || first + count > block.triangles {
-                let four = curved.curvature(&self.corners(simd, block, first));
-                let mut lane = 0;
-                while lane < count {
-                    self.add_mapped(block, first + lane, curvature_of_lane(&four, lane), part);
-                    lane += 1;
-                }
-            } else {
-                let four = curved.curvature(&self.triangles(simd, block, first));
+            let is_usual = !has_targets && first + count <= block.triangles;
+            let four = match is_usual {
+                true => self.triangles(simd, block, first),
+                false => self.corners(simd, block, first),
+            };
+            let four = curved.curvature(&four);
+            if is_usual {
                 self.add_triangles(&four, block, first, count, part);
+            } else {
+                let mut index = first;
+                while index < first + count {
+                    let rows =
+                        self.add(block, index, curvature_of_lane(&four, index - first), part);
+                    apart(
+                        simd,
+                        #[inline(always)]
+                        || self.couple(block, &rows, &block.corners[index], part),
+                    );
+                    index += 1;
+                }
             }
             first += LANES;
         }
@@ -179,7 +191,6 @@ impl<T: Scalar> Source<'_, T> {
         let mut lane = 0;
         while lane < count {
             let t = &block.corners[first + lane];
-            let vertices = vertices_of(block, t);
             part.terms.push(terms.lane(lane).narrowed());
             let row =
                 |[p, q, r]: &[Points<S>; 3]| [of_lane(p, lane), of_lane(q, lane), of_lane(r, lane)];
@@ -197,20 +208,32 @@ impl<T: Scalar> Source<'_, T> {
                 add_at(&mut part.sums[t[k] as usize], of_lane(&force[k], lane), square);
                 k += 1;
             }
-            self.couple(block, &rows, t, &vertices, part);
+            self.couple(block, &rows, t, part);
             lane += 1;
         }
     }
 
-    /// Adds the corner `index` of a block, with its target map if there is one, given its derivatives.
+    /// Does the work of [`block`](Self::block) without vectors.
+    fn block_alone(&self, curved: impl Curved, block: &Block, part: &mut Part<'_, T>) {
+        for (index, t) in block.corners.iter().enumerate() {
+            let is_right = index >= block.triangles;
+            let position = |v: u32| self.positions[v as usize];
+            let corner = self.problem.corner_of(is_right, &vertices_of(block, t), position);
+            let rows = self.add(block, index, curved.curvature(&corner), part);
+            self.couple(block, &rows, t, part);
+        }
+    }
+
+    /// Adds the corner `index` of a block, with its target map if there is one, given its derivatives: its terms, and its sums at
+    /// the vertices. Returns its rows.
     #[inline(always)]
-    fn add_mapped(
+    fn add(
         &self,
         block: &Block,
         index: usize,
         mut curvature: Curvature,
         part: &mut Part<'_, T>,
-    ) {
+    ) -> [[[f64; 2]; 3]; 3] {
         let t = &block.corners[index];
         let vertices = vertices_of(block, t);
         let is_right = index >= block.triangles;
@@ -240,7 +263,7 @@ impl<T: Scalar> Source<'_, T> {
             add_at(&mut part.sums[t[k] as usize], force[k], squares_at(&rows, k));
             k += 1;
         }
-        self.couple(block, &rows, t, &vertices, part);
+        rows
     }
 
     /// Returns four triangles of a block, from `first` on. The last triangle stands for missing ones.
@@ -296,7 +319,6 @@ impl<T: Scalar> Source<'_, T> {
         block: &Block,
         rows: &[[[f64; 2]; 3]; 3],
         t: &[u32; 3],
-        vertices: &[u32; 3],
         part: &mut Part<'_, T>,
     ) {
         let of = |v: u32| part.groups[v as usize];
@@ -306,6 +328,7 @@ impl<T: Scalar> Source<'_, T> {
         if pairs.is_empty() {
             return;
         }
+        let vertices = vertices_of(block, t);
         // Each row by the four unknowns of each aggregate.
         let mut by = [[[T::default(); UNKNOWNS]; 3]; 3];
         let mut k = 0;

@@ -1,7 +1,5 @@
 //! Sparse symmetric matrices of 4x4 blocks: one block row for each aggregate, which moves, turns and scales.
 
-use fearless_simd::Level;
-
 use super::scalar::Scalar;
 use crate::parallel::paced;
 use crate::patch::lanes::with_instructions;
@@ -61,7 +59,7 @@ impl<T: Scalar> Matrix<T> {
         of: impl Fn(usize, &mut Quad<T>) + Sync + Send,
     ) {
         paced::for_each_chunk(x, ROWS, |first, x| {
-            with_instructions!(Level::new(), simd => {
+            with_instructions!(simd => {
                 let _ = simd;
                 let mut at = 0;
                 while at < x.len() {

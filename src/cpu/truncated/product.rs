@@ -1,7 +1,5 @@
 //! The product of the Hessian and a vector, without a matrix.
 
-use fearless_simd::Level;
-
 use super::blocks::{Block, Blocks, receive};
 use super::derivatives::Numbers;
 use super::scalar::Scalar;
@@ -26,7 +24,7 @@ pub(super) async fn multiply<T: Scalar>(
         factor.extend(block.others.iter().map(|&other| vector[other as usize]));
         factor.resize(block.vertices.len(), [T::default(); 2]);
         let mut sums = vec![[T::default(); 2]; factor.len()];
-        with_instructions!(Level::new(), simd => {
+        with_instructions!(simd => {
             let _ = simd;
             add_triangles(block, &numbers.terms[at], &numbers.maps[at], &factor, &mut sums);
         });

@@ -1,6 +1,5 @@
 //! Conjugate gradients for the Newton step of all vertices.
 
-use fearless_simd::Level;
 use glam::DVec2;
 
 use super::blocks::Blocks;
@@ -212,7 +211,7 @@ impl<T: Scalar> Solver<T> {
         let parts: Vec<_> = blocks.split(preconditioned).collect();
         let sums = paced::map_parts(parts, |at, preconditioned| {
             let block = &blocks.blocks[at];
-            with_instructions!(Level::new(), simd => {
+            with_instructions!(simd => {
                 let _ = simd;
                 let (mut group, mut v) = (block.groups.start, block.own.start);
                 while group < block.groups.end {
