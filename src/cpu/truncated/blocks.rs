@@ -21,6 +21,8 @@ const VERTICES: u32 = 2048;
 pub(super) struct Blocks {
     /// Index in the problem of each vertex that moves, aggregate by aggregate.
     pub(super) order: Vec<u32>,
+    /// Index in the order of each free vertex of the problem.
+    pub(super) rank: Vec<u32>,
     /// Index of the first vertex of each aggregate, and the number of vertices at the end.
     pub(super) group_start: Vec<u32>,
     /// Index in the order of each sliding vertex.
@@ -97,7 +99,9 @@ impl Blocks {
         });
         let mut blocks = made.await;
         share(&mut blocks, &block_of);
-        (Self { order, group_start, slides_at, blocks }, pattern)
+        let Ranks { mut rank, .. } = ranks;
+        rank.truncate(problem.free_count());
+        (Self { order, rank, group_start, slides_at, blocks }, pattern)
     }
 
     /// Returns a shared list of zeros: a sum for each vertex of another block in the local list of a block.

@@ -136,9 +136,15 @@ impl Couplings {
 
     /// Adds the sums of all blocks in rows of other blocks to the upper blocks of the matrix, in the order of the blocks.
     pub(super) fn add_beyond<T: Scalar>(sums: Vec<Beyond<T>>, upper: &mut [Square<T>]) {
-        let mut all: Beyond<T> = Beyond::new();
+        let mut places = vec![NONE; upper.len()];
+        let mut all: Vec<(u32, Square<T>)> = Vec::new();
         for (index, entry) in sums.into_iter().flatten() {
-            let sum = all.entry(index).or_default();
+            let place = &mut places[index as usize];
+            if *place == NONE {
+                *place = all.len() as u32;
+                all.push((index, Square::default()));
+            }
+            let sum = &mut all[*place as usize].1;
             sum.iter_mut().zip(entry).for_each(|(sum, entry)| *sum += entry);
         }
         for (index, sum) in all {

@@ -315,16 +315,13 @@ impl<T: Scalar> Solver<T> {
     /// Writes the positions of the free vertices, moved by `length` times the solution, to `moved`, in the order of the
     /// problem.
     pub(super) async fn write_moved(&self, positions: &[DVec2], length: f64, moved: &mut [DVec2]) {
-        let Blocks { order, .. } = &self.blocks;
-        /// Number of vertices between two pauses.
-        const VERTICES: usize = 1 << 15;
-        paced::in_order(order.len(), VERTICES, |range| {
-            for (&v, step) in order[range.clone()].iter().zip(&self.solution[range]) {
-                let v = v as usize;
-                // Sliding vertices, which have larger numbers, move along their curves.
-                if let Some(moved) = moved.get_mut(v) {
-                    *moved = positions[v] + DVec2::new(step[0].wide(), step[1].wide()) * length;
-                }
+        /// Number of vertices that one task moves.
+        const VERTICES: usize = 1 << 12;
+        let Self { blocks: Blocks { rank, .. }, solution, .. } = self;
+        paced::for_each_chunk(moved, VERTICES, |first, moved| {
+            for (v, moved) in (first..).zip(moved) {
+                let step = solution[rank[v] as usize];
+                *moved = positions[v] + DVec2::new(step[0].wide(), step[1].wide()) * length;
             }
         })
         .await;
