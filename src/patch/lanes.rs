@@ -10,11 +10,12 @@ use glam::DVec2;
 use crate::metric::Real;
 use crate::patch::numbers::{self, Numbers};
 
-/// Returns the instructions of this processor, but those of any processor of the target while a test leaves vectors out.
+/// Returns the instructions of this processor, but those of any processor of the target on threads of a test that leaves vectors
+/// out.
 #[inline(always)]
 pub(crate) fn level() -> Level {
     #[cfg(test)]
-    if ARE_VECTORS_LEFT_OUT.load(std::sync::atomic::Ordering::Relaxed) {
+    if ARE_VECTORS_LEFT_OUT.get() {
         return Level::baseline();
     }
     Level::new()
@@ -250,16 +251,18 @@ pub(crate) fn vertex_maps<S: Simd>(
 }
 
 #[cfg(test)]
-static ARE_VECTORS_LEFT_OUT: std::sync::atomic::AtomicBool =
-    std::sync::atomic::AtomicBool::new(false);
+thread_local! {
+    static ARE_VECTORS_LEFT_OUT: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
 
-/// Calls a function that uses the instructions of any processor of the target alone. Tests at the same time do so too, which
-/// changes no bit of theirs.
+/// Calls a function on threads that use the instructions of any processor of the target alone. Without optimization, such code
+/// takes more stack than threads usually have.
 #[cfg(test)]
-pub(crate) fn without_vectors<R>(of: impl FnOnce() -> R) -> R {
-    use std::sync::atomic::Ordering::Relaxed;
-    ARE_VECTORS_LEFT_OUT.store(true, Relaxed);
-    let found = of();
-    ARE_VECTORS_LEFT_OUT.store(false, Relaxed);
-    found
+pub(crate) fn without_vectors<R: Send>(of: impl FnOnce() -> R + Send) -> R {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(2)
+        .stack_size(1 << 26)
+        .start_handler(|_| ARE_VECTORS_LEFT_OUT.set(true))
+        .build();
+    pool.unwrap().install(of)
 }
