@@ -255,14 +255,16 @@ thread_local! {
     static ARE_VECTORS_LEFT_OUT: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
-/// Calls a function on threads that use the instructions of any processor of the target alone. Without optimization, such code
-/// takes more stack than threads usually have.
+/// Returns the results of a function on threads with the instructions of this processor, and on threads with those of any
+/// processor of the target. Without optimization, runs in lanes take more stack than threads usually have.
 #[cfg(test)]
-pub(crate) fn without_vectors<R: Send>(of: impl FnOnce() -> R + Send) -> R {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(2)
-        .stack_size(1 << 26)
-        .start_handler(|_| ARE_VECTORS_LEFT_OUT.set(true))
-        .build();
-    pool.unwrap().install(of)
+pub(crate) fn with_and_without_vectors<R: Send>(of: impl Fn() -> R + Send + Sync) -> [R; 2] {
+    [false, true].map(|are_left_out| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(2)
+            .stack_size(1 << 26)
+            .start_handler(move |_| ARE_VECTORS_LEFT_OUT.set(are_left_out))
+            .build();
+        pool.unwrap().install(&of)
+    })
 }

@@ -166,7 +166,7 @@ mod tests {
     use crate::metric::Metric;
     use crate::options::WorstBy;
     use crate::parallel::pace::polled;
-    use crate::patch::lanes::without_vectors;
+    use crate::patch::lanes::with_and_without_vectors;
     use crate::quality::Quality;
     use crate::run::truncated::fixtures;
     use crate::targets::Surface;
@@ -213,7 +213,8 @@ mod tests {
                     });
                     (bits, quality)
                 };
-                assert_eq!(run(), without_vectors(run), "{metric}");
+                let [with, without] = with_and_without_vectors(run);
+                assert_eq!(with, without, "{metric}");
             }
         }
     }
