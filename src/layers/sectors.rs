@@ -37,9 +37,8 @@ impl Sectors {
         Self::of(elements, lines, |_| true, |_| true)
     }
 
-    /// Splits the vertices at the boundary and along the lines of the elements. The sectors have only the elements with a vertex that
-    /// is at most `edges` edges away from these walls. Nodes within this distance have all their elements, and have the order that
-    /// [`new`](Self::new) gives them.
+    /// Splits the vertices at the boundary and along the lines of the elements. Elements count if a vertex is at most `edges` edges
+    /// away from these walls. A node within this distance has all its elements. Nodes are in the order of [`new`](Self::new).
     pub(super) fn near_walls(elements: &Elements<'_>, edges: usize) -> Self {
         let topology = elements.topology;
         let mut may_be_on_wall: Vec<bool> =

@@ -7,8 +7,8 @@ use crate::metric::edge_slopes::EdgeSlopes;
 /// Value and derivatives of a function of the [`Invariants`](crate::metric::Invariants). A metric chooses the form. The more
 /// special the form, the cheaper the metric's sweeps.
 ///
-/// The two forms are types, not variants of an enum. The compiler took the vectors of such an enum apart into bytes,
-/// which was a fifth of a sweep.
+/// The two forms are types, not variants of an enum. For an enum, the compiler split each vector into bytes and joined the
+/// bytes again, in a fifth of the time of a sweep.
 pub(crate) trait Slopes<T> {
     /// Returns value, gradient and Hessian with respect to the visited vertex of `corner`, by the chain rule. `edges` has the
     /// slopes of the edges by the position of the vertex.

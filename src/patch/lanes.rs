@@ -71,8 +71,10 @@ macro_rules! with_lanes {
 pub(crate) use with_lanes;
 
 /// Evaluates an expression with `$simd` bound to the instruction set for which the expression is compiled: AVX2 on x86
-/// if the processor has AVX2. Without such instructions, evaluates the expression `$alone` if one is given: code that needs no
-/// vectors. Large code for vectors of processors that have none takes minutes to compile.
+/// if the processor has AVX2.
+///
+/// On a processor without such instructions, the expression `$alone` is evaluated if the call has one. Vectors that a processor
+/// lacks are compiled to single numbers, which takes minutes for large code, so large code has a form of its own there.
 macro_rules! with_instructions {
     ($simd:ident => $body:expr, alone => $alone:expr) => {{
         let level = $crate::patch::lanes::level();
@@ -92,21 +94,17 @@ macro_rules! with_instructions {
         }
     }};
     ($simd:ident => $body:expr) => {{
-        let level = $crate::patch::lanes::level();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        match level.as_avx2() {
-            Some($simd) => fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            ),
-            None => {
+        {
+            $crate::patch::lanes::with_instructions!($simd => $body, alone => {
                 let $simd = fearless_simd::Fallback::new();
                 $body
-            }
+            })
         }
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        fearless_simd::dispatch!(level, $simd => $body)
+        {
+            fearless_simd::dispatch!($crate::patch::lanes::level(), $simd => $body)
+        }
     }};
 }
 pub(crate) use with_instructions;
@@ -255,8 +253,8 @@ thread_local! {
     static ARE_VECTORS_LEFT_OUT: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
-/// Returns the results of a function on threads with the instructions of this processor, and on threads with those of any
-/// processor of the target. Without optimization, runs in lanes take more stack than threads usually have.
+/// Calls a function twice, on threads of its own: with vector instructions, and with the instructions of any processor of the
+/// target. Without optimization, runs in lanes take more stack than threads usually have.
 #[cfg(test)]
 pub(crate) fn with_and_without_vectors<R: Send>(of: impl Fn() -> R + Send + Sync) -> [R; 2] {
     [false, true].map(|are_left_out| {

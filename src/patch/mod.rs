@@ -35,4 +35,4 @@ pub(crate) use newton_step::{Objective, newton_step, step_alone};
 pub(crate) use ring::{LanePatch, Rings, Scratch};
 pub(crate) use role::{AroundVertex, Role};
 pub(crate) use search_rule::SearchRule;
-pub(crate) use triangles::FourTriangles;
+pub(crate) use triangles::{FourTriangles, dot};

@@ -9,15 +9,15 @@ use crate::topology::predicates::{ROUNDING, UNDERFLOW};
 /// Limits of the longest coordinate of edges between which no product of edges overflows or loses bits.
 const USUAL: [f64; 2] = [1e-60, 1e60];
 
-/// Four triangles whose exact areas are surely positive, in coordinates as stored. The numbers have the bits that formulas of
-/// one triangle give.
+/// Four triangles whose exact areas are surely positive, in coordinates as stored. A formula gives the same bits for four
+/// triangles as for each of them alone.
 #[derive(Clone, Copy)]
 pub(crate) struct FourTriangles<S: Simd> {
-    /// The edge from the first corner to the second.
+    /// Edges from the first to the second corner.
     pub(crate) a: Points<S>,
-    /// The edge from the first corner to the third.
+    /// Edges from the first to the third corner.
     pub(crate) b: Points<S>,
-    /// The edge from the second corner to the third.
+    /// Edges from the second to the third corner.
     pub(crate) c: Points<S>,
     /// Twice the area, as [`orientation`](crate::topology::predicates::orientation) returns it, times both lengths.
     pub(crate) doubled_area: Lanes<S>,
@@ -91,4 +91,10 @@ fn longest<S: Simd>(edge: Points<S>) -> Lanes<S> {
 #[inline(always)]
 fn longer<S: Simd>(x: Lanes<S>, y: Lanes<S>) -> Lanes<S> {
     SimdFloat::max(x, y)
+}
+
+/// Returns the scalar products of edges.
+#[inline(always)]
+pub(crate) fn dot<S: Simd>(u: Points<S>, v: Points<S>) -> Lanes<S> {
+    u[0] * v[0] + u[1] * v[1]
 }

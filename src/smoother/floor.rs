@@ -114,7 +114,8 @@ impl Movable<'_> {
         paced::map_parts(parts, of_quadrilaterals).await.iter().fold(worst, both)
     }
 
-    /// Returns the worst shapes of those of some corners that can move, all of triangles or all of quadrilaterals.
+    /// Returns the worst shapes of some corners, without the corners that cannot move. `is_right` tells whether the corners are of
+    /// quadrilaterals.
     fn worst_of(&self, points: &[[f64; 2]], corners: &[[u32; 3]], is_right: bool) -> WorstShapes {
         let moving = corners.iter().filter(|t| self.can_move(t));
         let shapes = moving.map(|t| WorstShapes::of(self.surface, points, t, is_right));

@@ -169,7 +169,7 @@ mod tests {
     use crate::patch::lanes::with_and_without_vectors;
     use crate::quality::Quality;
     use crate::run::truncated::fixtures;
-    use crate::targets::Surface;
+    use crate::targets::{Surface, Targets};
 
     /// Returns a lattice of squares cut in two, with its inner vertices moved, and one of them nearly onto an edge.
     fn lattice(n: u32) -> Mesh {
@@ -199,8 +199,16 @@ mod tests {
     fn runs_have_the_bits_of_a_processor_without_vectors() {
         let mixed = fixtures::quadrilaterals(17, |cell| cell % 3 == 0);
         let meshes = [lattice(20), mixed, fixtures::hub(40), fixtures::lattice(15, 30.0)];
-        for mesh in &meshes {
-            let smoother = Smoother::new(mesh).unwrap();
+        let with_targets = |mesh: &Mesh| {
+            let tensors: Vec<_> =
+                mesh.points.iter().map(|p| [2.0 + p[0].sin(), 0.3, 1.5]).collect();
+            Targets::tensors(&tensors).unwrap()
+        };
+        for (mesh, has_targets) in meshes.iter().flat_map(|mesh| [(mesh, false), (mesh, true)]) {
+            let mut smoother = Smoother::new(mesh).unwrap();
+            if has_targets {
+                smoother.set_targets(&with_targets(mesh)).unwrap();
+            }
             for metric in [Metric::Imr, Metric::Rms, Metric::SoftSize] {
                 let options = Options { scheme: metric.into(), ..Options::default() };
                 let run = || {
@@ -214,7 +222,7 @@ mod tests {
                     (bits, quality)
                 };
                 let [with, without] = with_and_without_vectors(run);
-                assert_eq!(with, without, "{metric}");
+                assert_eq!(with, without, "{metric}, targets: {has_targets}");
             }
         }
     }

@@ -36,7 +36,7 @@ pub struct Topology<'m> {
 #[derive(Clone, Debug)]
 pub struct DetachedTopology {
     topology: Topology<'static>,
-    /// Whether the topology borrowed its corners from the triangles of the mesh, and so has none without the mesh.
+    /// Whether the mesh has the corners of the topology. A topology of triangles alone borrows the triangles of its mesh.
     lacks_corners: bool,
     elements: usize,
 }

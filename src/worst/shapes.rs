@@ -2,8 +2,8 @@
 
 use fearless_simd::prelude::*;
 
-use crate::patch::FourTriangles;
-use crate::patch::lanes::{LANES, Lanes, Points};
+use crate::patch::lanes::LANES;
+use crate::patch::{FourTriangles, dot};
 use crate::targets::Surface;
 use crate::topology::predicates::orientation;
 
@@ -62,8 +62,7 @@ impl WorstShapes {
         }
     }
 
-    /// Adds four triangles of the plane of which those count for which `counts` is true, given their places. The numbers have the
-    /// bits of [`of`](Self::of).
+    /// Adds four triangles, with the bits of [`of`](Self::of). `counts` returns whether the triangle in a lane counts.
     #[inline(always)]
     pub(crate) fn add_four<S: Simd>(
         &mut self,
@@ -142,11 +141,6 @@ impl Products {
         let squares = sides + dot(c, c);
         Self { dots: [dot(a, b), -dot(a, c), dot(b, c)], squares, sides, doubled_area }
     }
-}
-
-#[inline(always)]
-fn dot<S: Simd>(u: Points<S>, v: Points<S>) -> Lanes<S> {
-    u[0] * v[0] + u[1] * v[1]
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ impl LoadedMesh {
         Self { domain: Domain::of_elements(&source), source, groups: OnceLock::new() }
     }
 
-    /// Returns the groups of the file. The first call reads the groups from the bytes of the file.
+    /// Returns the groups of the file. The first call parses the whole file for them.
     pub(crate) fn groups(&self) -> Result<&Groups, CliError> {
         if let Some(groups) = self.groups.get() {
             return Ok(groups);

@@ -224,8 +224,8 @@ impl<T: Scalar> Source<'_, T> {
         }
     }
 
-    /// Adds the corner `index` of a block, with its target map if there is one, given its derivatives: its terms, and its sums at
-    /// the vertices. Returns its rows.
+    /// Adds the terms of the corner `index` of a block, and its sums at the vertices. `curvature` has the derivatives of the corner
+    /// before its target map, if there is one. Returns the rows of the corner.
     #[inline(always)]
     fn add(
         &self,
