@@ -1,11 +1,10 @@
 //! The positions of vertices along a correction: straight, or within discs.
 
-use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Points, in_lanes, points};
+use crate::patch::lanes::{LANES, Width, points};
 use crate::patch::{Circle, is_kept, keeps_altitude};
 
 /// Positions before and after a move of the free vertices.
@@ -16,16 +15,16 @@ pub(crate) struct Along<'a> {
 }
 
 impl Along<'_> {
-    /// Returns the positions of four vertices, before and after the move.
+    /// Returns the positions of vertices, one in each lane, before and after the move.
     #[inline(always)]
-    pub(super) fn points<S: Simd>(
+    pub(super) fn points<W: Width>(
         &self,
-        simd: S,
+        width: W,
         vertices: [u32; LANES],
-    ) -> (Points<S>, Points<S>) {
+    ) -> ([W::Numbers; 2], [W::Numbers; 2]) {
         let [a, b, c, d] = vertices;
-        let moved = in_lanes(simd, [self.place(a), self.place(b), self.place(c), self.place(d)]);
-        (points(simd, self.positions, vertices), moved)
+        let places = [self.place(a), self.place(b), self.place(c), self.place(d)];
+        (points(width, self.positions, vertices), width.points_in_lanes(places))
     }
 
     /// Returns whether the move keeps a corner acceptable; see [`is_kept`] and [`keeps_altitude`]. Compiled once for all

@@ -1,20 +1,18 @@
 //! Derivatives by forward differences, as in Mesquite, to test the cost model of Park & Shontz.
 
-use fearless_simd::prelude::*;
-
 use crate::metric::{Corner, Dual, EdgeSlopes, Formulas, Real, Smoothing};
 use crate::patch::LanePatch;
-use crate::patch::lanes::{Lanes, Points};
+use crate::patch::numbers::Numbers;
 use crate::run::line_search;
 
-/// Returns the objectives of four patches with their gradients and Hessians, by forward differences.
+/// Returns the objectives of patches with their gradients and Hessians, by forward differences.
 #[inline(always)]
-pub(crate) fn derivatives<S: Simd>(
-    rings: &impl LanePatch<S>,
+pub(crate) fn derivatives<T: Numbers>(
+    rings: &impl LanePatch<T>,
     formulas: impl Formulas,
-    at: Points<S>,
+    at: [T; 2],
     smoothing: Smoothing,
-) -> Dual<Lanes<S>> {
+) -> Dual<T> {
     let width = least_height(rings, at) * line_search::DIFFERENCE;
     let zero = at[0].constant(0.0);
     let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
@@ -28,7 +26,7 @@ pub(crate) fn derivatives<S: Simd>(
 
 /// Returns the least distance of each vertex from a line through an outer edge of its patch.
 #[inline(always)]
-fn least_height<S: Simd>(rings: &impl LanePatch<S>, at: Points<S>) -> Lanes<S> {
+fn least_height<T: Numbers>(rings: &impl LanePatch<T>, at: [T; 2]) -> T {
     let mut least = at[0].constant(f64::INFINITY);
     for i in 0..rings.count() {
         let c = rings.corner(i, at);
@@ -40,13 +38,13 @@ fn least_height<S: Simd>(rings: &impl LanePatch<S>, at: Points<S>) -> Lanes<S> {
 
 /// Returns value, gradient and Hessian of the model of a triangle, by forward differences of width `h`.
 #[inline(always)]
-fn differences<S: Simd>(
+fn differences<T: Numbers>(
     formulas: impl Formulas,
-    corner: &Corner<Lanes<S>>,
+    corner: &Corner<T>,
     edges: impl EdgeSlopes,
     smoothing: Smoothing,
-    h: Lanes<S>,
-) -> Dual<Lanes<S>> {
+    h: T,
+) -> Dual<T> {
     let (alpha, beta) = (edges.alpha(), edges.beta());
     let mut values = [h; 16];
     let displacements = std::hint::black_box(line_search::DISPLACEMENTS);

@@ -1,26 +1,24 @@
-//! Visits of free vertices: safeguarded Newton steps on their patches, four vertices at a time.
-
-use fearless_simd::prelude::*;
+//! Visits of free vertices: safeguarded Newton steps on their patches, for one vertex in each lane.
 
 use crate::cpu::differences;
 use crate::cpu::within::{LaneBounds, Within};
 use crate::metric::{Dual, Formulas, Properties};
 use crate::options::Derivatives;
-use crate::patch::lanes::{Lanes, Mask, Points};
+use crate::patch::numbers::{Mask, Numbers};
 use crate::patch::{Direction, LanePatch, MetricObjective, Objective, SearchRule, newton_step};
 use crate::run::{SweepParams, line_search};
 
-/// Visits four vertices at `at` within their bounds, and returns their new positions. Only `GENERAL` copies of the code know
+/// Visits vertices at `at` within their bounds, and returns their new positions. Only `GENERAL` copies of the code know
 /// bounds.
 #[inline(always)]
-pub(crate) fn visit<S: Simd, P: LanePatch<S>, const GENERAL: bool>(
+pub(crate) fn visit<T: Numbers, P: LanePatch<T>, const GENERAL: bool>(
     formulas: impl Formulas,
     rings: &P,
-    mut at: Points<S>,
-    bounds: Option<LaneBounds<S>>,
+    mut at: [T; 2],
+    bounds: Option<LaneBounds<T>>,
     step: &SweepParams,
-) -> Points<S> {
-    let mut going = Mask::splat(at[0].simd, true);
+) -> [T; 2] {
+    let mut going = at[0].mask(true);
     let (smoothing, shape_guard) = (step.smoothing(), step.shape_guard);
     let metric = MetricObjective { patch: rings, formulas, smoothing, shape_guard };
     let objective = SweepObjective { metric, derivatives: step.derivatives };
@@ -38,9 +36,9 @@ pub(crate) fn visit<S: Simd, P: LanePatch<S>, const GENERAL: bool>(
             false => newton_step(&objective, at, going, &rule),
         };
         if step.newton_steps > 1 && step.derivatives == Derivatives::Analytic {
-            going &= !settled(rings, from, at);
+            going = going & !settled(rings, from, at);
         }
-        if going.all_false() {
+        if going.none() {
             break;
         }
     }
@@ -64,10 +62,10 @@ fn rule_of(properties: &Properties, step: &SweepParams) -> SearchRule {
 
 /// Returns the lanes whose step was so short that the visit ends; see [`line_search::SETTLED`].
 #[inline(always)]
-fn settled<S: Simd>(rings: &impl LanePatch<S>, from: Points<S>, to: Points<S>) -> Mask<S> {
+fn settled<T: Numbers>(rings: &impl LanePatch<T>, from: [T; 2], to: [T; 2]) -> T::Mask {
     let (x, y) = (to[0] - from[0], to[1] - from[1]);
     let least = line_search::SETTLED * line_search::SETTLED;
-    (x * x + y * y).simd_lt(rings.squared_edge(from) * least)
+    (x * x + y * y).lt(rings.squared_edge(from) * least)
 }
 
 /// The objective of a sweep, differentiated by formulas or by finite differences.
@@ -76,9 +74,9 @@ struct SweepObjective<'a, P, F> {
     derivatives: Derivatives,
 }
 
-impl<S: Simd, P: LanePatch<S>, F: Formulas> Objective<Lanes<S>> for SweepObjective<'_, P, F> {
+impl<T: Numbers, P: LanePatch<T>, F: Formulas> Objective<T> for SweepObjective<'_, P, F> {
     #[inline(always)]
-    fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
+    fn expansion(&self, at: [T; 2]) -> Dual<T> {
         let MetricObjective { patch, formulas, smoothing, .. } = self.metric;
         match self.derivatives {
             Derivatives::FiniteDifference => {
@@ -90,18 +88,18 @@ impl<S: Simd, P: LanePatch<S>, F: Formulas> Objective<Lanes<S>> for SweepObjecti
     }
 
     #[inline(always)]
-    fn trial(&self, to: Points<S>, max_imr: Lanes<S>) -> (Lanes<S>, Mask<S>) {
+    fn trial(&self, to: [T; 2], max_imr: T) -> (T, T::Mask) {
         self.metric.trial(to, max_imr)
     }
 
     #[inline(always)]
-    fn direction(&self, here: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
+    fn direction(&self, here: &Dual<T>, eigenvalue_floor: f64) -> Direction<T> {
         self.metric.direction(here, eigenvalue_floor)
     }
 
     #[inline(always)]
-    fn squares(&self, value: Lanes<S>) -> Lanes<S> {
-        Objective::<Lanes<S>>::squares(&self.metric, value)
+    fn squares(&self, value: T) -> T {
+        Objective::<T>::squares(&self.metric, value)
     }
 
     #[inline(always)]
@@ -110,7 +108,7 @@ impl<S: Simd, P: LanePatch<S>, F: Formulas> Objective<Lanes<S>> for SweepObjecti
     }
 
     #[inline(always)]
-    fn worst_shape(&self, at: Points<S>) -> Lanes<S> {
+    fn worst_shape(&self, at: [T; 2]) -> T {
         self.metric.worst_shape(at)
     }
 }

@@ -1,16 +1,14 @@
 //! The objective over all elements, on the CPU.
 
-use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::cpu::along::Along;
 use crate::layout::{CornerPart, Problem};
-use crate::metric::{Corner, Formulas, Metric, Real, Smoothing, TargetMap, opposite_angles};
+use crate::metric::{Corner, Formulas, Metric, Smoothing, TargetMap, opposite_angles};
 use crate::parallel::paced;
-use crate::patch::lanes::{
-    LANES, Lanes, Mask, Points, points, vertex_maps, with_instructions, with_lanes,
-};
-use crate::patch::{is_no_worse, is_positive, is_within};
+use crate::patch::lanes::{LANES, Width, points, vertex_maps, with_instructions, with_lanes};
+use crate::patch::numbers::{Mask, Numbers};
+use crate::patch::{Sums, from_lane, is_no_worse, is_positive, is_within};
 use crate::run::{Objectives, SweepParams};
 
 /// Number of corners that one task evaluates.
@@ -71,8 +69,8 @@ async fn mean(
 ) -> f64 {
     let [CornerPart { corners: triangles, .. }, right] = parts;
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(problem.targets(), false, metric, simd, formulas, MAPPED => {
-            excess::<_, MAPPED, false>(simd, formulas, smoothing, problem, positions, chunk)
+        with_lanes!(problem.targets(), false, metric, width, formulas, MAPPED => {
+            excess::<_, MAPPED, false>(width, formulas, smoothing, problem, positions, chunk)
         })
     };
     let sums = paced::map_parts(triangles.chunks(CHUNK), sum).await;
@@ -82,8 +80,8 @@ async fn mean(
     }
     let formulas = metric.formulas();
     let of_part = |_, part: CornerPart<'_>| {
-        with_instructions!(simd => {
-            excess::<_, true, true>(simd, formulas, smoothing, problem, positions, part.corners)
+        with_instructions!(width => {
+            excess::<_, true, true>(width, formulas, smoothing, problem, positions, part.corners)
         })
     };
     let sums = paced::map_parts(right.chunks(CHUNK), of_part).await;
@@ -103,8 +101,8 @@ pub(crate) async fn mean_excess_along(
         return mean_excess_within(step, problem, along).await;
     }
     let sum = |_, chunk: &[[u32; 3]]| {
-        with_lanes!(problem.targets(), false, step.metric, simd, formulas, MAPPED => {
-            excess_along::<_, MAPPED, false>(simd, formulas, problem, along, step, chunk)
+        with_lanes!(problem.targets(), false, step.metric, width, formulas, MAPPED => {
+            excess_along::<_, MAPPED, false>(width, formulas, problem, along, step, chunk)
         })
     };
     let [CornerPart { corners: triangles, .. }, right] = problem.judged_parts();
@@ -113,8 +111,8 @@ pub(crate) async fn mean_excess_along(
     if !right.corners.is_empty() {
         let formulas = step.metric.formulas();
         let of_part = |_, part: CornerPart<'_>| {
-            with_instructions!(simd => {
-                excess_along::<_, true, true>(simd, formulas, problem, along, step, part.corners)
+            with_instructions!(width => {
+                excess_along::<_, true, true>(width, formulas, problem, along, step, part.corners)
             })
         };
         let sums = paced::map_parts(right.chunks(CHUNK), of_part).await;
@@ -146,8 +144,8 @@ async fn mean_excess_within(
 /// Returns the sum of q² - ideal², or of its smooth model, over corners at moved positions. `None` if the move
 /// breaks a corner, as defined at [`mean_excess_along`]. `RIGHT` tells whether the corners are of quadrilaterals.
 #[inline(always)]
-fn excess_along<S: Simd, const MAPPED: bool, const RIGHT: bool>(
-    simd: S,
+fn excess_along<W: Width, const MAPPED: bool, const RIGHT: bool>(
+    width: W,
     formulas: impl Formulas,
     problem: &Problem,
     along: &Along<'_>,
@@ -156,64 +154,70 @@ fn excess_along<S: Simd, const MAPPED: bool, const RIGHT: bool>(
 ) -> Option<f64> {
     let guard = step.shape_guard;
     let (fours, rest) = corners.as_chunks::<LANES>();
-    let mut sum = Lanes::splat(simd, 0.0);
-    let mut joined = 0.0;
-    let mut borne = Mask::splat(simd, true);
+    let mut sums = Sums::new(width);
+    let mut joined = JoinedAngles::new();
+    let mut borne = width.splat(0.0).mask(true);
     for four in fours {
-        let [t, u, v, w] = four;
-        let map = if MAPPED { map_of::<_, RIGHT>(simd, problem, four) } else { None };
-        let (p, moved_p) = along.points(simd, [t[0], u[0], v[0], w[0]]);
-        let (q, moved_q) = along.points(simd, [t[1], u[1], v[1], w[1]]);
-        let (r, moved_r) = along.points(simd, [t[2], u[2], v[2], w[2]]);
-        let now = corner::<_, RIGHT>([moved_p, moved_q, moved_r], problem, &map);
-        borne &= is_positive(&now);
-        if guard.is_finite() {
-            let mut kept = is_within(formulas, &now, sum.constant(guard));
-            // Few moves exceed the guard, so triangles before the move are evaluated only after an excess.
-            if !kept.all_true() {
-                kept |= is_no_worse(formulas, &corner::<_, RIGHT>([p, q, r], problem, &map), &now);
+        let mut lane = 0;
+        while lane < LANES {
+            let these = from_lane::<W>(four, lane);
+            let [t, u, v, w] = these;
+            let map = if MAPPED { map_of::<_, RIGHT>(width, problem, &these) } else { None };
+            let (p, moved_p) = along.points(width, [t[0], u[0], v[0], w[0]]);
+            let (q, moved_q) = along.points(width, [t[1], u[1], v[1], w[1]]);
+            let (r, moved_r) = along.points(width, [t[2], u[2], v[2], w[2]]);
+            let now = corner::<_, RIGHT>([moved_p, moved_q, moved_r], problem, &map);
+            borne = borne & is_positive(&now);
+            if guard.is_finite() {
+                let mut kept = is_within(formulas, &now, width.splat(guard));
+                // Few moves exceed the guard, so triangles before the move are evaluated only after an excess.
+                if !kept.all() {
+                    let before = corner::<_, RIGHT>([p, q, r], problem, &map);
+                    kept = kept | is_no_worse(formulas, &before, &now);
+                }
+                borne = borne & kept;
             }
-            borne &= kept;
-        }
-        sum += formulas.model(&now, step.smoothing());
-        if RIGHT {
-            joined += joined_angles(formulas, &now);
+            sums.add(lane, formulas.model(&now, step.smoothing()));
+            if RIGHT {
+                joined.add(formulas, lane, &now);
+            }
+            lane += W::Numbers::LANES;
         }
     }
-    let mut last = joined;
+    let mut last = joined.sum;
     for t in rest {
         let now = problem.corner_of(RIGHT, t, |v| along.to(v));
-        borne &= Mask::splat(simd, along.keeps(problem, RIGHT, t, guard));
+        borne = borne & width.splat(0.0).mask(along.keeps(problem, RIGHT, t, guard));
         last += formulas.model(&now, step.smoothing());
     }
-    borne.all_true().then_some((sum[0] + sum[1]) + (sum[2] + sum[3]) + last)
+    borne.all().then_some(sums.total() + last)
 }
 
-/// Returns the target maps of four corners, one in each lane. Triangles have identity maps without targets, and corners of
+/// Returns the target maps of corners, one in each lane. Triangles have identity maps without targets, and corners of
 /// quadrilaterals have none.
 #[inline(always)]
-fn map_of<S: Simd, const RIGHT: bool>(
-    simd: S,
+fn map_of<W: Width, const RIGHT: bool>(
+    width: W,
     problem: &Problem,
     [t, u, v, w]: &[[u32; 3]; LANES],
-) -> Option<TargetMap<Lanes<S>>> {
+) -> Option<TargetMap<W::Numbers>> {
     if RIGHT && problem.targets().is_none() {
         return None;
     }
     Some(TargetMap::mean([
-        vertex_maps(simd, problem.targets(), [t[0], u[0], v[0], w[0]]),
-        vertex_maps(simd, problem.targets(), [t[1], u[1], v[1], w[1]]),
-        vertex_maps(simd, problem.targets(), [t[2], u[2], v[2], w[2]]),
+        vertex_maps(width, problem.targets(), [t[0], u[0], v[0], w[0]]),
+        vertex_maps(width, problem.targets(), [t[1], u[1], v[1], w[1]]),
+        vertex_maps(width, problem.targets(), [t[2], u[2], v[2], w[2]]),
     ]))
 }
 
-/// Returns four corners, one in each lane, transformed by their target maps.
+/// Returns corners, one in each lane, transformed by their target maps.
 #[inline(always)]
-fn corner<S: Simd, const RIGHT: bool>(
-    [p, q, r]: [Points<S>; 3],
+fn corner<T: Numbers, const RIGHT: bool>(
+    [p, q, r]: [[T; 2]; 3],
     problem: &Problem,
-    map: &Option<TargetMap<Lanes<S>>>,
-) -> Corner<Lanes<S>> {
+    map: &Option<TargetMap<T>>,
+) -> Corner<T> {
     let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
     let mut corner = Corner { a, b, ideal: problem.ideal() };
     if RIGHT {
@@ -225,22 +229,39 @@ fn corner<S: Simd, const RIGHT: bool>(
     }
 }
 
-/// Returns the term of opposite angles of the quadrilateral whose corners are in the lanes, in the weight of corners; zero if the
-/// metric has no such term.
-#[inline(always)]
-fn joined_angles<S: Simd>(formulas: impl Formulas, corners: &Corner<Lanes<S>>) -> f64 {
-    if !formulas.metric().joins_opposite_angles() {
-        return 0.0;
+/// The sum of the terms of opposite angles of quadrilaterals, in the weight of corners. Zero if the metric has no such term.
+struct JoinedAngles {
+    sum: f64,
+    /// Cotangents of the corners of the present quadrilateral.
+    cotangents: [f64; LANES],
+}
+
+impl JoinedAngles {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { sum: 0.0, cotangents: [0.0; LANES] }
     }
-    let cotangents = opposite_angles::cotangent(corners);
-    4.0 * opposite_angles::of_cotangents([0, 1, 2, 3].map(|lane| cotangents[lane]))
+
+    /// Adds the corners of a quadrilateral from a lane on. Lanes follow in their order.
+    #[inline(always)]
+    fn add<T: Numbers>(&mut self, formulas: impl Formulas, lane: usize, corners: &Corner<T>) {
+        if !formulas.metric().joins_opposite_angles() {
+            return;
+        }
+        let cotangents = opposite_angles::cotangent(corners);
+        let own = &mut self.cotangents[lane..lane + T::LANES];
+        (0..).zip(own).for_each(|(lane, own)| *own = cotangents.lane(lane));
+        if lane + T::LANES == LANES {
+            self.sum += 4.0 * opposite_angles::of_cotangents(self.cotangents);
+        }
+    }
 }
 
 /// Returns the sum of q² - ideal² over corners, or of its smooth model if `smoothing` is given. `RIGHT` tells whether the
 /// corners are of quadrilaterals.
 #[inline(always)]
-fn excess<S: Simd, const MAPPED: bool, const RIGHT: bool>(
-    simd: S,
+fn excess<W: Width, const MAPPED: bool, const RIGHT: bool>(
+    width: W,
     formulas: impl Formulas,
     smoothing: Option<Smoothing>,
     problem: &Problem,
@@ -251,24 +272,30 @@ fn excess<S: Simd, const MAPPED: bool, const RIGHT: bool>(
     // metric.
     let smoothing = smoothing.filter(|_| !formulas.metric().is_smooth());
     let (fours, rest) = corners.as_chunks::<LANES>();
-    let mut sum = Lanes::splat(simd, 0.0);
-    let mut joined = 0.0;
+    let mut sums = Sums::new(width);
+    let mut joined = JoinedAngles::new();
     for four in fours {
-        let [t, u, v, w] = four;
-        let map = if MAPPED { map_of::<_, RIGHT>(simd, problem, four) } else { None };
-        let p = points(simd, positions, [t[0], u[0], v[0], w[0]]);
-        let q = points(simd, positions, [t[1], u[1], v[1], w[1]]);
-        let r = points(simd, positions, [t[2], u[2], v[2], w[2]]);
-        let corner = corner::<_, RIGHT>([p, q, r], problem, &map);
-        sum += match smoothing {
-            Some(smoothing) => formulas.model(&corner, smoothing),
-            None => formulas.excess(&corner),
-        };
-        if RIGHT {
-            joined += joined_angles(formulas, &corner);
+        let mut lane = 0;
+        while lane < LANES {
+            let these = from_lane::<W>(four, lane);
+            let [t, u, v, w] = these;
+            let map = if MAPPED { map_of::<_, RIGHT>(width, problem, &these) } else { None };
+            let p = points(width, positions, [t[0], u[0], v[0], w[0]]);
+            let q = points(width, positions, [t[1], u[1], v[1], w[1]]);
+            let r = points(width, positions, [t[2], u[2], v[2], w[2]]);
+            let corner = corner::<_, RIGHT>([p, q, r], problem, &map);
+            let term = match smoothing {
+                Some(smoothing) => formulas.model(&corner, smoothing),
+                None => formulas.excess(&corner),
+            };
+            sums.add(lane, term);
+            if RIGHT {
+                joined.add(formulas, lane, &corner);
+            }
+            lane += W::Numbers::LANES;
         }
     }
-    let mut last = joined;
+    let mut last = joined.sum;
     for t in rest {
         let corner = problem.corner_of(RIGHT, t, |v| positions[v as usize]);
         last += match smoothing {
@@ -276,7 +303,7 @@ fn excess<S: Simd, const MAPPED: bool, const RIGHT: bool>(
             None => formulas.excess(&corner),
         };
     }
-    (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
+    sums.total() + last
 }
 
 #[cfg(test)]

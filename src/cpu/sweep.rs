@@ -1,6 +1,5 @@
 //! Loops over all free vertices: sweeps, gradients and stiffness.
 
-use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2};
 
 use crate::cpu::newton;
@@ -10,7 +9,8 @@ use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
-use crate::patch::lanes::{Lanes, Points, points, with_lanes};
+use crate::patch::lanes::{Width, points, with_lanes};
+use crate::patch::numbers::Numbers;
 use crate::patch::{
     LanePatch, MetricObjective, MixedRings, MixedScratch, Objective, Rings, Scratch, VertexBatch,
     batch_at,
@@ -166,8 +166,8 @@ async fn visit<T: VisitOutput>(
     if problem.has_quadrilaterals() {
         paced::for_each_chunk(found, CHUNK, |at, found| {
             let first = first + at;
-            with_lanes!(problem.maps(), bounded, step.metric, simd, formulas, GENERAL => {
-                visit_mixed::<_, _, GENERAL>(simd, formulas, problem, positions, first, step, sought, found);
+            with_lanes!(problem.maps(), bounded, step.metric, width, formulas, GENERAL => {
+                visit_mixed::<_, _, GENERAL>(width, formulas, problem, positions, first, step, sought, found);
             });
         })
         .await;
@@ -175,8 +175,8 @@ async fn visit<T: VisitOutput>(
     }
     paced::for_each_chunk(found, CHUNK, |at, found| {
         let first = first + at;
-        with_lanes!(problem.maps(), bounded, step.metric, simd, formulas, GENERAL => {
-            visit_all::<_, _, GENERAL>(simd, formulas, problem, positions, first, step, sought, found);
+        with_lanes!(problem.maps(), bounded, step.metric, width, formulas, GENERAL => {
+            visit_all::<_, _, GENERAL>(width, formulas, problem, positions, first, step, sought, found);
         });
     })
     .await;
@@ -185,8 +185,8 @@ async fn visit<T: VisitOutput>(
 /// Visits the vertices from `first` on, and writes their new positions, or the quantity `sought`, to `found`.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn visit_all<S: Simd, T: VisitOutput, const GENERAL: bool>(
-    simd: S,
+fn visit_all<W: Width, T: VisitOutput, const GENERAL: bool>(
+    width: W,
     formulas: impl Formulas,
     problem: &Problem,
     positions: &[DVec2],
@@ -198,14 +198,15 @@ fn visit_all<S: Simd, T: VisitOutput, const GENERAL: bool>(
     let mut scratch = Scratch::new();
     let mut done = 0;
     while done < found.len() {
-        let (vertices, count) = batch_at::<false>(problem, first + done, found.len() - done);
+        let (vertices, count) = batch_at::<W, false>(problem, first + done, found.len() - done);
         let degree = problem.ring_of(vertices[0]).len();
-        let rings = Rings::<S, GENERAL>::gather(simd, problem, positions, vertices, &mut scratch);
-        let at = points(simd, positions, vertices);
-        let patch = Visited { rings: &rings, vertices, degree, at };
+        let rings =
+            Rings::<W::Numbers, GENERAL>::gather(width, problem, positions, vertices, &mut scratch);
+        let at = points(width, positions, vertices);
+        let patch = Visited { width, rings: &rings, vertices, degree, at };
         let [x, y] = patch.visit::<T, GENERAL>(formulas, problem, step, sought);
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
-            *found = T::new([x[lane], y[lane]]);
+            *found = T::new([x.lane(lane), y.lane(lane)]);
         }
         done += count;
     }
@@ -214,8 +215,8 @@ fn visit_all<S: Simd, T: VisitOutput, const GENERAL: bool>(
 /// Does the work of [`visit_all`] in a mesh with quadrilaterals.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn visit_mixed<S: Simd, T: VisitOutput, const GENERAL: bool>(
-    simd: S,
+fn visit_mixed<W: Width, T: VisitOutput, const GENERAL: bool>(
+    width: W,
     formulas: impl Formulas,
     problem: &Problem,
     positions: &[DVec2],
@@ -227,29 +228,30 @@ fn visit_mixed<S: Simd, T: VisitOutput, const GENERAL: bool>(
     let mut scratch = MixedScratch::new();
     let mut done = 0;
     while done < found.len() {
-        let (vertices, count) = batch_at::<true>(problem, first + done, found.len() - done);
+        let (vertices, count) = batch_at::<W, true>(problem, first + done, found.len() - done);
         let degree = problem.neighbors(vertices[0]).count();
-        let rings = &MixedRings::gather(simd, problem, positions, vertices, &mut scratch);
-        let at = points(simd, positions, vertices);
-        let patch = Visited { rings, vertices, degree, at };
+        let rings = &MixedRings::gather(width, problem, positions, vertices, &mut scratch);
+        let at = points(width, positions, vertices);
+        let patch = Visited { width, rings, vertices, degree, at };
         let [x, y] = patch.visit::<T, GENERAL>(formulas, problem, step, sought);
         for (lane, found) in found[done..done + count].iter_mut().enumerate() {
-            *found = T::new([x[lane], y[lane]]);
+            *found = T::new([x.lane(lane), y.lane(lane)]);
         }
         done += count;
     }
 }
 
-/// Four vertices of a visit with their patches.
-struct Visited<'a, S: Simd, P> {
+/// Vertices that are visited at once, with their patches.
+struct Visited<'a, W: Width, P> {
+    width: W,
     rings: &'a P,
     vertices: VertexBatch,
     /// Number of neighbors along edges.
     degree: usize,
-    at: Points<S>,
+    at: [W::Numbers; 2],
 }
 
-impl<S: Simd, P: LanePatch<S>> Visited<'_, S, P> {
+impl<W: Width, P: LanePatch<W::Numbers>> Visited<'_, W, P> {
     /// Returns the new positions of the vertices, or the quantity `sought`.
     #[inline(always)]
     fn visit<T: VisitOutput, const GENERAL: bool>(
@@ -258,12 +260,11 @@ impl<S: Simd, P: LanePatch<S>> Visited<'_, S, P> {
         problem: &Problem,
         step: &SweepParams,
         sought: VertexQuantity,
-    ) -> Points<S> {
-        let Self { rings, vertices, degree, at } = *self;
+    ) -> [W::Numbers; 2] {
+        let Self { width, rings, vertices, degree, at } = *self;
         if T::STEPS {
-            let simd = at[0].simd;
-            let bounds = GENERAL.then(|| LaneBounds::gather(simd, problem, vertices)).flatten();
-            return newton::visit::<S, P, GENERAL>(formulas, rings, at, bounds, step);
+            let bounds = GENERAL.then(|| LaneBounds::gather(width, problem, vertices)).flatten();
+            return newton::visit::<W::Numbers, P, GENERAL>(formulas, rings, at, bounds, step);
         }
         let (smoothing, shape_guard) = (step.smoothing(), f64::INFINITY);
         let objective = MetricObjective { patch: rings, formulas, smoothing, shape_guard };
@@ -285,10 +286,10 @@ impl<S: Simd, P: LanePatch<S>> Visited<'_, S, P> {
 
 /// Returns the square root of the stiffness, from the derivatives of Σ q²; see [`stiffness_roots`].
 #[inline(always)]
-fn stiffness_root<S: Simd>(sum: &Dual<Lanes<S>>, degree: usize) -> Lanes<S> {
+fn stiffness_root<T: Numbers>(sum: &Dual<T>, degree: usize) -> T {
     let [xx, xy, yy] = sum.hessian;
     let (mean, half) = ((xx + yy) * 0.5, (xx - yy) * 0.5);
     let radius = Real::sqrt(half * half + xy * xy);
     // The eigenvalues are mean ± radius, so the mean of their absolute values is max(|mean|, radius).
-    Real::sqrt(Real::max(mean.abs(), radius) * (1.0 / degree as f64))
+    Real::sqrt(Real::max(Numbers::abs(mean), radius) * (1.0 / degree as f64))
 }

@@ -1,54 +1,58 @@
-//! Newton steps of vertices whose moves and altitudes are bounded, four vertices at a time.
+//! Newton steps of vertices whose moves and altitudes are bounded, for one vertex in each lane.
 
-use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::layout::{MeshCoordinates, Problem};
 use crate::metric::{Dual, Real};
-use crate::patch::lanes::{LANES, Lanes, Mask, Points, numbers, points};
-use crate::patch::numbers::Numbers;
+use crate::patch::lanes::{LANES, Width, numbers, points};
+use crate::patch::numbers::{Mask, Numbers};
 use crate::patch::{
     AT_DISC, Circle, Direction, GROWTH, LanePatch, MIN_CIRCLE_CURVATURE, Objective,
 };
 
-/// The bounds of four free vertices of a problem with bounds.
+/// The bounds of free vertices of a problem with bounds.
 #[derive(Clone, Copy)]
-pub(super) struct LaneBounds<S: Simd> {
+pub(super) struct LaneBounds<T: Numbers> {
     coordinates: MeshCoordinates,
     /// Center of the disc of each vertex in coordinates of the mesh, and its radius, infinite without discs.
-    center: Points<S>,
-    radius: Lanes<S>,
+    center: [T; 2],
+    radius: T,
     /// Lower limit of altitudes, 0 for no limit.
     floor: f64,
 }
 
-impl<S: Simd> LaneBounds<S> {
-    /// Returns the bounds of four vertices. `None` if the problem has none.
+impl<T: Numbers> LaneBounds<T> {
+    /// Returns the bounds of vertices. `None` if the problem has none.
     #[inline(always)]
-    pub(super) fn gather(simd: S, problem: &Problem, vertices: [u32; LANES]) -> Option<Self> {
+    pub(super) fn gather<W: Width<Numbers = T>>(
+        width: W,
+        problem: &Problem,
+        vertices: [u32; LANES],
+    ) -> Option<Self> {
         if !problem.is_bounded() {
             return None;
         }
         let coordinates = problem.coordinates();
-        let center = points(simd, problem.positions(), vertices);
+        let center = points(width, problem.positions(), vertices);
         let radius = match problem.radii() {
-            Some(radii) => numbers(simd, radii, vertices),
-            None => Lanes::splat(simd, f64::INFINITY),
+            Some(radii) => numbers(width, radii, vertices),
+            None => width.splat(f64::INFINITY),
         };
         let center = in_mesh(coordinates, center);
         Some(Self { coordinates, center, radius, floor: problem.floor() })
     }
 
     /// Does the work of [`Within::point`] for vertices that move in a projection, lane by lane.
-    fn projected_point(&self, on_line: Points<S>) -> Points<S> {
+    fn projected_point(&self, on_line: [T; 2]) -> [T; 2] {
         let &Self { coordinates, center, radius, .. } = self;
         let mut found = on_line;
-        for lane in 0..LANES {
-            let center = DVec2::new(center[0][lane], center[1][lane]);
-            let circle = Circle { center, radius: radius[lane] };
-            let to = DVec2::new(on_line[0][lane], on_line[1][lane]);
+        for lane in 0..T::LANES {
+            let center = DVec2::new(center[0].lane(lane), center[1].lane(lane));
+            let circle = Circle { center, radius: radius.lane(lane) };
+            let to = DVec2::new(on_line[0].lane(lane), on_line[1].lane(lane));
             let nearest = circle.nearest_position(coordinates, to);
-            (found[0][lane], found[1][lane]) = (nearest.x, nearest.y);
+            found[0].set_lane(lane, nearest.x);
+            found[1].set_lane(lane, nearest.y);
         }
         found
     }
@@ -56,7 +60,7 @@ impl<S: Simd> LaneBounds<S> {
 
 /// Returns points in coordinates of the mesh, given positions.
 #[inline(always)]
-fn in_mesh<S: Simd>(coordinates: MeshCoordinates, positions: Points<S>) -> Points<S> {
+fn in_mesh<T: Numbers>(coordinates: MeshCoordinates, positions: [T; 2]) -> [T; 2] {
     match coordinates.is_projected() {
         true => each(positions, |position| coordinates.at(position)),
         false => positions,
@@ -64,11 +68,12 @@ fn in_mesh<S: Simd>(coordinates: MeshCoordinates, positions: Points<S>) -> Point
 }
 
 /// Returns the results of a function of each lane's point.
-fn each<S: Simd>(points: Points<S>, of: impl Fn(DVec2) -> DVec2) -> Points<S> {
+fn each<T: Numbers>(points: [T; 2], of: impl Fn(DVec2) -> DVec2) -> [T; 2] {
     let mut found = points;
-    for lane in 0..LANES {
-        let to = of(DVec2::new(points[0][lane], points[1][lane]));
-        (found[0][lane], found[1][lane]) = (to.x, to.y);
+    for lane in 0..T::LANES {
+        let to = of(DVec2::new(points[0].lane(lane), points[1].lane(lane)));
+        found[0].set_lane(lane, to.x);
+        found[1].set_lane(lane, to.y);
     }
     found
 }
@@ -76,18 +81,18 @@ fn each<S: Simd>(points: Points<S>, of: impl Fn(DVec2) -> DVec2) -> Points<S> {
 /// The objective of vertices at `at` that may leave neither their discs nor lower a triangle below the least altitude.
 /// Without bounds, the objective is unchanged. Trials beyond a disc end at the nearest point of the disc. Steps of vertices at the circle of their disc that would lead
 /// outward are Newton steps along the circle.
-pub(super) struct Within<'a, S: Simd, O, P> {
+pub(super) struct Within<'a, T: Numbers, O, P> {
     pub(super) objective: &'a O,
     pub(super) rings: &'a P,
-    pub(super) at: Points<S>,
-    pub(super) bounds: Option<LaneBounds<S>>,
+    pub(super) at: [T; 2],
+    pub(super) bounds: Option<LaneBounds<T>>,
 }
 
-impl<S: Simd, O, P: LanePatch<S>> Within<'_, S, O, P> {
+impl<T: Numbers, O, P: LanePatch<T>> Within<'_, T, O, P> {
     /// Returns which corners are acceptable in all lanes' patches; see
     /// [`keeps_altitude`](crate::patch::keeps_altitude).
     #[inline(always)]
-    fn keeps_altitudes(&self, to: Points<S>, bounds: &LaneBounds<S>) -> Mask<S> {
+    fn keeps_altitudes(&self, to: [T; 2], bounds: &LaneBounds<T>) -> T::Mask {
         let &LaneBounds { coordinates, floor, .. } = bounds;
         let mut kept = to[0].mask(true);
         let floor = to[0].constant(floor * floor);
@@ -96,14 +101,14 @@ impl<S: Simd, O, P: LanePatch<S>> Within<'_, S, O, P> {
             let (area, longest) = doubled_area_and_square(now);
             let squared = area * Numbers::abs(area);
             let mut is_kept = (floor * longest).le(squared);
-            if !is_kept.all_true() {
+            if !is_kept.all() {
                 let before = self.rings.vertices(i, self.at);
                 let before = before.map(|point| in_mesh(coordinates, point));
                 let (before, longest_before) = doubled_area_and_square(before);
                 let grown = before * Numbers::abs(before) * (GROWTH * GROWTH);
-                is_kept |= (grown * longest).le(squared * longest_before);
+                is_kept = is_kept | (grown * longest).le(squared * longest_before);
             }
-            kept &= is_kept;
+            kept = kept & is_kept;
         }
         kept
     }
@@ -111,24 +116,24 @@ impl<S: Simd, O, P: LanePatch<S>> Within<'_, S, O, P> {
 
 /// Returns twice the area of triangles, and the square of their longest edges.
 #[inline(always)]
-fn doubled_area_and_square<S: Simd>([p, q, r]: [Points<S>; 3]) -> (Lanes<S>, Lanes<S>) {
+fn doubled_area_and_square<T: Numbers>([p, q, r]: [[T; 2]; 3]) -> (T, T) {
     let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
     let c = [b[0] - a[0], b[1] - a[1]];
-    let square = |[x, y]: Points<S>| x * x + y * y;
+    let square = |[x, y]: [T; 2]| x * x + y * y;
     let longest = Real::max(Real::max(square(a), square(b)), square(c));
     (a[0] * b[1] - a[1] * b[0], longest)
 }
 
-impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for Within<'_, S, O, P> {
+impl<T: Numbers, O: Objective<T>, P: LanePatch<T>> Objective<T> for Within<'_, T, O, P> {
     #[inline(always)]
-    fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
+    fn expansion(&self, at: [T; 2]) -> Dual<T> {
         self.objective.expansion(at)
     }
 
     /// Returns Newton's direction. Where a vertex at the circle of its disc would go outward, returns the Newton direction
     /// along the circle, with the curvature τᵀHτ - g·n / R for the tangent τ, the outward normal n and the radius R.
     #[inline(always)]
-    fn direction(&self, here: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
+    fn direction(&self, here: &Dual<T>, eigenvalue_floor: f64) -> Direction<T> {
         let newton = self.objective.direction(here, eigenvalue_floor);
         let Some(LaneBounds { coordinates, center, radius, .. }) = self.bounds else {
             return newton;
@@ -147,7 +152,7 @@ impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for W
         let out = newton.vector[0] * normal[0] + newton.vector[1] * slope * normal[1];
         let turns = (radius * AT_DISC).le(distance) & zero.lt(out);
         let moves = zero.lt(radius);
-        if turns.all_false() {
+        if turns.none() {
             return Direction { descends: newton.descends & moves, ..newton };
         }
         let [gx, gy] = [here.gradient[0], here.gradient[1] / slope];
@@ -167,7 +172,7 @@ impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for W
         let length = Real::max(Real::min((zero - along) / stiffness, radius), zero - radius);
         let vector = [tangent[0] * length, tangent[1] * length / slope];
         let decrease = along * length;
-        let select = |turned, straight| Lanes::select(turns, turned, straight);
+        let select = |turned, straight| T::select(turns, turned, straight);
         let descends = (turns & decrease.lt(zero)) | (!turns & newton.descends & moves);
         Direction {
             vector: [select(vector[0], newton.vector[0]), select(vector[1], newton.vector[1])],
@@ -178,7 +183,7 @@ impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for W
 
     /// Returns the given point, or the nearest point of the disc if the given point is outside.
     #[inline(always)]
-    fn point(&self, on_line: Points<S>) -> Points<S> {
+    fn point(&self, on_line: [T; 2]) -> [T; 2] {
         let Some(bounds) = self.bounds else { return on_line };
         let LaneBounds { coordinates, center, radius, .. } = bounds;
         if coordinates.is_projected() {
@@ -188,20 +193,20 @@ impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for W
         let distance = Real::sqrt(x * x + y * y);
         let (is_inside, share) = (distance.le(radius), radius / distance);
         [
-            Lanes::select(is_inside, on_line[0], center[0] + x * share),
-            Lanes::select(is_inside, on_line[1], center[1] + y * share),
+            T::select(is_inside, on_line[0], center[0] + x * share),
+            T::select(is_inside, on_line[1], center[1] + y * share),
         ]
     }
 
     #[inline(always)]
-    fn predicted(&self, here: &Dual<Lanes<S>>, to: Points<S>) -> Option<Lanes<S>> {
+    fn predicted(&self, here: &Dual<T>, to: [T; 2]) -> Option<T> {
         self.bounds?;
         let (x, y) = (to[0] - self.at[0], to[1] - self.at[1]);
         Some(here.gradient[0] * x + here.gradient[1] * y)
     }
 
     #[inline(always)]
-    fn trial(&self, to: Points<S>, max_imr: Lanes<S>) -> (Lanes<S>, Mask<S>) {
+    fn trial(&self, to: [T; 2], max_imr: T) -> (T, T::Mask) {
         let (value, feasible) = self.objective.trial(to, max_imr);
         match &self.bounds {
             Some(bounds) if bounds.floor > 0.0 => {
@@ -212,7 +217,7 @@ impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for W
     }
 
     #[inline(always)]
-    fn squares(&self, value: Lanes<S>) -> Lanes<S> {
+    fn squares(&self, value: T) -> T {
         self.objective.squares(value)
     }
 
@@ -222,7 +227,7 @@ impl<S: Simd, O: Objective<Lanes<S>>, P: LanePatch<S>> Objective<Lanes<S>> for W
     }
 
     #[inline(always)]
-    fn worst_shape(&self, at: Points<S>) -> Lanes<S> {
+    fn worst_shape(&self, at: [T; 2]) -> T {
         self.objective.worst_shape(at)
     }
 }

@@ -1,9 +1,10 @@
 //! Batches of vertices that visits take at once, one vertex in each lane.
 
 use crate::layout::{OPPOSITE, Problem};
-use crate::patch::lanes::LANES;
+use crate::patch::lanes::{LANES, Width};
+use crate::patch::numbers::Numbers;
 
-/// Four free vertices with equally many neighbors, and elements of equal kinds in equal order. Lanes beyond the last vertex of a
+/// Up to four free vertices with equally many neighbors, and elements of equal kinds in equal order. Lanes beyond the last vertex of a
 /// batch repeat the last vertex.
 pub(crate) type VertexBatch = [u32; LANES];
 
@@ -16,17 +17,17 @@ pub(crate) fn batches(problem: &Problem, vertices: impl Iterator<Item = u32>) ->
     batches.map(|batch| std::array::from_fn(|lane| batch[lane.min(batch.len() - 1)])).collect()
 }
 
-/// Returns up to four vertices with alike elements, from `first` on, and their number. At most `most` vertices, at least one,
+/// Returns as many vertices with alike elements, from `first` on, as a visit takes at once, and their number. At most `most` vertices, at least one,
 /// are left to visit. Lanes without a vertex of their own repeat the last vertex. `MIXED` tells whether the mesh has quadrilaterals.
 #[inline(always)]
-pub(crate) fn batch_at<const MIXED: bool>(
+pub(crate) fn batch_at<W: Width, const MIXED: bool>(
     problem: &Problem,
     first: usize,
     most: usize,
 ) -> (VertexBatch, usize) {
     let v = first as u32;
     let ring = problem.ring_of(v);
-    let most = LANES.min(most) as u32;
+    let most = W::Numbers::LANES.min(most) as u32;
     let mut count = 1;
     while count < most && are_alike::<MIXED>(ring, problem.ring_of(v + count)) {
         count += 1;

@@ -1,32 +1,32 @@
-//! The one-rings of four free vertices of quadrilaterals, or of quadrilaterals and triangles, one vertex in each lane.
+//! The one-rings of free vertices of quadrilaterals, or of quadrilaterals and triangles, one vertex in each lane.
 
 use std::ops::Mul;
 
-use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::layout::{OPPOSITE, Problem};
 use crate::metric::{Corner, Dual, Given, Ideal, TargetMap};
 use crate::patch::corners::Corners;
 use crate::patch::direction::{Direction, newton_direction};
-use crate::patch::lanes::{LANES, Lanes, Points, points, vertex_maps};
+use crate::patch::lanes::{LANES, Width, points, vertex_maps};
+use crate::patch::numbers::Numbers;
 use crate::patch::ring::{LanePatch, mapped_direction, squared_distance};
 use crate::patch::role::{AroundVertex, Role};
 
-/// One-rings of four free vertices whose elements are of equal kinds in equal order.
+/// One-rings of free vertices whose elements are of equal kinds in equal order.
 #[derive(Clone, Copy)]
-pub(crate) struct MixedRings<'a, S: Simd> {
+pub(crate) struct MixedRings<'a, T: Numbers> {
     /// Positions of the vertices around each visited vertex, counter-clockwise: neighbors, and opposite vertices of
     /// quadrilaterals.
-    ring: &'a [Points<S>],
+    ring: &'a [[T; 2]],
     corners: &'a [RingCorner],
     /// The quadrilaterals of the visited vertex, with vertices as indices in the ring.
     quadrilaterals: &'a [AroundVertex],
     /// Target map of each corner, then of the corner of each quadrilateral opposite the visited vertex. Empty without targets
     /// and local maps.
-    maps: &'a [TargetMap<Lanes<S>>],
+    maps: &'a [TargetMap<T>],
     /// Inverse of the target map or local map of each visited vertex. `None` without maps.
-    inverse_map: Option<TargetMap<Lanes<S>>>,
+    inverse_map: Option<TargetMap<T>>,
     total_weight: f64,
     ideal: Ideal,
 }
@@ -40,17 +40,17 @@ struct RingCorner {
 }
 
 /// Memory for [`MixedRings`], reused by one visit after another.
-pub(crate) struct MixedScratch<S: Simd> {
-    ring: Vec<Points<S>>,
+pub(crate) struct MixedScratch<T: Numbers> {
+    ring: Vec<[T; 2]>,
     /// The mark of each vertex of the ring that `corners` lists the corners of. Successive visits mostly have equal marks.
     marks: Vec<u32>,
     corners: Vec<RingCorner>,
     quadrilaterals: Vec<AroundVertex>,
     total_weight: f64,
-    maps: Vec<TargetMap<Lanes<S>>>,
+    maps: Vec<TargetMap<T>>,
 }
 
-impl<S: Simd> MixedScratch<S> {
+impl<T: Numbers> MixedScratch<T> {
     pub(crate) fn new() -> Self {
         Self {
             ring: Vec::with_capacity(16),
@@ -63,15 +63,15 @@ impl<S: Simd> MixedScratch<S> {
     }
 }
 
-impl<'a, S: Simd> MixedRings<'a, S> {
+impl<'a, T: Numbers> MixedRings<'a, T> {
     /// Reads the one-rings of `vertices`, and their target maps, into `scratch`.
     #[inline(always)]
-    pub(crate) fn gather(
-        simd: S,
+    pub(crate) fn gather<W: Width<Numbers = T>>(
+        width: W,
         problem: &Problem,
         positions: &[DVec2],
         vertices: [u32; LANES],
-        scratch: &'a mut MixedScratch<S>,
+        scratch: &'a mut MixedScratch<T>,
     ) -> Self {
         let MixedScratch { ring, marks, corners, quadrilaterals, total_weight, maps } = scratch;
         let [a, b, c, d] = vertices;
@@ -84,7 +84,7 @@ impl<'a, S: Simd> MixedRings<'a, S> {
             |i: usize| [a[i] & !OPPOSITE, b[i] & !OPPOSITE, c[i] & !OPPOSITE, d[i] & !OPPOSITE];
         ring.clear();
         for i in 0..length {
-            ring.push(points(simd, positions, at(i)));
+            ring.push(points(width, positions, at(i)));
         }
         let is_listed = || marks.iter().zip(a).all(|(&mark, &k)| mark == k & OPPOSITE);
         if marks.len() != length || !is_listed() {
@@ -100,7 +100,7 @@ impl<'a, S: Simd> MixedRings<'a, S> {
         maps.clear();
         let mut inverse_map = None;
         if problem.maps().is_some() {
-            let of = |vertices| vertex_maps(simd, problem.targets(), vertices);
+            let of = |vertices| vertex_maps(width, problem.targets(), vertices);
             let own = of(vertices);
             maps.extend(corners.iter().map(|corner| {
                 let [p, q] = corner.others.map(|i| of(at(i as usize)));
@@ -110,17 +110,17 @@ impl<'a, S: Simd> MixedRings<'a, S> {
             maps.extend(
                 opposites.map(|places| TargetMap::mean(places.map(|i| of(at(i as usize))))),
             );
-            inverse_map = Some(TargetMap(vertex_maps(simd, problem.maps(), vertices)).inverse());
+            inverse_map = Some(TargetMap(vertex_maps(width, problem.maps(), vertices)).inverse());
         }
         let (total_weight, ideal) = (*total_weight, problem.ideal());
         Self { ring, corners, quadrilaterals, maps, inverse_map, total_weight, ideal }
     }
 }
 
-impl<S: Simd> MixedRings<'_, S> {
+impl<T: Numbers> MixedRings<'_, T> {
     /// Returns a corner with the given vertices, transformed by the map of an index if there are maps.
     #[inline(always)]
-    fn corner_of(&self, is_right: bool, [p, q, r]: [Points<S>; 3], map: usize) -> Corner<Lanes<S>> {
+    fn corner_of(&self, is_right: bool, [p, q, r]: [[T; 2]; 3], map: usize) -> Corner<T> {
         // Differences come first: a general form that is linear in the vertex would cancel for small elements.
         let (a, b) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
         let mut corner = Corner { a, b, ideal: self.ideal };
@@ -151,25 +151,25 @@ fn list_corners(ring: &[u32], corners: &mut Vec<RingCorner>) {
     }
 }
 
-impl<S: Simd> LanePatch<S> for MixedRings<'_, S> {
+impl<T: Numbers> LanePatch<T> for MixedRings<'_, T> {
     #[inline(always)]
-    fn inverse_map(&self) -> &Option<TargetMap<Lanes<S>>> {
+    fn inverse_map(&self) -> &Option<TargetMap<T>> {
         &self.inverse_map
     }
 
     #[inline(always)]
-    fn squared_edge(&self, at: Points<S>) -> Lanes<S> {
+    fn squared_edge(&self, at: [T; 2]) -> T {
         squared_distance(self.ring[0], at)
     }
 
     #[inline(always)]
-    fn vertices(&self, i: usize, at: Points<S>) -> [Points<S>; 3] {
+    fn vertices(&self, i: usize, at: [T; 2]) -> [[T; 2]; 3] {
         let RingCorner { role, others: [p, q] } = self.corners[i];
         role.vertices(at, [self.ring[p as usize], self.ring[q as usize]])
     }
 }
 
-impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
+impl<T: Numbers> Corners<T> for MixedRings<'_, T> {
     type Slopes = Given;
 
     #[inline(always)]
@@ -178,7 +178,7 @@ impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
     }
 
     #[inline(always)]
-    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+    fn corner(&self, i: usize, at: [T; 2]) -> Corner<T> {
         self.corner_of(self.corners[i].role.is_right(), self.vertices(i, at), i)
     }
 
@@ -188,7 +188,7 @@ impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
     }
 
     #[inline(always)]
-    fn quadrilateral(&self, k: usize) -> (usize, Corner<Lanes<S>>) {
+    fn quadrilateral(&self, k: usize) -> (usize, Corner<T>) {
         let AroundVertex { first, opposite } = self.quadrilaterals[k];
         let vertices = opposite.map(|i| self.ring[i as usize]);
         (first, self.corner_of(true, vertices, self.corners.len() + k))
@@ -210,7 +210,7 @@ impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
     }
 
     #[inline(always)]
-    fn pull_back(&self, i: usize, transformed: Dual<Lanes<S>>) -> Dual<Lanes<S>> {
+    fn pull_back(&self, i: usize, transformed: Dual<T>) -> Dual<T> {
         match self.maps.get(i) {
             Some(map) => map.pull_back(transformed),
             None => transformed,
@@ -218,7 +218,7 @@ impl<S: Simd> Corners<Lanes<S>> for MixedRings<'_, S> {
     }
 
     #[inline(always)]
-    fn direction(&self, sum: &Dual<Lanes<S>>, eigenvalue_floor: f64) -> Direction<Lanes<S>> {
+    fn direction(&self, sum: &Dual<T>, eigenvalue_floor: f64) -> Direction<T> {
         match &self.inverse_map {
             Some(inverse) => mapped_direction(inverse, sum, eigenvalue_floor),
             None => newton_direction(sum, eigenvalue_floor),

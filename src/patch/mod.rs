@@ -14,6 +14,7 @@ pub(crate) mod numbers;
 mod ring;
 mod role;
 pub(crate) mod search_rule;
+mod sums;
 #[cfg(test)]
 mod tests;
 mod triangles;
@@ -35,4 +36,5 @@ pub(crate) use newton_step::{Objective, newton_step, step_alone};
 pub(crate) use ring::{LanePatch, Rings, Scratch};
 pub(crate) use role::{AroundVertex, Role};
 pub(crate) use search_rule::SearchRule;
+pub(crate) use sums::{Sums, from_lane};
 pub(crate) use triangles::{FourTriangles, dot};

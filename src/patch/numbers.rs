@@ -8,6 +8,12 @@ use crate::metric::Real;
 pub(crate) trait Numbers: Real {
     /// Type of truth values: `bool` for `f64`.
     type Mask: Mask;
+    /// Number of lanes: 1 for `f64`.
+    const LANES: usize;
+    /// Returns the number in a lane.
+    fn lane(self, lane: usize) -> f64;
+    /// Sets the number in a lane.
+    fn set_lane(&mut self, lane: usize, number: f64);
     /// Returns a mask with `value` in every lane.
     fn mask(self, value: bool) -> Self::Mask;
     /// Compares by `<`, lane by lane: NaN gives false.
@@ -45,6 +51,15 @@ impl Mask for bool {
 
 impl Numbers for f64 {
     type Mask = bool;
+    const LANES: usize = 1;
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, _: usize, number: f64) {
+        *self = number;
+    }
     #[inline(always)]
     fn mask(self, value: bool) -> bool {
         value

@@ -78,7 +78,7 @@ fn a_newton_step_in_lanes_has_the_bits_of_the_step_of_each_vertex_alone() {
                 let ([x, y], _) = newton_step(&objective, at, going, &rule);
                 let lanes: [[f64; 2]; LANES] = std::array::from_fn(|lane| [x[lane], y[lane]]);
                 lanes
-            });
+            }, alone => return);
             for (place, found) in places.into_iter().zip(together) {
                 let objective = MetricObjective { patch, formulas, smoothing, shape_guard };
                 let (alone, has_stepped) = newton_step(&objective, place, true, &rule);

@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 
-use crate::patch::lanes::{LANES, Lanes, Mask, Points, in_lanes};
+use crate::patch::lanes::{LANES, Lanes, Mask, Points, Width};
 use crate::targets::Surface;
 use crate::topology::predicates::{ROUNDING, UNDERFLOW};
 
@@ -58,7 +58,7 @@ impl<S: Simd> FourTriangles<S> {
 #[inline(always)]
 fn corners<S: Simd>(simd: S, points: &[[f64; 2]], [a, b, c, d]: [u32; LANES]) -> Points<S> {
     let (a, b) = (&points[a as usize], &points[b as usize]);
-    in_lanes(simd, [a, b, &points[c as usize], &points[d as usize]])
+    simd.points_in_lanes([a, b, &points[c as usize], &points[d as usize]])
 }
 
 /// Returns the lengths on the surface of a unit of each coordinate.
@@ -70,7 +70,7 @@ fn lengths<S: Simd>(
     [t, u, v, w]: &[[u32; 3]; LANES],
 ) -> Points<S> {
     let of = |t: &[u32; 3]| surface.lengths_in(points, t);
-    in_lanes(simd, [&of(t), &of(u), &of(v), &of(w)])
+    simd.points_in_lanes([&of(t), &of(u), &of(v), &of(w)])
 }
 
 #[inline(always)]

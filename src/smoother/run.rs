@@ -164,7 +164,7 @@ mod tests {
 
     use super::*;
     use crate::metric::Metric;
-    use crate::options::WorstBy;
+    use crate::options::{Derivatives, Guard, Method, Paper, WorstBy};
     use crate::parallel::pace::polled;
     use crate::patch::lanes::with_and_without_vectors;
     use crate::quality::Quality;
@@ -209,10 +209,25 @@ mod tests {
             if has_targets {
                 smoother.set_targets(&with_targets(mesh)).unwrap();
             }
-            for metric in [Metric::Imr, Metric::Rms, Metric::SoftSize] {
-                let options = Options { scheme: metric.into(), ..Options::default() };
+            let by = |metric: Metric| Options { scheme: metric.into(), ..Options::default() };
+            let few = |options: Options| Options { max_sweeps: 4, ..options };
+            let by_differences =
+                Paper { derivatives: Derivatives::FiniteDifference, newton_steps: 2 };
+            let all = [
+                by(Metric::Imr),
+                by(Metric::Rms),
+                by(Metric::SoftSize),
+                few(by(Metric::Edge)),
+                few(by(Metric::Acute)),
+                few(Options { max_move: Some(0.05), keep_altitude: true, ..Options::default() }),
+                few(Options { guard: Guard::Worst, ..by(Metric::Rms) }),
+                few(Options { method: Method::Paper(by_differences), ..Options::default() }),
+            ];
+            // Differences of targets are refused.
+            let all = if has_targets { &all[..all.len() - 1] } else { &all[..] };
+            for options in all {
                 let run = || {
-                    let outcome = smoother.run(&options).on(&Backend::Cpu).block().unwrap();
+                    let outcome = smoother.run(options).on(&Backend::Cpu).block().unwrap();
                     let bits: Vec<u64> =
                         outcome.points.as_flattened().iter().map(|x| x.to_bits()).collect();
                     let quality = [Surface::Plane, Surface::Sphere].map(|surface| {
@@ -222,7 +237,7 @@ mod tests {
                     (bits, quality)
                 };
                 let [with, without] = with_and_without_vectors(run);
-                assert_eq!(with, without, "{metric}, targets: {has_targets}");
+                assert_eq!(with, without, "{options:?}, targets: {has_targets}");
             }
         }
     }

@@ -92,3 +92,30 @@ impl<'r> Untangle<'r> {
         work::untangled(self.mesh, self.stored, &mut *self.observe)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::patch::lanes::with_and_without_vectors;
+    use crate::run::truncated::fixtures;
+
+    /// Processors without vector instructions handle one vertex at a time.
+    #[test]
+    fn untangling_has_the_bits_of_a_processor_without_vectors() {
+        for is_whole in [|_: usize| false, |cell: usize| cell.is_multiple_of(3)] {
+            let mut mesh = fixtures::quadrilaterals(13, is_whole);
+            let before = mesh.points.clone();
+            for k in (0..13u32).map(|k| (3 + k % 7) * 13 + 3 + (5 * k) % 7) {
+                let k = k as usize;
+                mesh.points[k] = [before[k][0] + 1.6, before[k][1] - 1.3];
+            }
+            let run = || {
+                let untangled = Untangle::new(&mesh).run().unwrap();
+                assert!(untangled.left.is_empty());
+                untangled.points.into_iter().flatten().map(f64::to_bits).collect::<Vec<_>>()
+            };
+            let [with, without] = with_and_without_vectors(run);
+            assert_eq!(with, without);
+        }
+    }
+}

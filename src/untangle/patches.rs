@@ -1,13 +1,13 @@
-//! Loops of untangling over vertices and corners, in groups of four (one in each lane).
+//! Loops of untangling over vertices and corners, one in each lane.
 
-use fearless_simd::prelude::*;
 use glam::DVec2;
 
 use crate::layout::Problem;
 use crate::metric::{Dual, Own, Real, of_right_angle};
 use crate::parallel::{for_each_chunk, map_parts};
-use crate::patch::lanes::{LANES, Lanes, Mask, Points, numbers, points, with_instructions};
-use crate::patch::{Objective, Role, SearchRule, VertexBatch, newton_step};
+use crate::patch::lanes::{LANES, Width, numbers, points, with_instructions};
+use crate::patch::numbers::Numbers;
+use crate::patch::{Objective, Role, SearchRule, Sums, VertexBatch, from_lane, newton_step};
 use crate::untangle::energy::Corner;
 
 /// Number of batches of vertices in one parallel task.
@@ -44,31 +44,46 @@ impl Tangle<'_> {
     ) -> Vec<[DVec2; LANES]> {
         let mut found = vec![[DVec2::ZERO; LANES]; batches.len()];
         for_each_chunk(&mut found, BATCHES, |first, found| {
-            with_instructions!(simd => {
-                let (mut scratch, mut corners) = (Vec::new(), Vec::new());
-                for (found, &batch) in found.iter_mut().zip(&batches[first..]) {
-                    let at = points(simd, self.positions, batch);
-                    let [x, y] = if self.problem.has_quadrilaterals() {
-                        let patches = MixedEnergy::gather(simd, self, batch, epsilon, &mut corners);
-                        visit::<_, STEPS>(&patches, at)
-                    } else {
-                        let patches = EnergyRings::gather(simd, self, batch, epsilon, &mut scratch);
-                        visit::<_, STEPS>(&patches, at)
-                    };
-                    for lane in 0..LANES {
-                        found[lane] = DVec2::new(x[lane], y[lane]);
-                    }
-                }
-            });
+            let batches = &batches[first..][..found.len()];
+            with_instructions!(width => self.visit_all::<_, STEPS>(width, batches, epsilon, found));
         });
         found
+    }
+
+    #[inline(always)]
+    fn visit_all<W: Width, const STEPS: bool>(
+        &self,
+        width: W,
+        batches: &[VertexBatch],
+        epsilon: f64,
+        found: &mut [[DVec2; LANES]],
+    ) {
+        let (mut scratch, mut corners) = (Vec::new(), Vec::new());
+        for (found, batch) in found.iter_mut().zip(batches) {
+            let mut lane = 0;
+            while lane < LANES {
+                let these = if W::Numbers::LANES == LANES { *batch } else { [batch[lane]; LANES] };
+                let at = points(width, self.positions, these);
+                let [x, y] = if self.problem.has_quadrilaterals() {
+                    let patches = MixedEnergy::gather(width, self, these, epsilon, &mut corners);
+                    visit::<_, STEPS>(&patches, at)
+                } else {
+                    let patches = EnergyRings::gather(width, self, these, epsilon, &mut scratch);
+                    visit::<_, STEPS>(&patches, at)
+                };
+                for k in 0..W::Numbers::LANES {
+                    found[lane + k] = DVec2::new(x.lane(k), y.lane(k));
+                }
+                lane += W::Numbers::LANES;
+            }
+        }
     }
 
     /// Returns the energy of all elements. Threads do not change the order of the sum.
     pub(super) fn energy(&self, epsilon: f64) -> f64 {
         let sums = map_parts(
             self.problem.triangles().chunks(TRIANGLES),
-            |_, triangles| with_instructions!(simd => self.energy_of(simd, triangles, epsilon)),
+            |_, triangles| with_instructions!(width => self.energy_of(width, triangles, epsilon)),
         );
         let sum: f64 = sums.into_iter().sum();
         if !self.problem.has_quadrilaterals() {
@@ -82,23 +97,28 @@ impl Tangle<'_> {
     }
 
     #[inline(always)]
-    fn energy_of<S: Simd>(&self, simd: S, triangles: &[[u32; 3]], epsilon: f64) -> f64 {
+    fn energy_of<W: Width>(&self, width: W, triangles: &[[u32; 3]], epsilon: f64) -> f64 {
         let (fours, rest) = triangles.as_chunks::<LANES>();
-        let mut sum = Lanes::splat(simd, 0.0);
-        for [t, u, v, w] in fours {
-            let first = [t[0], u[0], v[0], w[0]];
-            let second = [t[1], u[1], v[1], w[1]];
-            let third = [t[2], u[2], v[2], w[2]];
-            let p = points(simd, self.positions, first);
-            let q = points(simd, self.positions, second);
-            let r = points(simd, self.positions, third);
-            let targets = numbers(simd, self.targets, first)
-                + numbers(simd, self.targets, second)
-                + numbers(simd, self.targets, third);
-            sum += corner(p, [q, r], targets).energy(epsilon);
+        let mut sums = Sums::new(width);
+        for four in fours {
+            let mut lane = 0;
+            while lane < LANES {
+                let [t, u, v, w] = from_lane::<W>(four, lane);
+                let first = [t[0], u[0], v[0], w[0]];
+                let second = [t[1], u[1], v[1], w[1]];
+                let third = [t[2], u[2], v[2], w[2]];
+                let p = points(width, self.positions, first);
+                let q = points(width, self.positions, second);
+                let r = points(width, self.positions, third);
+                let targets = numbers(width, self.targets, first)
+                    + numbers(width, self.targets, second)
+                    + numbers(width, self.targets, third);
+                sums.add(lane, corner(p, [q, r], targets).energy(epsilon));
+                lane += W::Numbers::LANES;
+            }
         }
         let last: f64 = rest.iter().map(|t| self.corner(false, t).energy(epsilon)).sum();
-        (sum[0] + sum[1]) + (sum[2] + sum[3]) + last
+        sums.total() + last
     }
 
     /// Returns a corner, seen from its first vertex: a triangle, or the sheared corner of a quadrilateral if it `is_right`.
@@ -116,13 +136,10 @@ impl Tangle<'_> {
 
 /// Returns the positions after a step of the visited vertices if `STEPS`, and gradients otherwise.
 #[inline(always)]
-fn visit<S: Simd, const STEPS: bool>(
-    patches: &impl Objective<Lanes<S>>,
-    at: Points<S>,
-) -> Points<S> {
+fn visit<T: Numbers, const STEPS: bool>(patches: &impl Objective<T>, at: [T; 2]) -> [T; 2] {
     match STEPS {
         true => {
-            let going = Mask::splat(at[0].simd, true);
+            let going = at[0].mask(true);
             newton_step(patches, at, going, &SearchRule::UNTANGLE).0
         }
         false => patches.expansion(at).gradient,
@@ -141,24 +158,24 @@ fn edges<T: Real>(at: [T; 2], [p, q]: [[T; 2]; 2]) -> [[T; 2]; 2] {
     [[p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]]
 }
 
-/// The one-rings of four vertices, with the energy of their triangles as an objective.
-struct EnergyRings<'r, S: Simd> {
+/// The one-rings of vertices that are visited at once, with the energy of their triangles as an objective.
+struct EnergyRings<'r, T: Numbers> {
     /// Regularization width ε of the energy, in units of the target area.
     epsilon: f64,
     /// For each neighbor, its position and the inverse target area of the triangle with the next neighbor. Neighbors
     /// are in counter-clockwise order, and the first neighbor is repeated at the end.
-    ring: &'r [(Points<S>, Lanes<S>)],
+    ring: &'r [([T; 2], T)],
 }
 
-impl<'r, S: Simd> EnergyRings<'r, S> {
-    /// Reads the one-rings of four vertices into `scratch`.
+impl<'r, T: Numbers> EnergyRings<'r, T> {
+    /// Reads the one-rings of vertices into `scratch`.
     #[inline(always)]
-    fn gather(
-        simd: S,
+    fn gather<W: Width<Numbers = T>>(
+        width: W,
         tangle: &Tangle<'_>,
         batch: VertexBatch,
         epsilon: f64,
-        scratch: &'r mut Vec<(Points<S>, Lanes<S>)>,
+        scratch: &'r mut Vec<([T; 2], T)>,
     ) -> Self {
         let [a, b, c, d] = batch;
         let a = tangle.problem.ring_of(a);
@@ -169,11 +186,11 @@ impl<'r, S: Simd> EnergyRings<'r, S> {
         scratch.clear();
         for i in 0..degree {
             let neighbors = [a[i], b[i], c[i], d[i]];
-            let target = numbers(simd, tangle.targets, neighbors);
-            scratch.push((points(simd, tangle.positions, neighbors), target));
+            let target = numbers(width, tangle.targets, neighbors);
+            scratch.push((points(width, tangle.positions, neighbors), target));
         }
         scratch.push(scratch[0]);
-        let own = numbers(simd, tangle.targets, batch);
+        let own = numbers(width, tangle.targets, batch);
         for i in 0..degree {
             scratch[i].1 = own.constant(3.0) / (own + scratch[i].1 + scratch[i + 1].1);
         }
@@ -182,15 +199,15 @@ impl<'r, S: Simd> EnergyRings<'r, S> {
 
     /// Returns the triangle between the neighbors `i` and `i` + 1, with the visited vertices at `at`.
     #[inline(always)]
-    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+    fn corner(&self, i: usize, at: [T; 2]) -> Corner<T> {
         let ((p, inverse_target), (q, _)) = (self.ring[i], self.ring[i + 1]);
         Corner { edges: edges(at, [p, q]), inverse_target }
     }
 }
 
-impl<S: Simd> Objective<Lanes<S>> for EnergyRings<'_, S> {
+impl<T: Numbers> Objective<T> for EnergyRings<'_, T> {
     #[inline(always)]
-    fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
+    fn expansion(&self, at: [T; 2]) -> Dual<T> {
         let zero = at[0].constant(0.0);
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.ring.len() - 1 {
@@ -200,39 +217,39 @@ impl<S: Simd> Objective<Lanes<S>> for EnergyRings<'_, S> {
     }
 
     #[inline(always)]
-    fn trial(&self, to: Points<S>, _: Lanes<S>) -> (Lanes<S>, Mask<S>) {
+    fn trial(&self, to: [T; 2], _: T) -> (T, T::Mask) {
         let mut sum = to[0].constant(0.0);
         for i in 0..self.ring.len() - 1 {
-            sum += self.corner(i, to).energy(self.epsilon);
+            sum = sum + self.corner(i, to).energy(self.epsilon);
         }
-        (sum, Mask::splat(sum.simd, true))
+        (sum, sum.mask(true))
     }
 }
 
-/// A corner of each of four vertices, in equal roles.
+/// A corner of each vertex that is visited at once, in equal roles.
 #[derive(Clone, Copy)]
-struct LaneCorner<S: Simd> {
+struct LaneCorner<T: Numbers> {
     role: Role,
     /// Positions of the other two vertices, counter-clockwise.
-    others: [Points<S>; 2],
-    inverse_target: Lanes<S>,
+    others: [[T; 2]; 2],
+    inverse_target: T,
 }
 
-/// The corners of four vertices in a mesh with quadrilaterals, with their energy as an objective.
-struct MixedEnergy<'r, S: Simd> {
+/// The corners of vertices in a mesh with quadrilaterals, with their energy as an objective.
+struct MixedEnergy<'r, T: Numbers> {
     epsilon: f64,
-    corners: &'r [LaneCorner<S>],
+    corners: &'r [LaneCorner<T>],
 }
 
-impl<'r, S: Simd> MixedEnergy<'r, S> {
-    /// Reads the corners of four vertices, whose elements are of equal kinds in equal order, into `scratch`.
+impl<'r, T: Numbers> MixedEnergy<'r, T> {
+    /// Reads the corners of vertices whose elements are of equal kinds in equal order, into `scratch`.
     #[inline(always)]
-    fn gather(
-        simd: S,
+    fn gather<W: Width<Numbers = T>>(
+        width: W,
         tangle: &Tangle<'_>,
         batch: VertexBatch,
         epsilon: f64,
-        scratch: &'r mut Vec<LaneCorner<S>>,
+        scratch: &'r mut Vec<LaneCorner<T>>,
     ) -> Self {
         scratch.clear();
         let [mut a, mut b, mut c, mut d] = batch.map(|v| tangle.problem.corners_around(v));
@@ -244,10 +261,10 @@ impl<'r, S: Simd> MixedEnergy<'r, S> {
             let (role, lanes) = (of(0).0, [of(0).1, of(1).1, of(2).1, of(3).1]);
             let first = [lanes[0][0], lanes[1][0], lanes[2][0], lanes[3][0]];
             let second = [lanes[0][1], lanes[1][1], lanes[2][1], lanes[3][1]];
-            let targets = numbers(simd, tangle.targets, batch)
-                + numbers(simd, tangle.targets, first)
-                + numbers(simd, tangle.targets, second);
-            let others = [first, second].map(|vertices| points(simd, tangle.positions, vertices));
+            let targets = numbers(width, tangle.targets, batch)
+                + numbers(width, tangle.targets, first)
+                + numbers(width, tangle.targets, second);
+            let others = [first, second].map(|vertices| points(width, tangle.positions, vertices));
             let inverse_target = targets.constant(3.0) / targets;
             scratch.push(LaneCorner { role, others, inverse_target });
         }
@@ -256,7 +273,7 @@ impl<'r, S: Simd> MixedEnergy<'r, S> {
 
     /// Returns corner `i` with the visited vertices at `at`.
     #[inline(always)]
-    fn corner(&self, i: usize, at: Points<S>) -> Corner<Lanes<S>> {
+    fn corner(&self, i: usize, at: [T; 2]) -> Corner<T> {
         let LaneCorner { role, others, inverse_target } = self.corners[i];
         let [p, q, r] = role.vertices(at, others);
         let edges = edges(p, [q, r]);
@@ -265,9 +282,9 @@ impl<'r, S: Simd> MixedEnergy<'r, S> {
     }
 }
 
-impl<S: Simd> Objective<Lanes<S>> for MixedEnergy<'_, S> {
+impl<T: Numbers> Objective<T> for MixedEnergy<'_, T> {
     #[inline(always)]
-    fn expansion(&self, at: Points<S>) -> Dual<Lanes<S>> {
+    fn expansion(&self, at: [T; 2]) -> Dual<T> {
         let zero = at[0].constant(0.0);
         let mut sum = Dual { value: zero, gradient: [zero; 2], hessian: [zero; 3] };
         for i in 0..self.corners.len() {
@@ -279,12 +296,12 @@ impl<S: Simd> Objective<Lanes<S>> for MixedEnergy<'_, S> {
     }
 
     #[inline(always)]
-    fn trial(&self, to: Points<S>, _: Lanes<S>) -> (Lanes<S>, Mask<S>) {
+    fn trial(&self, to: [T; 2], _: T) -> (T, T::Mask) {
         let mut sum = to[0].constant(0.0);
         for i in 0..self.corners.len() {
             let role = self.corners[i].role;
-            sum += role.weighted(self.corner(i, to).energy(self.epsilon));
+            sum = sum + role.weighted(self.corner(i, to).energy(self.epsilon));
         }
-        (sum, Mask::splat(sum.simd, true))
+        (sum, sum.mask(true))
     }
 }
