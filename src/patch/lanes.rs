@@ -10,7 +10,7 @@ use glam::DVec2;
 use crate::metric::Real;
 use crate::patch::numbers::{self, Numbers};
 
-/// The vector instructions for which code is compiled.
+/// The vector instructions for which code is compiled: AVX2 on x86, Neon on 64-bit ARM, and `simd128` in WebAssembly.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 type Vectors = fearless_simd::Avx2;
 #[cfg(target_arch = "aarch64")]
@@ -25,7 +25,13 @@ type Vectors = fearless_simd::WasmSimd128;
 )))]
 type Vectors = fearless_simd::Fallback;
 
-/// Whether code is compiled for vector instructions: AVX2 on x86, Neon on 64-bit ARM, and `simd128` in WebAssembly.
+/// The vector instructions of older processors, for which one copy of the code is compiled: SSE4.2 on x86.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+type OlderVectors = fearless_simd::Sse4_2;
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+type OlderVectors = fearless_simd::Fallback;
+
+/// Whether code is compiled for [`Vectors`].
 pub(crate) const HAS_VECTORS: bool = cfg!(any(
     target_arch = "x86",
     target_arch = "x86_64",
@@ -33,12 +39,15 @@ pub(crate) const HAS_VECTORS: bool = cfg!(any(
     target_feature = "simd128"
 ));
 
+/// Whether code is compiled for [`OlderVectors`].
+pub(crate) const HAS_OLDER_VECTORS: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
+
 /// Returns the vector instructions of this processor. `None` on a processor without them, and on threads of a test that leaves
-/// vectors out.
+/// them out.
 #[inline(always)]
 pub(crate) fn vectors() -> Option<Vectors> {
     #[cfg(test)]
-    if ARE_VECTORS_LEFT_OUT.get() {
+    if LEFT_OUT.get() > 0 {
         return None;
     }
     let level = Level::new();
@@ -53,6 +62,19 @@ pub(crate) fn vectors() -> Option<Vectors> {
         let _ = level;
         None
     }
+}
+
+/// Returns the vector instructions of this processor if it is older. `None` on a processor without them.
+#[inline(always)]
+pub(crate) fn older_vectors() -> Option<OlderVectors> {
+    #[cfg(test)]
+    if LEFT_OUT.get() > 1 {
+        return None;
+    }
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return Level::new().as_sse4_2();
+    #[allow(unreachable_code)]
+    None
 }
 
 /// Evaluates an expression with `$f` bound to the formulas of a metric, `$width` to the [`Width`] of this processor, and the constant
@@ -103,9 +125,17 @@ pub(crate) use with_lanes;
 /// the expression `$alone`, or the same expression with `$width` bound to [`Alone`].
 macro_rules! with_instructions {
     ($width:ident => $body:expr, alone => $alone:expr) => {
-        // The condition is decided at compile time, so code for missing vectors is left out.
+        // The first conditions are decided at compile time, so code for vectors that a target lacks is left out.
         if $crate::patch::lanes::HAS_VECTORS
             && let Some($width) = $crate::patch::lanes::vectors()
+        {
+            $crate::patch::lanes::Width::compiled(
+                $width,
+                #[inline(always)]
+                || $body,
+            )
+        } else if $crate::patch::lanes::HAS_OLDER_VECTORS
+            && let Some($width) = $crate::patch::lanes::older_vectors()
         {
             $crate::patch::lanes::Width::compiled(
                 $width,
@@ -325,18 +355,19 @@ pub(crate) fn vertex_maps<W: Width>(
 
 #[cfg(test)]
 thread_local! {
-    static ARE_VECTORS_LEFT_OUT: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+    /// How many kinds of vector instructions are left out, the newest first.
+    static LEFT_OUT: std::cell::Cell<u32> = const { std::cell::Cell::new(0) };
 }
 
-/// Calls a function twice, on threads of its own: with vector instructions, and with the instructions of any processor of the
-/// target. Without optimization, runs in lanes take more stack than threads usually have.
+/// Calls a function three times, on threads of its own: with the vector instructions of this processor, with those of older
+/// processors, and without. Without optimization, runs in lanes take more stack than threads usually have.
 #[cfg(test)]
-pub(crate) fn with_and_without_vectors<R: Send>(of: impl Fn() -> R + Send + Sync) -> [R; 2] {
-    [false, true].map(|are_left_out| {
+pub(crate) fn with_each_width<R: Send>(of: impl Fn() -> R + Send + Sync) -> [R; 3] {
+    [0, 1, 2].map(|left_out| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(2)
             .stack_size(1 << 26)
-            .start_handler(move |_| ARE_VECTORS_LEFT_OUT.set(are_left_out))
+            .start_handler(move |_| LEFT_OUT.set(left_out))
             .build();
         pool.unwrap().install(&of)
     })
