@@ -1,7 +1,5 @@
-// Ends a sweep: adds up the partial sums, writes the history, and applies the stop rule of StopRule::judge in
+// Ends a sweep: adds up the partial sums or the sums of their spans, writes the history, and applies the stop rule of StopRule::judge in
 // src/run/stop.rs. Runs in one workgroup.
-
-var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
 // Returns the base metric's sum of q² - ideal² at an evaluation, as a pair of floats.
 fn base_sum(evaluation: u32) -> vec2<f32> {
@@ -49,49 +47,21 @@ fn judge(last: u32) -> u32 {
     return 0u;
 }
 
-// Combines a tracked value over two sets of triangles. All values except the last are added. The last value is the
-// worst triangle's: the larger value wins and, among equal values, the lower triangle number.
-fn joined(tracked: u32, a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
-    if tracked == TRACKED {
-        let is_first = bitcast<u32>(a.y) < bitcast<u32>(b.y);
-        return select(b, a, a.x > b.x || (a.x == b.x && is_first));
-    }
-    return pair_add(a, b);
-}
-
 @compute @workgroup_size(FINISH_WORKGROUP)
 fn finish(@builtin(local_invocation_index) local: u32) {
     // No invocation returns before the loop: all must reach its barriers.
     let running = control.done == 0u;
     let evaluation = control.evaluated;
-    let partials = params.partials;
+    let spans = span_count(params.partials);
+    // The sums of the spans follow the partial sums.
+    let count = select(params.partials, spans, spans > 0u);
+    let start = select(0u, (TRACKED + 1u) * params.partials, spans > 0u);
     for (var i = 0u; i <= TRACKED; i++) {
-        // The worst value starts at -1, below imr² - 1 of any triangle.
-        var sum = select(vec2(0.0), vec2(-1.0, 0.0), i == TRACKED);
-        // Four loads are under way at once. The order of the sum is that of a plain loop.
-        let first = i * partials;
-        var k = local;
-        for (; k + 3u * FINISH_WORKGROUP < partials; k += 4u * FINISH_WORKGROUP) {
-            let a = partial_sums[first + k];
-            let b = partial_sums[first + k + FINISH_WORKGROUP];
-            let c = partial_sums[first + k + 2u * FINISH_WORKGROUP];
-            let d = partial_sums[first + k + 3u * FINISH_WORKGROUP];
-            sum = joined(i, joined(i, joined(i, joined(i, sum, a), b), c), d);
-        }
-        for (; k < partials; k += FINISH_WORKGROUP) {
-            sum = joined(i, sum, partial_sums[first + k]);
-        }
-        totals[local] = sum;
-        for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
-            workgroupBarrier();
-            if local < half {
-                totals[local] = joined(i, totals[local], totals[local + half]);
-            }
-        }
+        let first = start + i * count;
+        let total = total_of(i, local, first, first + count);
         if local == 0u && running {
-            control.history[(evaluation % HISTORY) * SLOTS + TRACKED_SLOTS[i]] = totals[0];
+            control.history[(evaluation % HISTORY) * SLOTS + TRACKED_SLOTS[i]] = total;
         }
-        workgroupBarrier();
     }
     if local != 0u {
         return;

@@ -1,24 +1,13 @@
-// Adds up the partial sums in one workgroup, and computes from them the factors of the two-loop recursion, as
+// Adds up the partial sums, or the sums of their spans, in one workgroup, and computes from them the factors of the two-loop recursion, as
 // src/run/secant.rs does.
 
-var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
-
+// Returns the sum of all partial sums of a product, or of the sums of their spans.
 fn total(local: u32, i: u32) -> f32 {
-    var sum = vec2(0.0);
-    for (var k = local; k < op.partials; k += FINISH_WORKGROUP) {
-        sum = pair_add(sum, sums[PARTIAL + i * op.partials + k]);
-    }
-    totals[local] = sum;
-    for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if local < half {
-            totals[local] = pair_add(totals[local], totals[local + half]);
-        }
-    }
-    workgroupBarrier();
-    let whole = totals[0].x + totals[0].y;
-    workgroupBarrier();
-    return whole;
+    let spans = span_count(op.partials);
+    let start = select(0u, 4u * op.partials, spans > 0u);
+    let count = select(op.partials, spans, spans > 0u);
+    let sum = sum_of(local, start + i * count, start + (i + 1u) * count);
+    return sum.x + sum.y;
 }
 
 // Returns a product divided by a curvature, or 0 if the pair is not used.

@@ -2,19 +2,19 @@
 
 var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
 
-// Returns the sum of all partial sums, the same for each invocation.
-fn total(local: u32) -> f32 {
+// Returns the sum of the partial sums from `first` on, before `end`, the same for each invocation.
+fn sum_of(local: u32, first: u32, end: u32) -> vec2<f32> {
     var sum = vec2(0.0);
     // Four loads are under way at once. The order of the sum is that of a plain loop.
-    var k = local;
-    for (; k + 3u * FINISH_WORKGROUP < op.partials; k += 4u * FINISH_WORKGROUP) {
+    var k = first + local;
+    for (; k + 3u * FINISH_WORKGROUP < end; k += 4u * FINISH_WORKGROUP) {
         let a = fine[sum_at(k)];
         let b = fine[sum_at(k + FINISH_WORKGROUP)];
         let c = fine[sum_at(k + 2u * FINISH_WORKGROUP)];
         let d = fine[sum_at(k + 3u * FINISH_WORKGROUP)];
         sum = pair_add(pair_add(pair_add(pair_add(sum, a), b), c), d);
     }
-    for (; k < op.partials; k += FINISH_WORKGROUP) {
+    for (; k < end; k += FINISH_WORKGROUP) {
         sum = pair_add(sum, fine[sum_at(k)]);
     }
     totals[local] = sum;
@@ -25,5 +25,13 @@ fn total(local: u32) -> f32 {
         }
     }
     workgroupBarrier();
-    return totals[0].x + totals[0].y;
+    return totals[0];
+}
+
+// Returns the sum of all partial sums, or of the sums of their spans.
+fn total(local: u32) -> f32 {
+    let spans = span_count(op.partials);
+    let first = select(0u, op.partials, spans > 0u);
+    let sum = sum_of(local, first, first + select(op.partials, spans, spans > 0u));
+    return sum.x + sum.y;
 }

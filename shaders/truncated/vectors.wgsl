@@ -2,7 +2,7 @@
 //
 // In order: the residual, the solution, the direction, the product of Hessian and direction (before: the preconditioned
 // residual), the places of the vertices in their aggregates, two rows of inverse diagonal blocks (xx, xy and yy), the
-// partial sums, the coefficients of conjugate gradients, and the tangents of the vertices that are not free: zero for fixed
+// partial sums, the sums of their spans, the coefficients of conjugate gradients, and the tangents of the vertices that are not free: zero for fixed
 // vertices.
 
 fn solution_at(v: u32) -> u32 {
@@ -30,7 +30,7 @@ fn sum_at(invocation: u32) -> u32 {
 }
 
 fn coefficients_at(iteration: u32) -> u32 {
-    return 7u * op.vector + op.partials + iteration;
+    return 7u * op.vector + op.partials + span_count(op.partials) + iteration;
 }
 
 fn tangent_at(v: u32) -> u32 {

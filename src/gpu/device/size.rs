@@ -3,7 +3,7 @@
 use crate::error::GpuError;
 use crate::gpu::kernels::form::Positions;
 use crate::gpu::kernels::layouts::storage_bindings;
-use crate::gpu::kernels::uniforms::{Control, HELD, SLOTS, WORKGROUP};
+use crate::gpu::kernels::uniforms::{Control, HELD, MOST_SUMMED, SLOTS, WORKGROUP};
 use crate::mesh::MeshSize;
 
 /// The size of one buffer of a mesh, with a name for errors.
@@ -46,14 +46,15 @@ impl MeshSize {
     fn needs(self, positions: Positions) -> [Need; 6] {
         let room = if positions == Positions::InTwo { ALIGNMENT } else { 0 };
         let (vertices, triangles) = (self.vertices as u64, self.triangles as u64);
-        let objective = u64::from(objective_invocations(self.triangles));
+        let invocations = objective_invocations(self.triangles);
+        let sums = u64::from(invocations + span_count(invocations));
         let (best, rings) =
             (vertices.saturating_mul(POSITION), triangles.saturating_mul(3 * NUMBER));
-        let sums = (SLOTS as u64 * objective * size_of::<[f32; 2]>() as u64)
-            .max(size_of::<Control>() as u64);
+        let sums =
+            (SLOTS as u64 * sums * size_of::<[f32; 2]>() as u64).max(size_of::<Control>() as u64);
         let starts = vertices.saturating_add(1).saturating_mul(NUMBER);
         let need = |what, bytes, spread| Need { what, bytes, spread };
-        let round = BindingRule::Parts { least: objective * TRIANGLE };
+        let round = BindingRule::Parts { least: u64::from(invocations) * TRIANGLE };
         [
             need("the buffer of vertex positions", best.saturating_add(room), BindingRule::Two),
             need("the buffer of triangles", triangles.saturating_mul(TRIANGLE), round),
@@ -155,10 +156,16 @@ pub(crate) fn check_limit(
     Ok(())
 }
 
-/// Returns how many invocations sum over the triangles: few enough that one workgroup can complete the sum, enough to
-/// fill a large GPU.
+/// Returns how many invocations sum over the triangles: enough to fill a large GPU, and few enough that the sums of their
+/// [spans](span_count) are few.
 pub(crate) fn objective_invocations(triangles: usize) -> u32 {
     u32::try_from(triangles).unwrap_or(u32::MAX).div_ceil(2048).clamp(1, 1024) * WORKGROUP
+}
+
+/// Returns the number of spans in which a list of partial sums is added up; 0 if one workgroup adds up the whole list in one stage.
+/// `span_count` of shaders/spans.wgsl agrees.
+pub(crate) fn span_count(partials: u32) -> u32 {
+    if partials > MOST_SUMMED { partials.div_ceil(MOST_SUMMED) } else { 0 }
 }
 
 #[cfg(test)]

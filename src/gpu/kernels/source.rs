@@ -7,8 +7,8 @@ use crate::gpu::kernels::row::{Composition, Source};
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
     ALTITUDE_ERROR, AT_DISC, BISECTIONS, CURVE_ERROR, FINISH_WORKGROUP, HELD, HIDDEN, HISTORY,
-    INVERTED, MIN_NORMAL, MOST_METRICS, NO_GUARD, OFF_CURVE, SEARCH_TRIALS, SHARED_STRUCTS,
-    SLOT_VECTORS, SLOTS, STEP_TRIALS, TINY, WORKGROUP, WORST,
+    INVERTED, MIN_NORMAL, MOST_METRICS, MOST_SUMMED, NO_GUARD, OFF_CURVE, SEARCH_TRIALS,
+    SHARED_STRUCTS, SLOT_VECTORS, SLOTS, STEP_TRIALS, TINY, WORKGROUP, WORST,
 };
 use crate::layout::{MapKind, OPPOSITE};
 use crate::metric::Metric;
@@ -160,6 +160,7 @@ fn constants(has_quadrilaterals: bool) -> String {
     for (name, value) in [
         ("WORKGROUP", WORKGROUP),
         ("FINISH_WORKGROUP", FINISH_WORKGROUP),
+        ("MOST_SUMMED", MOST_SUMMED),
         ("HISTORY", HISTORY),
         ("SLOTS", SLOTS as u32),
         ("MOST_METRICS", MOST_METRICS as u32),

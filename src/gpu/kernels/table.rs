@@ -109,6 +109,18 @@ kernels! {
         source: ["patch.wgsl", TrackedMetrics, "objective.wgsl"],
     }
 
+    /// Adds up the sums of [`Objective`](Self::Objective) over spans, where they are many.
+    AddUpEvaluation(metrics: Vec<Metric>) {
+        entry_point: "add_up_evaluation",
+        layout: Run,
+        width: FINISH_WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        sees_quadrilaterals: false,
+        user: Sweeps,
+        source: [TrackedSlots, "spans.wgsl", "totals.wgsl", "add_up_evaluation.wgsl"],
+    }
+
     /// Completes the sums of [`Objective`](Self::Objective) and decides whether the run ends.
     Finish(metrics: Vec<Metric>) {
         entry_point: "finish",
@@ -118,7 +130,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Sweeps,
-        source: [TrackedSlots, "finish.wgsl"],
+        source: [TrackedSlots, "spans.wgsl", "totals.wgsl", "finish.wgsl"],
     }
 
     /// Copies the positions of the free vertices if the base objective is the lowest so far.
@@ -527,6 +539,18 @@ kernels! {
         source: ["secants/complete_pair.wgsl"],
     }
 
+    /// Adds up the sums of products of secant pairs over spans, where they are many.
+    AddUpSecants {
+        entry_point: "add_up_secants",
+        layout: Secants,
+        width: FINISH_WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        sees_quadrilaterals: false,
+        user: Corrections,
+        source: ["spans.wgsl", "secants/total.wgsl", "secants/add_up_secants.wgsl"],
+    }
+
     /// Completes the sums of products of secant pairs.
     SumSecants {
         entry_point: "sum_secants",
@@ -536,7 +560,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Corrections,
-        source: ["secants/sum_secants.wgsl"],
+        source: ["spans.wgsl", "secants/total.wgsl", "secants/sum_secants.wgsl"],
     }
 
     /// Subtracts the part that the secant pairs account for from the gradient, before the levels are applied.
@@ -584,7 +608,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/place_members.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/place_members.wgsl"],
     }
 
     /// The Hessian at the free vertices, or the positive semidefinite part of it.
@@ -597,7 +621,7 @@ kernels! {
         sees_quadrilaterals: true,
         user: Steps,
         source: [
-            "one_ring.wgsl", MetricSlopes, "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
+            "one_ring.wgsl", MetricSlopes, "spans.wgsl", "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
             "truncated/find_hessian.wgsl"
         ],
     }
@@ -612,7 +636,7 @@ kernels! {
         sees_quadrilaterals: true,
         user: Slides,
         source: [
-            MetricSlopes, "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
+            MetricSlopes, "spans.wgsl", "truncated/vectors.wgsl", "truncated/hessian_blocks.wgsl",
             "truncated/slide_corners.wgsl", "truncated/find_slide_hessian.wgsl"
         ],
     }
@@ -627,7 +651,7 @@ kernels! {
         sees_quadrilaterals: false,
         user: Slides,
         source: [
-            "truncated/vectors.wgsl", "truncated/slide_lines.wgsl", "truncated/project_residual.wgsl"
+            "spans.wgsl", "truncated/vectors.wgsl", "truncated/slide_lines.wgsl", "truncated/project_residual.wgsl"
         ],
     }
 
@@ -641,7 +665,7 @@ kernels! {
         sees_quadrilaterals: false,
         user: Slides,
         source: [
-            "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/slide_lines.wgsl",
+            "spans.wgsl", "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/slide_lines.wgsl",
             "truncated/precondition_slides.wgsl"
         ],
     }
@@ -656,7 +680,7 @@ kernels! {
         sees_quadrilaterals: true,
         user: Slides,
         source: [
-            "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/slide_lines.wgsl",
+            "spans.wgsl", "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/slide_lines.wgsl",
             "truncated/multiply_slides.wgsl"
         ],
     }
@@ -671,7 +695,7 @@ kernels! {
         sees_quadrilaterals: true,
         user: Steps,
         source: [
-            "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/sum_over_members.wgsl"
+            "spans.wgsl", "truncated/vectors.wgsl", "truncated/slide_corners.wgsl", "truncated/sum_over_members.wgsl"
         ],
     }
 
@@ -684,7 +708,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/advance.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/advance.wgsl"],
     }
 
     /// The preconditioned residual.
@@ -697,8 +721,20 @@ kernels! {
         sees_quadrilaterals: false,
         user: Steps,
         source: [
-            "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/precondition.wgsl"
+            "spans.wgsl", "truncated/vectors.wgsl", "truncated/preconditioned.wgsl", "truncated/precondition.wgsl"
         ],
+    }
+
+    /// Adds up the sums of an inner product over spans, where they are many.
+    AddUpStep {
+        entry_point: "add_up_step",
+        layout: Solution,
+        width: FINISH_WORKGROUP,
+        sees_maps: false,
+        sees_bounds: false,
+        sees_quadrilaterals: false,
+        user: Steps,
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/add_up_step.wgsl"],
     }
 
     /// Begins an iteration of conjugate gradients.
@@ -710,7 +746,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/begin_iteration.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/begin_iteration.wgsl"],
     }
 
     /// The next direction of conjugate gradients.
@@ -722,7 +758,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/turn.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/turn.wgsl"],
     }
 
     /// The product of the Hessian and the direction.
@@ -734,7 +770,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: true,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/multiply.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/multiply.wgsl"],
     }
 
     /// Judges an iteration of conjugate gradients.
@@ -746,7 +782,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/judge_iteration.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/judge_iteration.wgsl"],
     }
 
     /// The centers and sizes of coarser aggregates.

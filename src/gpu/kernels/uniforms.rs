@@ -15,6 +15,9 @@ pub(crate) const HISTORY: u32 = 256;
 pub(crate) const WORKGROUP: u32 = 64;
 /// Workgroup size, in invocations, of the kernels that run in one workgroup and share sums in its memory.
 pub(crate) const FINISH_WORKGROUP: u32 = 256;
+/// Largest number of partial sums that one workgroup adds up. A longer list is added up in two stages: with 65,536 partial sums in
+/// one workgroup, a model of an H100 let a sweep of a million vertices wait for its sums as long as for its visits.
+pub(crate) const MOST_SUMMED: u32 = 4096;
 
 /// Number of values stored for an evaluation: the sum of q² - ideal² for every metric, the number of inverted
 /// triangles, and the largest imr² - 1.

@@ -1,5 +1,6 @@
 //! The list of the kernels that are compiled before the first sweep of a run.
 
+use crate::gpu::device::size::{objective_invocations, span_count};
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::mesh::MeshBuffers;
@@ -40,6 +41,9 @@ pub(super) fn kernels(
         }
     }
     add(Kernel::Objective(plan.tracked()));
+    if span_count(objective_invocations(problem.judged_count())) > 0 {
+        add(Kernel::AddUpEvaluation(plan.tracked()));
+    }
     add(Kernel::Finish(plan.tracked()));
     let takes_steps = truncated::serves(problem, mesh);
     let corrects = match work.ending {
@@ -52,7 +56,7 @@ pub(super) fn kernels(
         levels::kernels(plan, problem).into_iter().for_each(&mut add);
     }
     if takes_steps && (work.ending == Ending::Steps || work.is_measured) {
-        truncated::kernels(plan, slides).into_iter().for_each(&mut add);
+        truncated::kernels(plan, problem, slides).into_iter().for_each(&mut add);
     }
     kernels
 }

@@ -7,7 +7,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, rows, uniform, zeroed};
-use crate::gpu::device::size::{POSITION, objective_invocations};
+use crate::gpu::device::size::{POSITION, objective_invocations, span_count};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::form::MeshForm;
@@ -36,6 +36,8 @@ pub(crate) struct Dispatches {
     sweeps: Vec<(Metric, Derivatives, Pipeline)>,
     /// The pipelines that evaluate the objective, in the order of the parts of elements.
     objectives: Vec<Pipeline>,
+    /// The pipeline that adds up partial sums over spans, and the number of spans. `None` if one workgroup adds up all.
+    add_up: Option<(Pipeline, u32)>,
     finish: Pipeline,
     keep_best: Option<Pipeline>,
     /// The visits of sliding vertices. `None` if no vertex slides.
@@ -217,13 +219,18 @@ impl Dispatches {
             objectives.push(gpu.pipelines.get(&gpu.device, &kernel, part.form(form))?);
             pause().await;
         }
+        let partials = objective_invocations(problem.judged_count());
+        let spans = span_count(partials);
+        let add_up = match spans {
+            0 => None,
+            spans => Some((pipeline(Kernel::AddUpEvaluation(plan.tracked()))?, spans)),
+        };
         let finish = pipeline(Kernel::Finish(plan.tracked()))?;
         pause().await;
         let keep_best = keep_best.then(|| pipeline(Kernel::KeepBest)).transpose()?;
         pause().await;
 
-        let partials = objective_invocations(problem.judged_count());
-        let sums = (plan.tracked().len() as u64 + 2) * u64::from(partials);
+        let sums = (plan.tracked().len() as u64 + 2) * u64::from(partials + spans);
         let kept = if keep_best.is_some() { problem.free_count() as u64 } else { 1 };
         let uniforms = Uniforms::new(gpu, steps.clone(), problem.colors(), &mesh.parts);
         let params = params(problem, &plan, partials);
@@ -255,6 +262,7 @@ impl Dispatches {
             bind_groups,
             sweeps,
             objectives,
+            add_up,
             finish,
             keep_best,
             slides,
@@ -306,6 +314,12 @@ impl Dispatches {
             passes.run(objective, None, |pass| {
                 self.bind(pass, part, self.uniforms.of_elements() + part);
                 pass.dispatch_workgroups(self.objective_groups, 1, 1);
+            });
+        }
+        if let Some((add_up, spans)) = &self.add_up {
+            passes.run(add_up, None, |pass| {
+                self.bind(pass, 0, 0);
+                pass.dispatch_workgroups(*spans, 1, 1);
             });
         }
         passes.run(&self.finish, None, |pass| {

@@ -4,7 +4,7 @@ use crate::error::GpuError;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{FineOp, TransferOp, WORKGROUP};
 use crate::gpu::mesh::{ElementPart, MeshBuffers, RingPart};
-use crate::gpu::run::listing::{Bound, Dispatch, Groups, Listing, Op, SUMS};
+use crate::gpu::run::listing::{Bound, Dispatch, Groups, Listing, Op, SUMS, along_sums};
 use crate::metric::Metric;
 use crate::run::multilevel::{Hierarchy, NONE};
 
@@ -31,7 +31,7 @@ impl<'g> LevelList<'g> {
         free: u32,
         partials: u32,
     ) -> Result<Self, GpuError> {
-        let partial_sums = listing.vector(4 * partials as usize);
+        let partial_sums = listing.vector(along_sums(partials) as usize);
         let (values, [roots, diagonal]) =
             listing.values.place([hierarchy.roots(), hierarchy.inverse_diagonal()])?;
         let (of_page, [aggregate_of]) = listing.structure.place([hierarchy.aggregate_of()])?;

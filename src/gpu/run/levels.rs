@@ -5,12 +5,12 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::size::{check_limit, objective_invocations};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::table::Kernel;
-use crate::gpu::kernels::uniforms::{CoarseOp, FineOp, NO_GUARD};
+use crate::gpu::kernels::uniforms::{FineOp, NO_GUARD};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::run::dispatches::Dispatches;
 use crate::gpu::run::level_list::LevelList;
 use crate::gpu::run::listing::{
-    Bound, Dispatch, Groups, Listing, Op, TOTALS, Uploaded, coarse_op, encode, uniforms,
+    Bound, Dispatch, Groups, Listing, Op, Uploaded, encode, summing_ops, uniforms,
 };
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
@@ -34,7 +34,7 @@ pub(crate) struct Levels {
     /// shape guard and a least altitude.
     left_out: Vec<Dispatch>,
     objective: Vec<Dispatch>,
-    sum: Dispatch,
+    sums: Vec<Dispatch>,
     movement: Dispatch,
     pub(crate) vectors: wgpu::Buffer,
     /// The gradient of Σ q² at each free vertex.
@@ -92,15 +92,17 @@ impl Levels {
         let left_out = if has_guard { list.left_out()? } else { Vec::new() };
         let objective = list.objective(metric, partials)?;
         let LevelList { mut listing, fine, .. } = list;
-        let (partial_sums, totals) = (fine.partial_sums, TOTALS);
-        let op = Op::Coarse(CoarseOp { partial_sums, totals, ..coarse_op(partials) });
         let bound = Bound::Coarse { structure: 0, values: 0 };
-        let sum = listing.step(Kernel::SumAlongCorrection, bound, Groups::Just(1), op)?;
+        let mut sums = Vec::new();
+        for (groups, op) in summing_ops(partials, fine.partial_sums) {
+            let (kernel, groups) = (Kernel::SumAlongCorrection, Groups::Just(groups));
+            sums.push(listing.step(kernel, bound, groups, Op::Coarse(op))?);
+        }
         let (kernel, whole) = (Kernel::MoveAlongCorrection, Bound::Fine { part: 0 });
         let movement = listing.step(kernel, whole, Groups::ForRows, Op::Fine(fine))?;
         check_vectors(gpu, listing.vectors)?;
         let listed = find_gradient.iter().chain(&correction).chain(&left_out).chain(&objective);
-        let (stride, ops) = uniforms(gpu, listed.chain([&sum, &movement]), listing.listed);
+        let (stride, ops) = uniforms(gpu, listed.chain(&sums).chain([&movement]), listing.listed);
         let Uploaded { bind_groups, ops, vectors, gradient, direction } =
             listing.upload(mesh, free, &dispatches.params, &ops).await?;
         Ok(Self {
@@ -112,7 +114,7 @@ impl Levels {
             correction,
             left_out,
             objective,
-            sum,
+            sums,
             movement,
             vectors,
             gradient,
@@ -147,7 +149,7 @@ impl Levels {
     /// Encodes the evaluation of the objective along the correction. `vectors` then begins with the four totals.
     pub(crate) fn encode_objective(&self, passes: &mut Passes<'_>) {
         self.objective.iter().for_each(|step| self.encode(passes, step));
-        self.encode(passes, &self.sum);
+        self.sums.iter().for_each(|step| self.encode(passes, step));
     }
 
     /// Encodes the movement of the vertices along the correction.

@@ -5,6 +5,7 @@ use wgpu::BufferUsages as Usage;
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, uniform, zeroed};
+use crate::gpu::device::size::span_count;
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::form::MeshForm;
@@ -87,6 +88,25 @@ pub(super) fn coarse_op(rows: u32) -> CoarseOp {
         totals: NONE,
         padding: 0,
     }
+}
+
+/// Returns the operations that add up the partial sums along a correction, each with its number of workgroups. The sums of the spans
+/// follow the partial sums, in room for [`along_sums`] values.
+pub(super) fn summing_ops(partials: u32, partial_sums: u32) -> Vec<(u32, CoarseOp)> {
+    let op = CoarseOp { partial_sums, totals: TOTALS, ..coarse_op(partials) };
+    match span_count(partials) {
+        0 => vec![(1, op)],
+        spans => {
+            let of_spans = partial_sums + 4 * partials;
+            let second = CoarseOp { rows: spans, partial_sums: of_spans, ..op };
+            vec![(spans, CoarseOp { totals: of_spans, ..op }), (1, second)]
+        }
+    }
+}
+
+/// Returns the number of partial sums along a correction, with the sums of their spans.
+pub(super) fn along_sums(partials: u32) -> u32 {
+    4 * (partials + span_count(partials))
 }
 
 /// The number of workgroups of a dispatch.

@@ -11,6 +11,8 @@ mod secants;
 mod slides;
 pub(crate) mod stiffness;
 #[cfg(test)]
+mod sums_tests;
+#[cfg(test)]
 mod tests;
 mod truncated;
 

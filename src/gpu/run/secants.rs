@@ -7,7 +7,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, uniform, write_by_pieces, zeroed};
 use crate::gpu::device::pending::Waiting;
 use crate::gpu::device::readback;
-use crate::gpu::device::size::objective_invocations;
+use crate::gpu::device::size::{objective_invocations, span_count};
 use crate::gpu::encode::Passes;
 use crate::gpu::kernels::dispatch::dispatch;
 use crate::gpu::kernels::layouts::SecantsBindings;
@@ -36,6 +36,8 @@ pub(crate) struct Secants {
     /// Distance between the two uniforms, in bytes.
     stride: u32,
     close: Pipeline,
+    /// The pipeline that adds up partial sums over spans. `None` if one workgroup adds up all.
+    add_up: Option<Pipeline>,
     sum: Pipeline,
     bend: Pipeline,
     multiply: Pipeline,
@@ -61,6 +63,9 @@ impl Secants {
         let pipeline = |kernel| gpu.pipelines.get(&gpu.device, &kernel, positions);
         let close = pipeline(Kernel::CompletePair)?;
         pause().await;
+        let partials = objective_invocations(free as usize);
+        let spans = span_count(partials);
+        let add_up = (spans > 0).then(|| pipeline(Kernel::AddUpSecants)).transpose()?;
         let sum = pipeline(Kernel::SumSecants)?;
         pause().await;
         let bend = pipeline(Kernel::BendGradient)?;
@@ -69,7 +74,6 @@ impl Secants {
         pause().await;
         let open = pipeline(Kernel::BeginPair)?;
         pause().await;
-        let partials = objective_invocations(free as usize);
         // The first pair opens in the slot of the older pair.
         let op = SecantOp {
             free,
@@ -85,7 +89,7 @@ impl Secants {
         let (bind_group, ops, buffers) = scoped(&gpu.device, || {
             let zeros = vec![0_u8; 2 * stride as usize];
             let ops = filled(gpu, "secant steps", &zeros, Usage::UNIFORM | Usage::COPY_DST);
-            let sums = u64::from(SCALARS + 4 * partials) * size_of::<[f32; 2]>() as u64;
+            let sums = u64::from(SCALARS + 4 * (partials + spans)) * size_of::<[f32; 2]>() as u64;
             let [steps, changes, low_starts, sums] = [
                 ("secant steps", 2 * vector),
                 ("secant changes", 2 * vector),
@@ -99,7 +103,19 @@ impl Secants {
             let bind_group = bound(gpu, mesh, params, levels, &ops, &buffers);
             (bind_group, ops, buffers)
         })?;
-        Ok(Some(Self { bind_group, ops, buffers, stride, close, sum, bend, multiply, open, op }))
+        Ok(Some(Self {
+            bind_group,
+            ops,
+            buffers,
+            stride,
+            close,
+            add_up,
+            sum,
+            bend,
+            multiply,
+            open,
+            op,
+        }))
     }
 
     /// Binds the pairs to other levels of the same mesh.
@@ -180,17 +196,26 @@ impl Secants {
         let free = self.op.free;
         if self.op.pairs > 0 {
             self.run(passes, &self.close, 0, |pass| pass.dispatch_workgroups(groups, 1, 1));
-            self.run(passes, &self.sum, 0, |pass| pass.dispatch_workgroups(1, 1, 1));
+            self.add_up(passes, 0);
             self.run(passes, &self.bend, 0, |pass| dispatch(pass, free));
         }
         levels.encode_cycle(passes);
         if self.op.pairs > 0 {
             self.run(passes, &self.multiply, 1, |pass| pass.dispatch_workgroups(groups, 1, 1));
-            self.run(passes, &self.sum, 1, |pass| pass.dispatch_workgroups(1, 1, 1));
+            self.add_up(passes, 1);
         }
         self.run(passes, &self.open, 0, |pass| dispatch(pass, free));
         let SecantOp { newer, older, pairs, .. } = self.op;
         self.op = SecantOp { newer: older, older: newer, pairs: (pairs + 1).min(2), ..self.op };
+    }
+
+    /// Encodes the end of the sums of products.
+    fn add_up(&self, passes: &mut Passes<'_>, op: u32) {
+        if let Some(add_up) = &self.add_up {
+            let spans = span_count(self.op.partials);
+            self.run(passes, add_up, op, |pass| pass.dispatch_workgroups(spans, 1, 1));
+        }
+        self.run(passes, &self.sum, op, |pass| pass.dispatch_workgroups(1, 1, 1));
     }
 
     fn run(

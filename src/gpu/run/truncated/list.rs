@@ -7,17 +7,16 @@ use super::nest::{Nest, SlideLists};
 use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::{filled, filled_with_pauses, zeroed};
-use crate::gpu::device::size::{check_limit, objective_invocations};
+use crate::gpu::device::size::{check_limit, objective_invocations, span_count};
 use crate::gpu::kernels::form::MeshForm;
 use crate::gpu::kernels::row::InvariantMetric;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{
-    CoarseOp, FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepLine, StepOp, StepState,
-    WORKGROUP,
+    FineOp, LatticeOp, NO_GUARD, Params, STEP_TRIALS, StepLine, StepOp, StepState, WORKGROUP,
 };
 use crate::gpu::mesh::{Curves, ElementPart, MeshBuffers};
 use crate::gpu::run::dispatches::{Dispatches, params};
-use crate::gpu::run::listing::{Dispatch, Groups, Op, SUMS, TOTALS, coarse_op, uniforms};
+use crate::gpu::run::listing::{Dispatch, Groups, Op, SUMS, along_sums, summing_ops, uniforms};
 use crate::gpu::scope::scoped;
 use crate::layout::Problem;
 use crate::parallel::pace::pause;
@@ -172,6 +171,16 @@ impl<'g> List<'g> {
         self.dispatch(kernel, Bound::Solution, Groups::Just(1), Op::Step(self.step)).await
     }
 
+    /// Returns the dispatch that adds up partial sums over spans, or none if one workgroup adds up all.
+    async fn add_up(&mut self) -> Result<Option<Dispatch>, GpuError> {
+        let spans = span_count(self.step.partials);
+        if spans == 0 {
+            return Ok(None);
+        }
+        let (bound, groups) = (Bound::Solution, Groups::Just(spans));
+        self.dispatch(Kernel::AddUpStep, bound, groups, Op::Step(self.step)).await.map(Some)
+    }
+
     /// Returns the dispatch of a kernel on the levels.
     async fn lattice(&mut self, kernel: Kernel, op: LatticeOp) -> Result<Dispatch, GpuError> {
         self.dispatch(kernel, Bound::Lattice, Groups::ForRows, Op::Lattice(op)).await
@@ -261,10 +270,12 @@ impl<'g> List<'g> {
         }
         list.push(self.strided(Kernel::Precondition).await?);
         list.extend(self.strided_slides(Kernel::PreconditionSlides).await?);
+        list.extend(self.add_up().await?);
         list.push(self.single(Kernel::BeginIteration).await?);
         list.push(self.step(Kernel::Turn, self.step.movers).await?);
         list.push(self.strided(Kernel::Multiply).await?);
         list.extend(self.strided_slides(Kernel::MultiplySlides).await?);
+        list.extend(self.add_up().await?);
         list.push(self.single(Kernel::JudgeIteration).await?);
         list.push(self.step(Kernel::Advance, self.nest.op(0).rows).await?);
         self.iteration = list;
@@ -296,7 +307,6 @@ impl<'g> List<'g> {
             inverse_penalty_guard: 0.0,
             padding: 0,
         };
-        let sum = CoarseOp { partial_sums: SUMS, totals: TOTALS, ..coarse_op(partials) };
         let whole = Groups::Just(partials / WORKGROUP);
         let movement = FineOp { rows: self.step.vertices, ..fine };
         let begin = self.of_trials(Kernel::BeginTrials).await?;
@@ -308,9 +318,10 @@ impl<'g> List<'g> {
             let form = part.form(self.form);
             evaluation.push(self.dispatch_in(form, kernel, bound, whole, op).await?);
         }
-        let kernel = Kernel::SumAlongCorrection;
-        evaluation
-            .push(self.dispatch(kernel, Bound::Coarse, Groups::Just(1), Op::Coarse(sum)).await?);
+        for (groups, op) in summing_ops(partials, SUMS) {
+            let (kernel, groups) = (Kernel::SumAlongCorrection, Groups::Just(groups));
+            evaluation.push(self.dispatch(kernel, Bound::Coarse, groups, Op::Coarse(op)).await?);
+        }
         evaluation.push(self.of_trials(Kernel::JudgeLength).await?);
         let kernel = Kernel::MoveAlongCorrection;
         let op = Op::Fine(movement);
@@ -356,7 +367,7 @@ impl<'g> List<'g> {
                 entries: storage("Hessian", entries * ROW),
                 fine: zeroed(gpu, "step vectors", fine_bytes, copied),
                 rows: storage("step rows", u64::from(nest.rows) * ROW),
-                vectors: storage("step sums", u64::from(SUMS + 4 * partials) * PAIR),
+                vectors: storage("step sums", u64::from(SUMS + along_sums(partials)) * PAIR),
                 state: zeroed(gpu, "step state", size_of::<StepState>() as u64, copied),
                 lines: zeroed(gpu, "unknowns of sliding vertices", bytes, written),
                 nothing: storage("no values", PAIR),
@@ -418,7 +429,7 @@ fn step_op(nest: &Nest, problem: &Problem, alignment: u32) -> StepOp {
         corner_starts: of_slides(|slides| slides.corner_starts),
         corners: of_slides(|slides| slides.corners),
         slide_entries: problem.ring().len() as u32,
-        tangents: VECTORS * vector + partials + StepRequest::MOST_ITERATIONS,
+        tangents: VECTORS * vector + partials + span_count(partials) + StepRequest::MOST_ITERATIONS,
         padding: [0; 2],
     }
 }

@@ -18,6 +18,7 @@ use crate::error::GpuError;
 use crate::gpu::device::Gpu;
 use crate::gpu::device::pending::Waiting;
 use crate::gpu::device::readback;
+use crate::gpu::device::size::{objective_invocations, span_count};
 use crate::gpu::encode::Passes;
 use crate::gpu::encode::sealed::Target;
 use crate::gpu::kernels::row::User;
@@ -46,9 +47,12 @@ pub(super) fn serves(problem: &Problem, mesh: &MeshBuffers) -> bool {
 }
 
 /// Returns the kernels of Newton steps in a run by a plan. `slides` is whether vertices slide.
-pub(super) fn kernels(plan: &Plan, slides: bool) -> Vec<Kernel> {
+pub(super) fn kernels(plan: &Plan, problem: &Problem, slides: bool) -> Vec<Kernel> {
     let along = Kernel::ObjectiveAlongCorrection(plan.scheme.base());
     let mut kernels = Kernel::needed_by(plan, User::Steps);
+    if span_count(objective_invocations(problem.free_count())) == 0 {
+        kernels.retain(|kernel| *kernel != Kernel::AddUpStep);
+    }
     if slides {
         kernels.extend(Kernel::needed_by(plan, User::Slides));
     }
