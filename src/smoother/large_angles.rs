@@ -6,7 +6,7 @@ use crate::error::MeshError;
 use crate::layout::Problem;
 use crate::measure::{InnerEdge, inner_edges};
 use crate::metric::Metric;
-use crate::options::Options;
+use crate::options::{Guard, Options};
 use crate::outcome::LargeAngles;
 use crate::slide::OnCurves;
 use crate::whole::altitude;
@@ -62,14 +62,15 @@ impl Aim for ToAcute {
 impl Smoother<'_> {
     /// Lessens the large angles that a run by ACUTE has left at `points`, its result as stored, which are those of
     /// `positions`. Returns the record of the rounds. `None` if the run has another base metric, if its targets
-    /// belong to places or are no concern of the metric, or if no triangle that can move has a large angle.
+    /// belong to places or are no concern of the metric, if no sweep is to be made, or if no triangle that can move has a large angle.
+    /// `None` too, and the points are unchanged, if vertices that slide would exceed the guard of the worst triangle.
     pub(super) async fn lessen_large_angles(
         &self,
         options: &Options,
         problem: &Problem,
-        curves: Option<&mut OnCurves>,
+        mut curves: Option<&mut OnCurves>,
         positions: &[DVec2],
-        points: &mut [[f64; 2]],
+        points: &mut Vec<[f64; 2]>,
         goes_on: impl FnMut() -> bool,
     ) -> Result<Option<LargeAngles>, MeshError> {
         let has_field = self.field.is_some();
@@ -79,7 +80,7 @@ impl Smoother<'_> {
             Metric::AcuteSize => self.problem.targets().is_none() || !self.problem.is_stretched(),
             _ => false,
         };
-        if !is_acute || has_field {
+        if !is_acute || has_field || options.max_sweeps == 0 {
             return Ok(None);
         }
         let movable = Movable::new(self);
@@ -92,13 +93,24 @@ impl Smoother<'_> {
         if before == 0 {
             return Ok(None);
         }
-        let swept = points.to_vec();
-        let present = Present { problem, curves, positions, points };
+        let (swept, swept_curves) = (points.clone(), curves.as_deref().cloned());
+        let present = Present { problem, curves: curves.as_deref_mut(), positions, points };
         movable.descend(&aim, options, present, goes_on).await;
         while self.certified(points, Some(options.stored)).await? > 0
             || options.keep_altitude
                 && altitude::restore(&self.topology, &self.mesh.points, points, f64::INFINITY) > 0
         {
+        }
+        // Rounds move vertices along curves without the guard.
+        if options.guard == Guard::Worst {
+            let lists = [&self.mesh.points[..], &swept, points];
+            let [given, swept_to, now] = movable.worst_shapes(lists).await;
+            // Sweeps in single precision may exceed the guard by rounding.
+            if !now.has_imr_of(given) && !now.has_imr_of(swept_to) {
+                *points = swept;
+                curves.zip(swept_curves).into_iter().for_each(|(now, swept)| *now = swept);
+                return Ok(None);
+            }
         }
         let moved = points.iter().zip(&swept).filter(|(to, from)| to != from).count();
         Ok(Some(LargeAngles { moved, triangles: [before, count(points).await], f: [0.0; 2] }))

@@ -6,9 +6,9 @@ use std::collections::HashSet;
 use glam::DVec2;
 
 use crate::layout::Problem;
-use crate::options::{Options, WorstBy};
+use crate::options::{Guard, Options, WorstBy};
 use crate::parallel::paced;
-use crate::run::Plan;
+use crate::run::{Plan, set_guards};
 use crate::slide::{OnCurves, Sliding};
 use crate::targets::Surface;
 use crate::whole::altitude;
@@ -136,7 +136,16 @@ impl<'s> Movable<'s> {
         mut goes_on: impl FnMut() -> bool,
     ) {
         let Present { problem, mut curves, positions, points } = present;
-        let step = Plan::new(options).base_step(1.0);
+        let mut plan = Plan::new(options);
+        let step = plan.base_step(1.0);
+        let shape = match options.guard {
+            Guard::Worst => {
+                let start = &self.smoother.problem;
+                set_guards(&mut plan, options.guard, start, start.positions()).await;
+                plan.base_step(1.0).shape_guard
+            }
+            Guard::ByMetric => f64::INFINITY,
+        };
         let floor = if options.keep_altitude { altitude::least_of(problem) } else { 0.0 };
         let mut heavy = TriangleSet::new();
         let topology = &self.smoother.topology;
@@ -160,7 +169,7 @@ impl<'s> Movable<'s> {
             let rules = MoveConstraints {
                 badness: Badness(WorstBy::Imr),
                 step,
-                shape: f64::INFINITY,
+                shape,
                 floor,
                 bounds: problem.radii(),
                 heavy: Some(&heavy).filter(|heavy| !heavy.is_empty()),

@@ -97,6 +97,11 @@ impl WorstShapes {
         }
     }
 
+    /// Returns whether the worst inverse mean ratio is no larger than that of other triangles, up to [`ROUNDING`].
+    pub(crate) fn has_imr_of(self, other: Self) -> bool {
+        self.imr <= other.imr * (1.0 + ROUNDING)
+    }
+
     /// Returns the worst shapes of the triangles of two lists.
     #[inline]
     pub(crate) fn and(self, other: Self) -> Self {

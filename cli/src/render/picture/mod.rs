@@ -2,6 +2,7 @@
 
 mod arrows;
 mod canvas;
+mod clip;
 mod color;
 mod draw;
 mod faces;

@@ -6,6 +6,7 @@ use tiny_skia::{
 
 use crate::error::CliError;
 use crate::render::picture::canvas::{Anchor, Canvas, Point};
+use crate::render::picture::clip::clipped;
 use crate::render::picture::color::{BAD, BLACK, Color, NEUTRAL, WHITE, of_goodness};
 use crate::render::picture::font::Font;
 use crate::render::picture::raster::Raster;
@@ -24,6 +25,18 @@ impl Png {
         let mut pixels = Pixmap::new(width, height).ok_or_else(too_large)?;
         pixels.fill(tiny_skia::Color::WHITE);
         Ok(Self { pixels, font: Font::new()?, clip: None })
+    }
+
+    /// Returns the corners of the picture, with a margin beyond which nothing shows. The renderer panics at coordinates of millions
+    /// of pixels.
+    fn bounds(&self, margin: f32) -> [Point; 2] {
+        let size = [self.pixels.width() as f32, self.pixels.height() as f32];
+        [[-margin; 2], size.map(|pixels| pixels + margin)]
+    }
+
+    /// Returns whether a mark of this radius around a point shows in the picture.
+    fn shows(&self, at: Point, radius: f32) -> bool {
+        clipped([at, at], self.bounds(radius)).is_some()
     }
 
     fn stroke(&mut self, path: Option<Path>, width: f32, color: Color, opacity: f32) {
@@ -98,10 +111,11 @@ impl Canvas for Png {
     }
 
     fn lines(&mut self, segments: &[[Point; 2]], width: f32, color: Color, opacity: f32) {
+        let bounds = self.bounds(width + 1.0);
         // Segments are drawn in pieces, because the time for a path grows faster than its length.
         for piece in segments.chunks(4096) {
             let mut path = PathBuilder::new();
-            for [from, to] in piece {
+            for [from, to] in piece.iter().filter_map(|segment| clipped(*segment, bounds)) {
                 path.move_to(from[0], from[1]);
                 path.line_to(to[0], to[1]);
             }
@@ -110,6 +124,9 @@ impl Canvas for Png {
     }
 
     fn rectangle(&mut self, [[left, top], [right, bottom]]: [Point; 2], color: Color) {
+        let [least, most] = self.bounds(1.0);
+        let [left, right] = [left, right].map(|x| x.clamp(least[0], most[0]));
+        let [top, bottom] = [top, bottom].map(|y| y.clamp(least[1], most[1]));
         if let Some(rectangle) = Rect::from_ltrb(left, top, right, bottom) {
             self.pixels.fill_rect(
                 rectangle,
@@ -121,7 +138,9 @@ impl Canvas for Png {
     }
 
     fn disc(&mut self, [x, y]: Point, radius: f32, fill: Color) {
-        if let Some(path) = PathBuilder::from_circle(x, y, radius) {
+        if self.shows([x, y], radius + 1.0)
+            && let Some(path) = PathBuilder::from_circle(x, y, radius)
+        {
             let paint = paint(fill, 1.0);
             self.pixels.fill_path(
                 &path,
@@ -134,7 +153,9 @@ impl Canvas for Png {
     }
 
     fn ring(&mut self, [x, y]: Point, radius: f32, width: f32, color: Color) {
-        self.stroke(PathBuilder::from_circle(x, y, radius), width, color, 1.0);
+        if self.shows([x, y], radius + width) {
+            self.stroke(PathBuilder::from_circle(x, y, radius), width, color, 1.0);
+        }
     }
 
     fn text(&mut self, [x, y]: Point, size: f32, anchor: Anchor, text: &str) {
@@ -144,7 +165,9 @@ impl Canvas for Png {
             Anchor::Middle => x - width / 2.0,
             Anchor::End => x - width,
         };
-        if let Some(path) = self.font.outlines([start, y], size, text) {
+        if self.shows([start, y], width + 2.0 * size)
+            && let Some(path) = self.font.outlines([start, y], size, text)
+        {
             // A white margin keeps the text legible on any background.
             self.stroke(Some(path.clone()), size / 5.0, WHITE, 1.0);
             let paint = paint(BLACK, 1.0);
