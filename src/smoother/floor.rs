@@ -70,7 +70,10 @@ impl Smoother<'_> {
             && options.guard == usual.guard
             && options.improve_worst != Some(WorstBy::Altitude)
             && options.stopping.goal().is_none();
-        if !is_usual || self.problem.targets().is_some() || self.field.is_some() {
+        // Equilateral triangles on the sphere are targets too, as their sizes differ in the projection.
+        let is_usual_on_sphere = self.problem.is_projected() && !self.problem.is_stretched();
+        let has_targets = self.problem.targets().is_some() && !is_usual_on_sphere;
+        if !is_usual || has_targets || self.field.is_some() {
             return None;
         }
         let movable = Movable::new(self);

@@ -202,14 +202,24 @@ fn the_floor_of_a_mesh_on_the_sphere_is_that_of_angles_on_the_sphere() {
     mesh.points = mesh.points.iter().map(|[x, y]| [2.0 * x, 55.0 + y]).collect();
     let mut smoother = Smoother::new(&mesh).unwrap();
     assert!(smoother.project_from_sphere().unwrap());
-    let outcome = run(&smoother, &Options::default(), &Backend::Cpu);
-    let quality =
-        |points: &[[f64; 2]]| Quality::on(Surface::Sphere, points, smoother.topology()).unwrap();
-    let [before, after] = [&mesh.points, &outcome.points].map(|points| quality(points));
-    let label = format!("{before:?} {after:?} {:?}", outcome.floored);
-    assert!(outcome.floored.is_some() && outcome.best_sweep > 0, "{label}");
-    assert!(after.min_angle >= before.min_angle - 1e-7, "{label}");
-    assert!(after.worst_imr <= before.worst_imr * (1.0 + 2e-9), "{label}");
+    // A former defect: runs to equilateral triangles on the sphere, as those of the command line, had no floor.
+    let topology = smoother.topology().corners().to_vec();
+    let equilateral = Targets::equilateral(mesh.points.len());
+    let equilateral = equilateral.seen_on(Surface::Sphere, &mesh.points, &topology).unwrap();
+    for has_targets in [false, true] {
+        if has_targets {
+            smoother.set_targets(&equilateral).unwrap();
+        }
+        let outcome = run(&smoother, &Options::default(), &Backend::Cpu);
+        let quality = |points: &[[f64; 2]]| {
+            Quality::on(Surface::Sphere, points, smoother.topology()).unwrap()
+        };
+        let [before, after] = [&mesh.points, &outcome.points].map(|points| quality(points));
+        let label = format!("{before:?} {after:?} {:?}", outcome.floored);
+        assert!(outcome.floored.is_some() && outcome.best_sweep > 0, "{label}");
+        assert!(after.min_angle >= before.min_angle - 1e-7, "{label}");
+        assert!(after.worst_imr <= before.worst_imr * (1.0 + 2e-9), "{label}");
+    }
 }
 
 /// A canceled run, and a run whose observer ends the floor, leave no worse triangle either.
