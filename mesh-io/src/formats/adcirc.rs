@@ -11,11 +11,11 @@ use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
-use crate::text::cursor::Cursor;
+use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::syntax::Syntax;
 use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::{each_row, nodes};
+use crate::visit::rows::{each_row, end_of_list, nodes};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 
@@ -40,31 +40,33 @@ impl FormatReader for Adcirc {
         visitor.end_nodes(cursor)?;
         depths.send("depth", CoordinateEncoding::TEXT.into(), visitor);
         visitor.expect_elements(cursor.capacity(elements, "1 3 1 2 3\n".len()));
-        each_row(
-            cursor,
-            elements,
-            "elements",
-            visitor,
-            |cursor| {
-                let id = cursor.integer("the number of an element")?;
-                let corners = cursor.integer(format_args!("how many nodes element {id} has"))?;
-                let Some(kind) = CellKind::of_polygon(corners).filter(|kind| kind.nodes() > 2)
-                else {
-                    let problem = format!("element {id} has {corners} nodes");
-                    return Err(cursor.error(problem, "Elements of three and four nodes are read"));
-                };
-                let nodes = nodes(cursor, kind)?;
-                // Some programs write four nodes in every row, and 0 as the fourth node of a triangle. Nodes count from 1.
-                let kind = if nodes[3] == 0 { CellKind::Triangle } else { kind };
-                Ok(Element { id, kind, region: [0; 2], nodes })
-            },
-            |cursor, visitor, _, element| visitor.element(cursor, &element),
-        )?;
+        each_row(cursor, elements, "elements", visitor, element, |cursor, visitor, _, element| {
+            visitor.element(cursor, &element)
+        })?;
+        // The number of boundaries follows. An element would have the next number.
+        end_of_list(cursor, elements, "elements", |cursor| match element(cursor)? {
+            Element { id, .. } if id == elements + 1 => Ok(()),
+            _ => Err(cursor.error("a boundary", CORRECT)),
+        })?;
         if visitor.asks_for_groups() || visitor.asks_for_periodic_pairs() {
             boundaries(cursor, visitor);
         }
         Ok(CoordinateStorage::in_place(Format::Adcirc, CoordinateEncoding::TEXT))
     }
+}
+
+/// Reads an element: its number, its kind and its nodes.
+fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
+    let id = cursor.integer("the number of an element")?;
+    let corners = cursor.integer(format_args!("how many nodes element {id} has"))?;
+    let Some(kind) = CellKind::of_polygon(corners).filter(|kind| kind.nodes() > 2) else {
+        let problem = format!("element {id} has {corners} nodes");
+        return Err(cursor.error(problem, "Elements of three and four nodes are read"));
+    };
+    let nodes = nodes(cursor, kind)?;
+    // Some programs write four nodes in every row, and 0 as the fourth node of a triangle. Nodes count from 1.
+    let kind = if nodes[3] == 0 { CellKind::Triangle } else { kind };
+    Ok(Element { id, kind, region: [0; 2], nodes })
 }
 
 /// Visits the boundaries as lines: open boundaries (`open1`), then land boundaries (`land1`), which are named `island1`

@@ -12,7 +12,7 @@ use crate::text::cursor::Cursor;
 use crate::text::syntax::Syntax;
 use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::{each_row, nodes};
+use crate::visit::rows::{each_row, end_of_list, nodes};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 
@@ -79,6 +79,7 @@ impl FormatReader for FreeFem {
                 },
             )?;
         }
+        end_of_list(cursor, edges, "edges", |cursor| cursor.signed("a number"))?;
         Ok(CoordinateStorage::in_place(Format::FreeFem, CoordinateEncoding::TEXT))
     }
 }

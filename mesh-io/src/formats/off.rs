@@ -12,7 +12,7 @@ use crate::text::syntax::Syntax;
 use crate::text::token::{integer, quoted};
 use crate::visit::items::{CellKind, Element};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::{each_row, nodes};
+use crate::visit::rows::{each_row, end_of_list, nodes};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
@@ -87,25 +87,22 @@ impl FormatReader for Off {
         visitor.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
         // A color may follow the corners of a face on its row.
         *cursor = cursor.clone().with_syntax(Syntax::RECORDS);
-        each_row(
-            cursor,
-            faces,
-            "faces",
-            visitor,
-            |cursor| {
-                let corners = cursor.integer("the number of a face's vertices")?;
-                let Some(kind) = CellKind::of_polygon(corners) else {
-                    let problem = format!("a face has {corners} vertices");
-                    return Err(cursor.error(problem, "Split it into triangles"));
-                };
-                Ok((kind, nodes(cursor, kind)?))
-            },
-            |cursor, visitor, id, (kind, nodes)| {
-                visitor.element(cursor, &Element { id, kind, region: [0; 2], nodes })
-            },
-        )?;
+        each_row(cursor, faces, "faces", visitor, face, |cursor, visitor, id, (kind, nodes)| {
+            visitor.element(cursor, &Element { id, kind, region: [0; 2], nodes })
+        })?;
+        end_of_list(cursor, faces, "faces", face)?;
         Ok(CoordinateStorage::in_place(Format::Off, CoordinateEncoding::TEXT))
     }
+}
+
+/// Reads a face: its kind and its vertices.
+fn face(cursor: &mut Cursor<'_>) -> Result<(CellKind, [u64; 4]), ReadError> {
+    let corners = cursor.integer("the number of a face's vertices")?;
+    let Some(kind) = CellKind::of_polygon(corners) else {
+        let problem = format!("a face has {corners} vertices");
+        return Err(cursor.error(problem, "Split it into triangles"));
+    };
+    Ok((kind, nodes(cursor, kind)?))
 }
 
 fn count(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, ReadError> {

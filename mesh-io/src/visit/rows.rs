@@ -70,6 +70,31 @@ pub(crate) fn each_item<'a, T: Send>(
     Ok(())
 }
 
+/// Checks that a list ends after its announced items: that `read` reads no item of it from the next row. Text of other kinds may
+/// follow. The cursor stays where it is.
+///
+/// # Errors
+/// At the further item. A count that is too small would drop elements of the mesh without a word.
+pub(crate) fn end_of_list<'a, T>(
+    cursor: &Cursor<'a>,
+    count: u64,
+    what: &str,
+    read: impl FnOnce(&mut Cursor<'a>) -> Result<T, ReadError>,
+) -> Result<(), ReadError> {
+    let mut next = cursor.clone();
+    if next.row(0, 1, what).is_err() {
+        return Ok(());
+    }
+    let at = next.clone();
+    match read(&mut next) {
+        Ok(_) => {
+            let problem = format!("further {what} follow the {count} that the file announces");
+            Err(at.error(problem, "Correct the count, or write the mesh again"))
+        }
+        Err(_) => Ok(()),
+    }
+}
+
 /// Reads all following rows, of any kind, and passes each to `take`. If the visitor allows, long files are read on all
 /// threads.
 pub(crate) fn all_rows<'a, T: Send>(

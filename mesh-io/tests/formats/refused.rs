@@ -1,6 +1,6 @@
 //! Unsupported files of other programs, and the remedy in each error message.
 
-use super::Folder;
+use super::{Folder, Path};
 use super::made::binary::selafin;
 use super::made::{Made, PROBED, base};
 use super::others::{folder, for_each};
@@ -293,4 +293,43 @@ fn files_that_are_no_meshes_are_named_whatever_their_ending() {
         assert_refused(&name, [&[0xFF, 0xFE][..], &little].concat(), &utf16);
         assert_refused(&name, [&[0xFE, 0xFF][..], &big].concat(), &utf16);
     }
+}
+
+/// A former defect: a count that was too small left elements out of the mesh without a word.
+#[test]
+fn further_elements_after_the_announced_ones_are_errors() {
+    let points = "0 0\n1 0\n0 1\n1 1\n";
+    let off = format!("OFF\n4 1 0\n{}3 0 1 2\n3 1 3 2\n", points.replace('\n', " 0\n"));
+    assert_refused("a.off", off, &["a.off:8:", "further faces follow the 1", "Correct the count"]);
+    let su2 = format!("NDIME= 2\nNELEM= 1\n5 0 1 2\n5 1 3 2\nNPOIN= 4\n{points}");
+    assert_refused("a.su2", su2, &["a.su2:4:", "further elements follow the 1"]);
+    let su2 = format!("NDIME= 2\nNPOIN= 3\n{points}NELEM= 1\n5 0 1 2\n");
+    assert_refused("a.su2", su2, &["a.su2:6:", "further points follow the 3"]);
+    let numbered = points.lines().zip(1..).map(|(at, k)| format!("{k} {at} 0\n"));
+    let nodes = numbered.collect::<String>();
+    let adcirc = format!("grid\n1 4\n{nodes}1 3 1 2 3\n2 3 2 4 3\n0\n0\n0\n0\n");
+    assert_refused("a.14", adcirc, &["a.14:8:", "further elements follow the 1"]);
+    let freefem = format!("4 1 0\n{}1 2 3 0\n2 4 3 0\n", points.replace('\n', " 0\n"));
+    assert_refused("a.msh", freefem, &["a.msh:7:", "further edges follow the 0"]);
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n{points}3 0 1 2\n3 1 3 2\n"
+    );
+    assert_refused("a.ply", ply, &["a.ply:14:", "further items follow the 5"]);
+}
+
+/// Text of other kinds may follow the lists.
+#[test]
+fn other_text_after_a_list_is_no_element() {
+    let points = "0 0 0\n1 0 0\n0 1 0\n";
+    for end in ["", "\n\n# made by hand\n", "end of the file\n", "3 0\n"] {
+        let off = format!("OFF\n3 1 0\n{points}3 0 1 2\n{end}");
+        let file = MeshFile::from_bytes(Path::new("a.off"), off.into_bytes()).unwrap();
+        assert_eq!(file.triangles().len(), 1, "{end:?}");
+    }
+    // One open boundary with three nodes, whose numbers would read as those of an element.
+    let boundaries = "1\n3\n3 0\n1\n2\n3\n0\n0\n";
+    let adcirc = format!("grid\n1 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 3 1 2 3\n{boundaries}");
+    let file = MeshFile::from_bytes(Path::new("a.14"), adcirc.into_bytes()).unwrap();
+    assert_eq!(file.triangles().len(), 1);
 }

@@ -12,6 +12,7 @@ use crate::precision::Precision;
 use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::visit::items::{CellKind, Element, PointNumbers};
 use crate::visit::reader::FormatReader;
+use crate::visit::rows::end_of_list;
 use crate::visit::storage::{ArrayLocation, CoordinateStorage};
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::ZValues;
@@ -67,6 +68,10 @@ impl FormatReader for Ply {
                     items.each(cursor, list, 0, |_, _, _| Ok(()))?;
                 }
             }
+        }
+        if items.order.is_none() {
+            let listed = lists.iter().map(|list| list.count).fold(0, u64::saturating_add);
+            end_of_list(cursor, listed, "items", |cursor| cursor.real("a number"))?;
         }
         layout.ok_or_else(|| cursor.error("it has no element vertex", "Save the mesh again"))
     }

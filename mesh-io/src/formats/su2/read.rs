@@ -17,7 +17,7 @@ use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
 use crate::visit::items::{CellKind, Element, GroupScope, RegionAttribute};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::{each_row, nodes, volume};
+use crate::visit::rows::{each_row, end_of_list, nodes, volume};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use std::ops::Range;
@@ -71,12 +71,13 @@ impl FormatReader for Su2 {
                         count,
                         "points",
                         visitor,
-                        |cursor| cursor.point("a point"),
+                        point,
                         |cursor, visitor, done, (x_at, at)| {
                             visitor.node(cursor, first + done, 2, x_at, at);
                             Ok(())
                         },
                     )?;
+                    end_of_list(cursor, count, "points", point)?;
                     points += count;
                 }
                 b"MARKER_TAG" => marker = Some(value),
@@ -95,6 +96,7 @@ impl FormatReader for Su2 {
                             break;
                         }
                     }
+                    end_of_list(cursor, count, "elements", element)?;
                     lists.push(List { cursor: start, ahead, count, zone, marker });
                 }
                 // The first periodic entry is no motion.
@@ -238,6 +240,10 @@ fn wrong(cursor: &Cursor<'_>, name: &str, value: &[u8]) -> ReadError {
 
 /// Reads the row of an element, which starts with VTK's number of its type.
 #[inline]
+fn point(cursor: &mut Cursor<'_>) -> Result<(usize, [f64; 2]), ReadError> {
+    cursor.point("a point")
+}
+
 fn element(cursor: &mut Cursor<'_>) -> Result<(CellKind, [u64; 4]), ReadError> {
     let number = cursor.integer("the type of an element")?;
     match types::kind_of(number) {

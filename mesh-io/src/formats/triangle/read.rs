@@ -1,7 +1,7 @@
 //! Reads Triangle's `.node` and `.ele`, with the segments of a `.poly` if there is one.
 //!
 //! The formats: <https://www.cs.cmu.edu/~quake/triangle.html>. Like Triangle itself, this reader ignores text after the
-//! announced rows and columns.
+//! announced rows and columns, but refuses further vertices and triangles.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::regions::Interner;
@@ -18,7 +18,7 @@ use crate::text::cursor::Cursor;
 use crate::text::token::float;
 use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::each_row;
+use crate::visit::rows::{each_row, end_of_list};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::{TextNumbers, ZValues};
@@ -111,6 +111,7 @@ impl<'s> Vertices<'s> {
             z.into_iter().for_each(|z| z_values.push(z));
             Ok(())
         })?;
+        end_of_list(cursor, count, "vertices", read)?;
         visitor.end_nodes(cursor)?;
         z_values.send("z", CoordinateEncoding::TEXT.into(), visitor);
         for (column, name) in
@@ -201,7 +202,7 @@ fn triangles(
         )
     })?;
     visitor.group_scopes(&[]);
-    Ok(())
+    end_of_list(cursor, count, "triangles", read)
 }
 
 /// Reads a triangle's row. Returns the triangle's number, its vertices, and the text of its attributes, which are
