@@ -88,6 +88,13 @@ impl FormRequest {
         let mut form = NewForm { format, encoding: self.encoding, precision: Precision::Double };
         let conversion = form.conversion(file, file.source.points(), &[], out)?;
         form.precision = smoother_precision(conversion.precision());
+        if file.source.triangles().is_empty() && !conversion.holds_quadrilaterals() {
+            let (path, out) = (file.source.path().display(), out.display());
+            return Err(CliError::input(format!(
+                "{path}: the mesh has quadrilaterals alone, and {format} holds none, so that {out} would have no element"
+            ))
+            .with_remedy("Name an OUT of another format"));
+        }
         let lost = conversion.losses();
         if !self.is_lossy && !lost.is_empty() {
             let path = file.source.path().display();

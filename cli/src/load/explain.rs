@@ -332,6 +332,10 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
             ))
             .with_remedy("Smooth the mesh in a projection around that pole, or with a vertex at the pole itself")
         }
+        MeshError::OutOfRange { size: 0.0 } => {
+            CliError::input(format!("{path}: all vertices of the elements are at the origin"))
+                .with_remedy("Check the columns of the coordinates, or write the mesh again")
+        }
         MeshError::OutOfRange { .. } => CliError::input(format!("{path}: {error}"))
             .with_remedy("Write the mesh in another unit"),
         // Readers refuse meshes with the other errors, or the command never requests the runs that cause them.

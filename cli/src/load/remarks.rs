@@ -17,6 +17,16 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
     let told = file.source.remarks().iter().filter(is_told);
     let moves = file.domain.moves_quadrilaterals();
     let mut remarks: Vec<String> = told.map(|remark| with_effect(remark, moves)).collect();
+    let source = &file.source;
+    match source.quadrilaterals().len() - source.proper_quadrilaterals().count() {
+        0 => {}
+        _ if !moves => {}
+        1 => {
+            remarks.push("1 quadrilateral lists a vertex twice: its vertices stay fixed".to_owned())
+        }
+        n => remarks
+            .push(format!("{n} quadrilaterals list a vertex twice: their vertices stay fixed")),
+    }
     match file.domain.interface_vertices().len() {
         0 => {}
         _ if slides => {}

@@ -299,3 +299,19 @@ fn quality_measures_and_lists_quadrilaterals() {
     assert_eq!(run.code, Some(0), "{}", run.err);
     assert_holds(&run.out, &["quadrilateral ", "is concave at vertex "]);
 }
+
+/// Two former defects: `--lossy` wrote a mesh without elements, and a quadrilateral with a repeated vertex was said to move.
+#[test]
+fn quadrilaterals_that_cannot_be_written_or_moved_are_named() {
+    let folder = Folder::new(&[("in.vtk", &vtk(4, |_| false, |_| 1))]);
+    for args in ["in.vtk out.node --lossy --engine cpu", "convert in.vtk out.node --lossy"] {
+        let refused = folder.line(args);
+        refused.refused(&["in.vtk: the mesh has quadrilaterals alone, and Triangle .node/.ele holds none"]);
+        assert!(!folder.path("out.node").exists());
+    }
+    let off = "OFF\n6 4 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n1 1.1 0\n3 0 0\n\
+               3 0 1 4\n3 1 2 4\n4 0 4 2 3\n4 1 5 2 5\n";
+    let folder = Folder::new(&[("in.off", off)]);
+    let run = folder.line("in.off out.off --engine cpu");
+    assert_holds(&run.err, &["1 quadrilateral lists a vertex twice: its vertices stay fixed"]);
+}

@@ -227,6 +227,11 @@ impl Conversion {
         self.target.format
     }
 
+    /// Returns whether the format holds quadrilaterals.
+    pub fn holds_quadrilaterals(&self) -> bool {
+        self.target.capabilities.quadrilaterals
+    }
+
     /// Checks, without writing, whether [`write`](Self::write) to `path` can succeed.
     ///
     /// # Errors

@@ -1,9 +1,9 @@
 //! Unsupported files of other programs, and the remedy in each error message.
 
-use super::{Folder, Path};
 use super::made::binary::selafin;
 use super::made::{Made, PROBED, base};
 use super::others::{folder, for_each};
+use super::{Folder, Path};
 use mesh_io::Precision;
 use mesh_io::{Format, MeshFile};
 use std::fs;
