@@ -306,7 +306,9 @@ fn quadrilaterals_that_cannot_be_written_or_moved_are_named() {
     let folder = Folder::new(&[("in.vtk", &vtk(4, |_| false, |_| 1))]);
     for args in ["in.vtk out.node --lossy --engine cpu", "convert in.vtk out.node --lossy"] {
         let refused = folder.line(args);
-        refused.refused(&["in.vtk: the mesh has quadrilaterals alone, and Triangle .node/.ele holds none"]);
+        refused.refused(&[
+            "in.vtk: the mesh has quadrilaterals alone, and Triangle .node/.ele holds none",
+        ]);
         assert!(!folder.path("out.node").exists());
     }
     let off = "OFF\n6 4 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n1 1.1 0\n3 0 0\n\

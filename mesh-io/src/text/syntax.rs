@@ -111,10 +111,11 @@ static SEMICOLON_ENDS: [bool; 256] = ends(b"#;");
 static COMMA_ENDS: [bool; 256] = ends(b",");
 static JOINED_ENDS: [bool; 256] = ends(b"#\\");
 
-/// Returns a table that is true for blanks, control characters and the bytes in `others`.
+/// Returns a table that is true for blanks, control characters and the bytes in `others`. A zero byte ends no word: it stands for
+/// lost bytes, and would make two numbers of a damaged one.
 const fn ends(others: &[u8]) -> [bool; 256] {
     let mut ends = [false; 256];
-    let mut at = 0;
+    let mut at = 1;
     while at <= b' ' as usize {
         ends[at] = true;
         at += 1;
