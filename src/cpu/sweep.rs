@@ -9,7 +9,8 @@ use crate::metric::{Dual, Formulas, Metric, Real, Smoothing};
 use crate::options::Derivatives;
 use crate::parallel::pace::pause;
 use crate::parallel::paced;
-use crate::patch::lanes::{Width, points, with_lanes};
+use crate::patch::instructions::with_lanes;
+use crate::patch::lanes::{Width, points};
 use crate::patch::numbers::Numbers;
 use crate::patch::{
     LanePatch, MetricObjective, MixedRings, MixedScratch, Objective, Rings, Scratch, VertexBatch,

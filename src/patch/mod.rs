@@ -7,6 +7,7 @@ mod batch;
 mod corners;
 mod direction;
 mod fan;
+pub(crate) mod instructions;
 pub(crate) mod lanes;
 mod mixed_ring;
 mod newton_step;

@@ -6,7 +6,8 @@ use std::ops::Mul;
 use fearless_simd::prelude::*;
 use glam::DVec2;
 
-use super::lanes::{LANES, Lanes, Mask, with_instructions};
+use super::instructions::with_instructions;
+use super::lanes::{LANES, Lanes, Mask};
 use super::{
     Corners, Direction, FanCorner, FanPatch, MetricObjective, Objective, Rings, Role, Scratch,
     SearchRule, is_acceptable, is_kept, newton_step,

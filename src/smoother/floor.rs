@@ -9,7 +9,7 @@ use crate::options::{Options, WorstBy};
 use crate::outcome::Floored;
 use crate::parallel::paced;
 use crate::patch::FourTriangles;
-use crate::patch::lanes::with_instructions;
+use crate::patch::instructions::with_instructions;
 use crate::slide::OnCurves;
 use crate::whole::altitude;
 use crate::worst::{Penalties, WorstShapes};

@@ -166,7 +166,7 @@ mod tests {
     use crate::metric::Metric;
     use crate::options::{Derivatives, Guard, Method, Paper, WorstBy};
     use crate::parallel::pace::polled;
-    use crate::patch::lanes::with_each_width;
+    use crate::patch::instructions::with_each_width;
     use crate::quality::Quality;
     use crate::run::truncated::fixtures;
     use crate::targets::{Surface, Targets};

@@ -96,7 +96,7 @@ impl<'r> Untangle<'r> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::patch::lanes::with_each_width;
+    use crate::patch::instructions::with_each_width;
     use crate::run::truncated::fixtures;
 
     #[test]

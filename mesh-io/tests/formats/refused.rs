@@ -321,7 +321,7 @@ fn further_elements_after_the_announced_ones_are_errors() {
 /// A former defect: zero bytes, which a crash may leave in a file, made two numbers of one.
 #[test]
 fn zero_bytes_within_numbers_are_errors() {
-    let off = "OFF\n3 1 0\n0 0 0\n1.09\0\079 1 0\n0 1 0\n3 0 1 2\n";
+    let off = "OFF\n3 1 0\n0 0 0\n1.09\x00\x0079 1 0\n0 1 0\n3 0 1 2\n";
     assert_refused("a.off", off, &["a.off:4: "]);
     // Zero bytes after the last line are no row.
     let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n\0\0\0";

@@ -14,7 +14,8 @@ use super::terms::{Map, Terms, at_corners, before_shear, of_lane, squares_at};
 use crate::layout::Problem;
 use crate::metric::{Corner, Curvature, Curved, Metric, OfImr};
 use crate::parallel::paced;
-use crate::patch::lanes::{LANES, Lanes, Points, apart, points, with_instructions};
+use crate::patch::instructions::with_instructions;
+use crate::patch::lanes::{LANES, Lanes, Points, apart, points};
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::{Pattern, UNKNOWNS};
 

@@ -2,7 +2,7 @@
 
 use super::scalar::Scalar;
 use crate::parallel::paced;
-use crate::patch::lanes::with_instructions;
+use crate::patch::instructions::with_instructions;
 use crate::run::multilevel::invert;
 use crate::run::truncated::aggregation::{Pattern, UNKNOWNS};
 

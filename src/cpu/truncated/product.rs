@@ -6,7 +6,7 @@ use super::scalar::Scalar;
 use super::terms::{Map, Terms, before_shear, sheared};
 use crate::metric::H;
 use crate::parallel::paced;
-use crate::patch::lanes::with_instructions;
+use crate::patch::instructions::with_instructions;
 
 /// Sets `product` to the Hessian times `vector`. Returns the inner product of both.
 pub(super) async fn multiply<T: Scalar>(

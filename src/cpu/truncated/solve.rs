@@ -13,7 +13,7 @@ use super::slides::Slides;
 use crate::layout::Problem;
 use crate::metric::Metric;
 use crate::parallel::paced;
-use crate::patch::lanes::with_instructions;
+use crate::patch::instructions::with_instructions;
 use crate::run::GoesOn;
 use crate::run::truncated::aggregation::{STIFFNESS, UNKNOWNS};
 use crate::run::truncated::{ErrorBound, StepRequest};
