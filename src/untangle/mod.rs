@@ -117,4 +117,23 @@ mod tests {
             assert!(new == old && new == none);
         }
     }
+
+    /// A caller need not wait for the other triangles if some can never be mended.
+    #[test]
+    fn triangles_that_no_move_mends_are_known_after_the_first_sweep() {
+        let mut mesh = fixtures::quadrilaterals(13, |_| false);
+        for k in [40, 58, 83, 97] {
+            mesh.points[k] = [mesh.points[k][0] + 1.6, mesh.points[k][1] - 1.3];
+        }
+        // Two vertices of the boundary are at one point.
+        mesh.points[1] = mesh.points[2];
+        let mut sweeps = Vec::new();
+        let untangled = Untangle::new(&mesh).observe(|now| {
+            sweeps.push((now.sweep, now.hopeless));
+            if now.hopeless > 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        let untangled = untangled.run().unwrap();
+        assert_eq!(untangled.hopeless.len(), 1);
+        assert_eq!((sweeps, untangled.sweeps), (vec![(1, 1)], 1));
+    }
 }

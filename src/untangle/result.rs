@@ -11,6 +11,9 @@ pub struct Untangling {
     /// Number of corners that are inverted or flat in double precision, among the corners that the sweep changes: triangles, and
     /// corners of quadrilaterals.
     pub bad: usize,
+    /// Number of corners that no move of vertices can mend: triangles, and corners of quadrilaterals. The number is the same for
+    /// all sweeps; see [`Untangled::hopeless`].
+    pub hopeless: usize,
 }
 
 /// The result of an [`Untangle`](super::Untangle).
@@ -43,6 +46,11 @@ pub struct Untangled {
 }
 
 impl Untangled {
+    /// Returns the progress after the present number of sweeps, with the number of bad corners.
+    pub(super) fn progress(&self, bad: usize) -> Untangling {
+        Untangling { sweep: self.sweeps, bad, hopeless: self.hopeless.len() }
+    }
+
     /// Returns whether all elements are feasible, and no elements overlap around a vertex.
     pub fn is_feasible(&self) -> bool {
         self.left.is_empty() && self.left_quadrilaterals.is_empty() && self.overlapping.is_none()

@@ -239,7 +239,7 @@ impl<'m> Work<'m> {
                 if now.bad <= result.hopeless.len() && self.is_done(result) {
                     return ControlFlow::Break(());
                 }
-                if observe(&Untangling { sweep: result.sweeps, bad: now.bad }).is_break() {
+                if observe(&result.progress(now.bad)).is_break() {
                     self.is_done(result);
                     return ControlFlow::Break(());
                 }
@@ -288,7 +288,7 @@ impl<'m> Work<'m> {
             if now.bad <= result.hopeless.len() && self.is_done(result) {
                 return ControlFlow::Break(());
             }
-            if observe(&Untangling { sweep: result.sweeps, bad: now.bad }).is_break() {
+            if observe(&result.progress(now.bad)).is_break() {
                 self.is_done(result);
                 return ControlFlow::Break(());
             }

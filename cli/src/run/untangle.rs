@@ -56,7 +56,7 @@ pub(crate) fn untangle_input(
     let mut ended = None;
     let mut observe = |progress: &Untangling| {
         if verbosity.verbose {
-            let Untangling { sweep, bad } = progress;
+            let Untangling { sweep, bad, .. } = progress;
             let text = format!("untangling, sweep {sweep:<5} inverted or flat {bad}");
             streams::say_beside(out, &text);
         }
@@ -65,9 +65,11 @@ pub(crate) fn untangle_input(
         } else if request.time_limit.is_some_and(|limit| began.elapsed() >= limit) {
             ended = Some("--time-limit ended untangling");
         }
+        // Triangles that no move can mend are an error, which need not wait for the others.
+        let is_hopeless = progress.hopeless > 0 && !keeps_going;
         match ended {
-            Some(_) => ControlFlow::Break(()),
-            None => ControlFlow::Continue(()),
+            None if !is_hopeless => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
         }
     };
     let untangled = Untangle::new(mesh)
