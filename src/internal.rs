@@ -11,7 +11,7 @@ use crate::run::StepwiseRun;
 use crate::untangle::energy::Corner;
 
 #[cfg(feature = "gpu")]
-pub use device::{BindLayout, DeviceCounts, Kernel, device_counts, run_on_gpu};
+pub use device::{BindLayout, DeviceCounts, Kernel, device_counts, run_on_gpu, time_step};
 
 pub use crate::layout::{Coloring, Problem, UNCOLORED, prepare};
 pub use crate::metric::{Dual, Invariants, Properties, Real};

@@ -38,6 +38,8 @@ fn both_engines_are_measured_on_lattices_of_the_sizes_asked_for() {
     }
     // No frame corrects sweeps by alternating metrics.
     assert!(rows[1]["corrected_kernels"].is_null(), "{}", rows[1]);
+    // Runs by EDGE end without Newton steps.
+    assert!(rows[1]["step_kernels"].is_null(), "{}", rows[1]);
     assert!(kernels.iter().all(|kernel| kernel["seconds_per_sweep"].as_f64().unwrap() > 0.0));
 }
 
@@ -51,6 +53,10 @@ fn a_mesh_of_the_user_is_measured_and_printed_as_text() {
     let run = folder.line("bench in --engine gpu --seconds 0").clean();
     assert_holds(&run.out, &["sweep imr", "by its clock", "a sweep without clock"]);
     assert_holds(&run.out, &["a corrected sweep of", "coarsest_solve", "prolong_solution"]);
+    assert_holds(
+        &run.out,
+        &["a Newton step with 10 iterations of", "find_hessian", "judge_length"],
+    );
     // The shares are of the sum of the kernels, which a row below them has.
     let field = |name: &str, column: usize| -> f64 {
         let row = run.out.lines().find(|row| row.trim_start().starts_with(name)).unwrap();

@@ -147,7 +147,7 @@ impl Spans {
         Pending::new(|waiting| Box::pin(self.wait(waiting)))
     }
 
-    async fn wait(self, waiting: Waiting) -> Result<Vec<Span>, GpuError> {
+    pub(crate) async fn wait(self, waiting: Waiting) -> Result<Vec<Span>, GpuError> {
         let Self { gpu, times, taken } = self;
         if taken.is_empty() {
             return Ok(Vec::new());

@@ -10,7 +10,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::device::buffers::write_by_pieces;
 use crate::gpu::device::pending::Waiting;
 use crate::gpu::device::readback::{self, Copied};
-use crate::gpu::encode::{Passes, sealed::Target};
+use crate::gpu::encode::{Passes, Span, Timestamps, sealed::Target};
 use crate::gpu::kernels::uniforms::{Control, HISTORY, SLOTS, join, split, unpair};
 use crate::gpu::mesh::{Curves, MeshBuffers};
 use crate::gpu::run::ahead;
@@ -126,6 +126,23 @@ impl<'a> GpuEngine<'a> {
             }
         }
         Ok(true)
+    }
+
+    /// Times the kernels of a Newton step of all vertices from the present positions, with a number of iterations. `None` if the
+    /// device takes no such steps on the mesh.
+    pub(crate) async fn timed_step(
+        &mut self,
+        request: &StepRequest,
+        iterations: u32,
+        timestamps: &mut Timestamps,
+    ) -> Result<Option<Vec<Span>>, GpuError> {
+        if !self.prepare_steps().await? {
+            return Ok(None);
+        }
+        let Self { gpu, problem, start, mesh, dispatches, truncated, waiting, .. } = self;
+        let (waiting, Some(truncated)) = (*waiting, truncated) else { return Ok(None) };
+        let on = OnDevice { gpu, problem, start, mesh, dispatches, waiting };
+        truncated.timed(&on, request, iterations, timestamps).await.map(Some)
     }
 
     fn submit(&self, encode: impl FnOnce(&mut Passes<'_>)) -> Result<(), GpuError> {

@@ -112,10 +112,10 @@ fn measure(
         .stopping(Stopping::Tolerance(0.0))
         .max_sweeps(u32::MAX);
     let plan = Plan::new(&options);
-    let (seconds, kernels, corrected) = match &place.gpu {
+    let (seconds, kernels, corrected, step) = match &place.gpu {
         None => {
             let mut engine = run_on_cpu(problem, problem.positions(), plan);
-            (sweeps::time(&mut engine, args.seconds)?, None, None)
+            (sweeps::time(&mut engine, args.seconds)?, None, None, None)
         }
         Some(gpu) => {
             let mut engine: Box<dyn Stepwise> =
@@ -128,7 +128,8 @@ fn measure(
                 Err(SmoothError::Option(_)) => None,
                 timed => timed?,
             };
-            (seconds, kernels::time(gpu, mesh, &options)?, corrected)
+            let step = kernels::time_step(gpu, problem, Plan::new(&options))?;
+            (seconds, kernels::time(gpu, mesh, &options)?, corrected, step)
         }
     };
     let (sweep, objective) = (sweeps::sweep_bytes(problem), sweeps::objective_bytes(problem));
@@ -157,6 +158,7 @@ fn measure(
         share_of_copy_rate: (sweep + objective) as f64 / seconds / place.copy_rate,
         kernels: kernels.map(|kernels| kernels.into_iter().map(kernel_row).collect()),
         corrected_kernels: corrected.map(|kernels| kernels.into_iter().map(kernel_row).collect()),
+        step_kernels: step.map(|kernels| kernels.into_iter().map(kernel_row).collect()),
     })
 }
 

@@ -1,8 +1,9 @@
 //! Times of GPU kernels, measured with the device's timestamps.
 
 use gpu_smooth::{
-    Gpu, Mesh, Options, SmoothError,
-    gpu::{DeviceMesh, Kernel, Sweeps, Timestamps},
+    Gpu, GpuError, Mesh, Options, SmoothError,
+    gpu::{DeviceMesh, Kernel, Span, Sweeps, Timestamps},
+    internal::{self, Plan, Problem},
     wgpu,
 };
 
@@ -10,11 +11,13 @@ use gpu_smooth::{
 const BEFORE: u32 = 6;
 /// Number of timed sweeps.
 const TIMED: u32 = 5;
+/// Number of iterations of conjugate gradients in the timed Newton step. Last steps of runs on ordinary meshes take about as many.
+pub(crate) const ITERATIONS: u32 = 10;
 
-/// Time of a kernel per sweep.
+/// Time of a kernel per sweep, or per Newton step.
 pub(crate) struct KernelTime {
     pub(crate) kernel: Kernel,
-    /// Number of dispatches of the kernel per sweep.
+    /// Number of dispatches of the kernel per sweep or step.
     pub(crate) passes: u32,
     pub(crate) seconds: f64,
 }
@@ -51,11 +54,29 @@ pub(crate) fn time(
     }
     let spans = timed.resolve()?;
     gpu.queue().submit([encoder.finish()]);
-    let mut kernels: Vec<KernelTime> = Vec::new();
     // Runs do not copy their objectives to a buffer of the application.
-    let of_run = |kernel: &Kernel| *kernel != Kernel::WriteObjective;
-    for span in spans.read().block()?.into_iter().filter(|span| of_run(&span.kernel)) {
-        let seconds = span.nanoseconds * 1e-9 / f64::from(TIMED);
+    let of_run = |span: &Span| span.kernel != Kernel::WriteObjective;
+    let spans = spans.read().block()?.into_iter().filter(of_run);
+    Ok(Some(by_kernel(spans, TIMED)))
+}
+
+/// Times the kernels of a Newton step with [`ITERATIONS`] iterations, by which runs end. `None` if the device has no timestamps, or
+/// takes no such steps by the options.
+pub(crate) fn time_step(
+    gpu: &Gpu,
+    problem: &Problem,
+    plan: Plan,
+) -> Result<Option<Vec<KernelTime>>, GpuError> {
+    let Ok(mut timestamps) = Timestamps::new(gpu) else { return Ok(None) };
+    let spans = internal::time_step(gpu, problem, plan, BEFORE, ITERATIONS, &mut timestamps)?;
+    Ok(spans.map(|spans| by_kernel(spans.into_iter(), 1)))
+}
+
+/// Adds up the spans of each kernel, in the order of their first spans, for one of `times` repetitions.
+fn by_kernel(spans: impl Iterator<Item = Span>, times: u32) -> Vec<KernelTime> {
+    let mut kernels: Vec<KernelTime> = Vec::new();
+    for span in spans {
+        let seconds = span.nanoseconds * 1e-9 / f64::from(times);
         match kernels.iter_mut().find(|known| known.kernel == span.kernel) {
             Some(known) => {
                 known.passes += 1;
@@ -64,6 +85,6 @@ pub(crate) fn time(
             None => kernels.push(KernelTime { kernel: span.kernel, passes: 1, seconds }),
         }
     }
-    kernels.iter_mut().for_each(|known| known.passes /= TIMED);
-    Ok(Some(kernels))
+    kernels.iter_mut().for_each(|known| known.passes /= times);
+    kernels
 }

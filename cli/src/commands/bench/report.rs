@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::args::BenchArgs;
-use crate::commands::bench::kernels::KernelTime;
+use crate::commands::bench::kernels::{ITERATIONS, KernelTime};
 use crate::commands::bench::machine::{self, Place};
 use crate::render::columns::right;
 use crate::terminal::tell;
@@ -34,6 +34,8 @@ pub(super) struct Row {
     pub(super) kernels: Option<Vec<KernelRow>>,
     /// The same for a sweep with a correction from coarser levels.
     pub(super) corrected_kernels: Option<Vec<KernelRow>>,
+    /// The same for a Newton step with [`ITERATIONS`] iterations, without its sweep.
+    pub(super) step_kernels: Option<Vec<KernelRow>>,
 }
 
 /// Time of a kernel per sweep.
@@ -156,18 +158,23 @@ impl Form {
     /// Returns the tables of kernels, one for each measurement with timestamps.
     pub(super) fn kernels(self, rows: &[Row]) -> String {
         let timed = rows.iter().flat_map(|row| {
-            [("a sweep", &row.kernels), ("a corrected sweep", &row.corrected_kernels)]
-                .into_iter()
-                .filter_map(move |(what, kernels)| Some((row, what, kernels.as_ref()?)))
+            [
+                ("a sweep".to_owned(), "sweep", &row.kernels),
+                ("a corrected sweep".to_owned(), "sweep", &row.corrected_kernels),
+                (format!("a Newton step with {ITERATIONS} iterations"), "step", &row.step_kernels),
+            ]
+            .into_iter()
+            .filter_map(move |(what, unit, kernels)| Some((row, what, unit, kernels.as_ref()?)))
         });
         let mut text = String::new();
-        for (row, what, kernels) in timed {
+        for (row, what, unit, kernels) in timed {
             let (vertices, colors, engine) = (row.vertices, row.colors, &row.engine);
             text += &format!(
                 "\n{what} of {vertices} vertices in {colors} colors on {engine}, each kernel by itself, by its clock\n"
             );
             let sum: f64 = kernels.iter().map(|kernel| kernel.seconds_per_sweep).sum();
-            let head = ["kernel", "passes", "\u{b5}s/sweep", "share", "GB/s", "of copying"];
+            let per = format!("\u{b5}s/{unit}");
+            let head = ["kernel", "passes", &per, "share", "GB/s", "of copying"];
             if self.markdown {
                 text += &format!("\n{}|---|---:|---:|---:|---:|---:|\n", self.kernel(head));
             } else {

@@ -21,6 +21,7 @@ use crate::gpu::device::readback;
 use crate::gpu::device::size::{objective_invocations, span_count};
 use crate::gpu::encode::Passes;
 use crate::gpu::encode::sealed::Target;
+use crate::gpu::encode::{Span, Timestamps};
 use crate::gpu::kernels::row::User;
 use crate::gpu::kernels::table::Kernel;
 use crate::gpu::kernels::uniforms::{StepState, unpair};
@@ -132,6 +133,29 @@ impl Truncated {
             }
         }
         Ok(taken(&state, on.count()))
+    }
+
+    /// Times the kernels of a step from the present positions, with a number of iterations of conjugate gradients.
+    pub(crate) async fn timed(
+        &self,
+        on: &OnDevice<'_>,
+        request: &StepRequest,
+        iterations: u32,
+        timestamps: &mut Timestamps,
+    ) -> Result<Vec<Span>, GpuError> {
+        let Prepared { set_up, iteration, trials, .. } = &self.prepared;
+        self.write(on, &begin(request, on.count(), false))?;
+        let device = &on.gpu.device;
+        let mut encoder = scoped(device, || device.create_command_encoder(&Default::default()))?;
+        let mut timed = timestamps.time(&mut encoder);
+        let mut passes = timed.passes("gpu-smooth run");
+        self.encode(&mut passes, set_up);
+        (0..iterations).for_each(|_| self.encode(&mut passes, iteration));
+        self.encode(&mut passes, trials);
+        drop(passes);
+        let spans = timed.resolve()?;
+        scoped(device, || on.gpu.queue.submit([encoder.finish()]))?;
+        spans.wait(on.waiting).await
     }
 
     /// Measures how far a step from the present positions could lower the mean excess. Moves no vertex. `None` if the model has
