@@ -119,7 +119,7 @@ pub struct Improved {
     /// Measure of the worst triangle with a free vertex, after the last sweep and in [`Outcome::points`]: an inverse mean
     /// ratio, an angle in degrees, or an altitude in the unit of the mesh.
     pub worst: [f64; 2],
-    /// Number of worse triangles without a vertex that is free or slides. No vertex can improve such a triangle.
+    /// Number of worse elements without a vertex that is free or slides. No vertex can improve such an element.
     pub stuck: usize,
     /// f by the base metric, after the last sweep and in [`Outcome::points`].
     pub f: [f64; 2],

@@ -46,8 +46,8 @@ async fn worst_of(problem: &Problem, badness: &[f64]) -> f64 {
     paced::map_parts(parts, worst).await.into_iter().fold(0.0, f64::max)
 }
 
-/// Returns the number of triangles that are worse than every triangle with a free vertex, but have only fixed corners.
-/// Corners in `slides`, an ascending list, do not count as fixed.
+/// Returns the number of elements that are worse than every triangle with a free vertex, but have only fixed vertices.
+/// Vertices in `slides`, an ascending list, do not count as fixed. A quadrilateral is as bad as its worst corner.
 pub(crate) async fn stuck(
     problem: &Problem,
     badness: Badness,
@@ -58,12 +58,22 @@ pub(crate) async fn stuck(
     let worst = worst_of(problem, &all).await;
     let stays =
         |t: &[u32; 3]| !problem.can_move(t) && t.iter().all(|v| slides.binary_search(v).is_err());
-    let count = |_, (triangles, badness): (&[[u32; 3]], &[f64])| {
-        let pairs = triangles.iter().zip(badness);
-        pairs.filter(|(t, badness)| **badness > worst && stays(t)).count()
+    let count = |_, (corners, badness, each): (&[[u32; 3]], &[f64], usize)| {
+        let elements = corners.chunks(each).zip(badness.chunks(each));
+        let is_worse = |badness: &[f64]| badness.iter().any(|&badness| badness > worst);
+        elements.filter(|(corners, badness)| is_worse(badness) && corners.iter().all(stays)).count()
     };
-    let parts = problem.corners().all().chunks(CHUNK).zip(all.chunks(CHUNK));
-    paced::map_parts(parts, count).await.into_iter().sum()
+    let corners = problem.corners();
+    let (of_triangles, of_quadrilaterals) = all.split_at(corners.triangles().len());
+    let lists = [
+        (corners.triangles(), of_triangles, 1),
+        (corners.of_quadrilaterals(), of_quadrilaterals, 4),
+    ];
+    let parts = lists.into_iter().flat_map(|(corners, badness, each)| {
+        let parts = corners.chunks(CHUNK).zip(badness.chunks(CHUNK));
+        parts.map(move |(corners, badness)| (corners, badness, each))
+    });
+    paced::map_parts(parts.collect::<Vec<_>>(), count).await.into_iter().sum()
 }
 
 /// Returns the badness of every triangle of the problem.

@@ -128,7 +128,7 @@ impl InterpolatedFields {
             _ => ("stay as they are and no longer fit", "them"),
         };
         let option = if let [one] = left[..] { one.as_str() } else { "all" };
-        let names = listed(left.iter().map(|name| name.as_str()));
+        let names = listed(left.iter().map(|name| format!("`{name}`")));
         let option = if option.contains(' ') { format!("'{option}'") } else { option.to_owned() };
         Some(format!(
             "{names} {verb} where vertices have moved (--interpolate {option} takes {them} to the new places)"
@@ -286,10 +286,10 @@ impl InterpolatedFields {
 }
 
 /// Joins the first six names, and counts the rest.
-fn listed<'n>(names: impl ExactSizeIterator<Item = &'n str>) -> String {
+fn listed(names: impl ExactSizeIterator<Item = impl AsRef<str>>) -> String {
     const TOLD: usize = 6;
     let more = names.len().saturating_sub(TOLD);
-    let first: Vec<_> = names.take(TOLD).collect();
+    let first: Vec<_> = names.take(TOLD).map(|name| name.as_ref().to_owned()).collect();
     match more {
         0 => first.join(", "),
         more => format!("{} and {more} more", first.join(", ")),

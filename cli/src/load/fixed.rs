@@ -108,9 +108,14 @@ pub(crate) fn nothing_free(file: &LoadedMesh, slides: bool, by_options: bool) ->
     let reasons: Vec<String> =
         counts.iter().map(|(reason, count)| format!("{count} {}", reason.place())).collect();
     let sliding = if slides { ", and no vertex can slide, as all are corners or held" } else { "" };
+    let keeps_quadrilaterals =
+        !file.domain.moves_quadrilaterals() && file.source.proper_quadrilaterals().next().is_some();
     let has = |reason| counts.iter().any(|(other, _)| *other == reason);
     let remedy = match (has(FixedBy::Line), has(FixedBy::Interface)) {
         _ if by_options => "--fix, --only and the like leave nothing to smooth: let more move",
+        _ if keeps_quadrilaterals => {
+            "Let vertices of quadrilaterals move: leave out --quadrilaterals keep"
+        }
         (true, true) => {
             "Let vertices on lines move: --free-lines, or vertices between regions: --free-interfaces"
         }

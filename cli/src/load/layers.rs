@@ -105,8 +105,8 @@ fn note(file: &LoadedMesh, kept: &KeptLayers, layers: &Layers) -> Result<String,
         (_, rows) => format!("in {rows} rows at"),
     };
     let stay = if inner == 1 { "1 vertex" } else { &format!("{inner} vertices") };
-    let verb = if inner == 1 { "stays" } else { "stay" };
-    Ok(format!("layers: {stay} {size} {at} {verb} (--keep-layers none)"))
+    let (verb, them) = if inner == 1 { ("stays", "it") } else { ("stay", "them") };
+    Ok(format!("layers: {stay} {size} {at} {verb} (--keep-layers none lets {them} move)"))
 }
 
 /// Returns notes on walls at which layers may begin at half of the vertices, and none was found.
@@ -121,7 +121,7 @@ fn overlooked(
     }
     let note = |wall: &str, group: &str| {
         format!(
-            "the triangles at {wall} are flat like those of a boundary layer, but no layer was found: \
+            "the elements at {wall} are flat like those of a boundary layer, but no layer was found: \
              --keep-layers rows=N{group} keeps the first N rows"
         )
     };

@@ -16,7 +16,8 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
     };
     let told = file.source.remarks().iter().filter(is_told);
     let moves = file.domain.moves_quadrilaterals();
-    let mut remarks: Vec<String> = told.map(|remark| with_effect(remark, moves)).collect();
+    let effect = |remark| with_effect(remark, moves, slides);
+    let mut remarks: Vec<String> = told.map(effect).collect();
     let source = &file.source;
     match source.quadrilaterals().len() - source.proper_quadrilaterals().count() {
         0 => {}
@@ -41,15 +42,16 @@ pub(crate) fn remarks(file: &LoadedMesh, slides: bool) -> Vec<String> {
 }
 
 /// Adds to a remark of the file how a run treats the affected vertices. `moves` tells whether vertices of quadrilaterals may
-/// move.
-fn with_effect(remark: &Remark, moves: bool) -> String {
+/// move, and `slides` whether vertices on lines slide.
+fn with_effect(remark: &Remark, moves: bool, slides: bool) -> String {
     match remark {
         Remark::OtherElements { name, .. } if moves && name.starts_with("quadrilateral") => {
             format!("{remark}, whose vertices may move")
         }
         Remark::OtherElements { count, .. } => {
             let their = if *count == 1 { "its" } else { "their" };
-            format!("{remark}: {their} vertices stay fixed")
+            let slide = if slides { ", or slide along lines" } else { "" };
+            format!("{remark}: {their} vertices stay fixed{slide}")
         }
         Remark::AllOnModelCurves => {
             format!("{remark}: all of them stay fixed (--free-lines lets those on curves move)")

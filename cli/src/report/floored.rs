@@ -34,12 +34,14 @@ impl FlooredReport {
     pub(crate) fn sentence(&self) -> String {
         let Self { moved, returned, least_angle, worst_imr, f } = self;
         let (mut worse, mut ends) = (Vec::new(), Vec::new());
-        let [before, swept, end] = least_angle.map(|angle| format!("{angle:.2}°"));
+        let degrees = |digits: usize| least_angle.map(|angle| format!("{angle:.digits$}°"));
+        let [before, swept, end] = told_apart([degrees(2), degrees(9)]);
         if least_angle[1] < least_angle[0] {
             worse.push(format!("a least angle of {swept} ({before} before)"));
             ends.push(end);
         }
-        let [before, swept, end] = worst_imr.map(sig6);
+        let [before, swept, end] =
+            told_apart([worst_imr.map(sig6), worst_imr.map(|imr| format!("{imr:.12}"))]);
         if worst_imr[1] > worst_imr[0] {
             worse.push(format!("a worst imr of {swept} ({before} before)"));
             ends.push(end);
@@ -57,6 +59,11 @@ impl FlooredReport {
             ends.join(" and ")
         )
     }
+}
+
+/// Returns the shorter texts of three numbers, or the longer ones if the first two numbers differ in further digits alone.
+fn told_apart([short, long]: [[String; 3]; 2]) -> [String; 3] {
+    if short[0] == short[1] { long } else { short }
 }
 
 #[cfg(test)]

@@ -59,8 +59,8 @@ impl ImprovedReport {
         };
         text += &match stuck {
             0 => String::new(),
-            1 => "; 1 triangle is worse, and all its corners are fixed".to_owned(),
-            n => format!("; {n} triangles are worse, and all their corners are fixed"),
+            1 => "; 1 element is worse, and all its vertices are fixed".to_owned(),
+            n => format!("; {n} elements are worse, and all their vertices are fixed"),
         };
         text
     }

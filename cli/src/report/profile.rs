@@ -80,6 +80,12 @@ impl ProfileReport {
         // A listed quantity that no part has, such as the time step without depths, has no line.
         let is_shown =
             |limit: &LimitReport| limit.listed.as_ref().is_none_or(|listed| listed.total > 0);
+        // Vertices of quadrilaterals have no verdict, and perhaps all vertices are of quadrilaterals.
+        let has_vertices = |limit: &LimitReport| {
+            let found = limit.fail.as_ref().or(limit.warn.as_ref());
+            limit.limit.quantity.part() != Part::Vertex || found.is_none_or(|found| found.total > 0)
+        };
+        let is_shown = |limit: &LimitReport| is_shown(limit) && has_vertices(limit);
         let leaves_out =
             |limit: &Limit| matches!(limit.quantity.part(), Part::Triangle | Part::Vertex);
         let is_complete = judges_quadrilaterals || !profile.limits.iter().any(leaves_out);

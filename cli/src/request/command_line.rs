@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
+use gpu_smooth::options::WorstBy;
 
 use crate::args::{self, Cli, Command, OutputArgs};
 use crate::request::conflicts::{self, OF_BENCH, OF_COMPARE, OF_CONVERT, OF_QUALITY, OF_RUN};
@@ -48,10 +49,17 @@ pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, 
     let mut cli = Cli::from_arg_matches(&matches)?;
     cli.smooth.take_metric_of_profile();
     if let (None, Some(extra)) = (&cli.smooth.out_dir, cli.smooth.more.first()) {
-        let text = format!(
-            "unexpected argument '{}' after IN and OUT: give one mesh per run, or --out-dir DIR for several meshes",
-            extra.display()
-        );
+        let extra = extra.display();
+        // Options whose value may be left out take a value only after `=`.
+        let is_measure = WorstBy::ALL.iter().any(|by| by.name() == extra.to_string());
+        let text = match is_measure {
+            true => format!(
+                "unexpected argument '{extra}' after IN and OUT: write --improve-worst={extra}"
+            ),
+            false => format!(
+                "unexpected argument '{extra}' after IN and OUT: give one mesh per run, or --out-dir DIR for several meshes"
+            ),
+        };
         return refused(ErrorKind::UnknownArgument, text);
     }
     match contradiction(&cli) {

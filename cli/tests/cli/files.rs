@@ -141,7 +141,7 @@ pub(crate) fn triangle_folder([node, ele]: &[String; 2]) -> Folder {
 }
 
 /// The note about vertex data that are not interpolated.
-const ATTRIBUTES: &str = "attribute1, attribute2 stay as they are and no longer fit where vertices have moved (--interpolate all takes \
+const ATTRIBUTES: &str = "`attribute1`, `attribute2` stay as they are and no longer fit where vertices have moved (--interpolate all takes \
                           them to the new places)";
 
 #[test]

@@ -42,7 +42,7 @@ fn equal_depths_are_not_told_as_left_behind() {
         .collect();
     let folder = Folder::new(&[("in.gr3", &flat)]);
     assert_eq!(folder.line("convert in.gr3 in.vtk").code, Some(0));
-    assert!(folder.line("in.vtk out.vtk --engine cpu").err.contains("depth stays as it is"));
+    assert!(folder.line("in.vtk out.vtk --engine cpu").err.contains("`depth` stays as it is"));
     let run = folder.line("in.vtk out.vtk --engine cpu --interpolate all");
     let none =
         "gpu-smooth: no data of the mesh differ from vertex to vertex: nothing to interpolate\n";
@@ -53,7 +53,7 @@ fn equal_depths_are_not_told_as_left_behind() {
 fn depths_stay_as_they_are_unless_they_are_to_come_along() {
     let folder = Folder::new(&[("in.gr3", &gr3(&disturbed()))]);
     let kept = folder.line("in.gr3 kept.gr3 --engine cpu");
-    let note = "gpu-smooth: depth stays as it is and no longer fits where vertices have moved \
+    let note = "gpu-smooth: `depth` stays as it is and no longer fits where vertices have moved \
                 (--interpolate depth takes it to the new places)\n";
     assert_eq!((kept.code, kept.err.as_str()), (Some(0), note));
     assert!(error(&folder, "kept.gr3") > 0.1);

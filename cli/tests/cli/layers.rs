@@ -82,7 +82,7 @@ fn a_layer_stays_as_if_its_vertices_were_listed() {
         let listed = out(&format!("--keep-layers none --fix-vertices {list} {others}")).1;
         assert!(kept == listed, "{keep} {others}");
         assert!(kept != points && kept != free);
-        assert_holds(&notes, &["layers: ", "wall stay (--keep-layers none)"]);
+        assert_holds(&notes, &["layers: ", "wall stay (--keep-layers none lets them move)"]);
     }
     let count = 23 * ROWS;
     assert_holds(&out("").0, &[&format!("layers: {count} vertices in {ROWS} rows at wall stay")]);

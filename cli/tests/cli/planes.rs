@@ -274,7 +274,7 @@ fn a_curved_surface_is_refused_unless_z_is_data() {
     folder.line("quality in.obj").refused(&parts);
     let run = folder.line("in.obj out.obj --engine cpu --z data");
     assert_eq!(run.code, Some(0), "{}", run.err);
-    assert_holds(&run.err, &["z stays as it is"]);
+    assert_holds(&run.err, &["`z` stays as it is"]);
     let (before, after) = (space(&folder, "in.obj"), space(&folder, "out.obj"));
     assert!(before.iter().zip(&after).all(|(a, b)| a[2].to_bits() == b[2].to_bits()));
     let mesh = |points: &[Point]| Mesh { points: by(points, [0, 1]), ..disturbed() };
@@ -288,7 +288,7 @@ fn a_curved_surface_is_refused_unless_z_is_data() {
     folder.line("convert in.obj in.2dm").clean();
     let run = folder.line("in.2dm out.2dm --engine cpu");
     assert_eq!(run.code, Some(0), "{}", run.err);
-    assert_holds(&run.err, &["z stays as it is"]);
+    assert_holds(&run.err, &["`z` stays as it is"]);
 }
 
 #[test]

@@ -148,7 +148,10 @@ fn kind_of(
         }
         number => types::kind_of(number).ok_or_else(|| {
             let problem = format!("cell {id} is of type {number}, not of first order");
-            cursor.error(problem, "Save a mesh of linear triangles (type 5)")
+            cursor.error(
+                problem,
+                "Save a mesh of linear triangles (type 5) or quadrilaterals (type 9)",
+            )
         })?,
     };
     if points != kind.nodes() {
