@@ -258,7 +258,7 @@ const ROWS: &[Row] = &[
         &[Format::Cgns],
         "one unstructured zone in HDF5, as gmsh writes it; `R4` and `R8`; sections of BAR_2, TRI_3, QUAD_4, NODE and MIXED",
         [
-            "BAR_2, QUAD_4, NODE",
+            "BAR_2, NODE",
             "section",
             "sections, boundary conditions and their families by name",
             "several zones, structured zones, NGON_n and files in ADF are refused; HDF5 as described below",
@@ -271,7 +271,7 @@ const ROWS: &[Row] = &[
             "lines, sides of elements in surfaces, nodes of masses, springs, connectors and elements of a user",
             "`ELSET` of its `*ELEMENT`, and section; where there are neither, sets",
             "element sets, node sets and surfaces by name",
-            "linear triangles of the plane, shells and membranes; no nodes or elements that keywords make (`*NGEN`), `INPUT` or `*INCLUDE` have; as described below",
+            "linear triangles and quadrilaterals of the plane, shells and membranes; no nodes or elements that keywords make (`*NGEN`), `INPUT` or `*INCLUDE` have; as described below",
         ],
     ),
     row(
@@ -281,7 +281,7 @@ const ROWS: &[Row] = &[
             "lines, nodes of masses, springs and rigid elements",
             "property",
             "properties, by the names in comments of HyperMesh, ANSA and Femap",
-            "linear triangles (CTRIA3, CTRIAR); nodes in the basic coordinate system; no `INCLUDE`; as described below",
+            "linear triangles and quadrilaterals (CTRIA3, CQUAD4 and others); nodes in the basic coordinate system; no `INCLUDE`; as described below",
         ],
     ),
 ];
