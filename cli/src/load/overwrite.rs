@@ -49,7 +49,14 @@ pub(crate) fn check(
     // A read from a pipe would block until a writer appears.
     let is_readable = written.iter().all(|path| !path.exists() || path.is_file());
     let old = match is_readable {
-        true => read(main, options).map_err(|error| error.to_string()),
+        true => read(main, options).map_err(|error| match error {
+            // The remedy of a damaged mesh is none for a file that is no mesh.
+            ReadError::Content { path, location, problem, .. } => {
+                format!("{}{location}: {problem}", path.display())
+            }
+            ReadError::Format { problem, .. } => problem,
+            error => error.to_string(),
+        }),
         false => Err("one of its files is no regular file".to_owned()),
     };
     let (path, read) = (first.display(), file.source.path().display());

@@ -1,6 +1,7 @@
 //! The command line of the process, parsed and checked.
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -52,9 +53,19 @@ pub(crate) fn checked(words: impl IntoIterator<Item = OsString>) -> Result<Cli, 
         let extra = extra.display();
         // Options whose value may be left out take a value only after `=`.
         let is_measure = WorstBy::ALL.iter().any(|by| by.name() == extra.to_string());
+        // The usual first words of other programs.
+        let verb =
+            [&cli.smooth.input, &cli.smooth.output].map(|path| path.clone().unwrap_or_default());
+        let is_verb =
+            ["smooth", "run"].iter().any(|word| verb[0] == Path::new(word)) && !verb[0].exists();
         let text = match is_measure {
             true => format!(
                 "unexpected argument '{extra}' after IN and OUT: write --improve-worst={extra}"
+            ),
+            false if is_verb => format!(
+                "'{}' is no command: write gpu-smooth {} {extra}",
+                verb[0].display(),
+                verb[1].display()
             ),
             false => format!(
                 "unexpected argument '{extra}' after IN and OUT: give one mesh per run, or --out-dir DIR for several meshes"

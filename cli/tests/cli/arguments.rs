@@ -344,3 +344,17 @@ fn command_lines_of_any_words_neither_panic_nor_damage_files() {
     }
     assert_eq!(codes.len(), 3);
 }
+
+#[test]
+fn usual_mistakes_in_a_command_line_have_their_remedies() {
+    let folder = Folder::new(&[]);
+    for (line, remedy) in [
+        ("smooth a.node b.node", "'smooth' is no command: write gpu-smooth a.node b.node"),
+        ("a.node b.node --improve-worst min-angle", "write --improve-worst=min-angle"),
+        ("a.node b.node c.node", "give one mesh per run, or --out-dir DIR for several meshes"),
+    ] {
+        let run = folder.line(line);
+        assert_eq!(run.code, Some(2), "{line}");
+        assert_holds(&run.err, &[remedy]);
+    }
+}
