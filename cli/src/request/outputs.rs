@@ -39,7 +39,8 @@ enum Role {
 /// All files that a command writes.
 pub(crate) struct Outputs {
     pub(crate) mesh: MeshOutput,
-    /// Whether the mesh may replace a file that holds another mesh, or no mesh.
+    /// Whether the mesh may replace a file that holds another mesh, or no mesh, and files beside the mesh may replace files
+    /// of another kind.
     pub(crate) replaces_any: bool,
     pub(crate) report: Option<PathBuf>,
     pub(crate) picture: Option<PictureRequest>,
@@ -248,8 +249,8 @@ impl Outputs {
         Some(CliError::new(kind, text).with_remedy(remedy))
     }
 
-    /// Checks that the files beside the mesh can be written, that none replaces a mesh, and that a checkpoint replaces
-    /// no foreign file.
+    /// Checks that the files beside the mesh can be written, that none replaces a mesh, and that none replaces a file of
+    /// another kind without `--force`.
     pub(crate) fn check_disk(&self) -> Result<(), CliError> {
         for (role, path) in self.beside_mesh() {
             let head = head(path);
@@ -258,6 +259,14 @@ impl Outputs {
             } else if let Some(format) = head.as_deref().and_then(Format::name_of_content) {
                 let text = format!("{}: the file is a mesh ({format})", path.display());
                 return Err(CliError::output(text).with_remedy(role.remedy()));
+            } else if head.is_some_and(|head| !self.replaces_any && !role.may_replace(&head)) {
+                let text = format!("{}: exists and is not {}", path.display(), role.name());
+                let remedy = match self.mesh {
+                    // Commands that write no mesh have no `--force`.
+                    MeshOutput::None => role.remedy().to_string(),
+                    _ => format!("{}, or replace the file by --force", role.remedy()),
+                };
+                return Err(CliError::output(text).with_remedy(remedy));
             }
             let cannot = |error| CliError::from(error).within(role.cannot_be_written());
             atomic::ensure_writable(path).map_err(cannot)?;
@@ -296,6 +305,28 @@ impl Outputs {
 }
 
 impl Role {
+    /// Returns whether a file with these first bytes may be an earlier output of this role. An empty file may be.
+    fn may_replace(self, head: &[u8]) -> bool {
+        let first = head.trim_ascii_start();
+        match self {
+            _ if first.is_empty() => true,
+            Self::Report => first.starts_with(b"{"),
+            Self::Page => first.starts_with(b"<"),
+            Self::Picture => first.starts_with(b"<") || first.starts_with(b"\x89PNG"),
+            Self::Checkpoint => first.starts_with(Checkpoint::MAGIC),
+        }
+    }
+
+    /// Returns the name of the content.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Report => "a report",
+            Self::Page => "a page",
+            Self::Picture => "a picture",
+            Self::Checkpoint => "a checkpoint",
+        }
+    }
+
     /// Returns the error for an output at the path of a mesh file, or with the extension of a mesh format.
     fn is_no_mesh(self, path: &Path, kind: ErrorKind) -> CliError {
         match self {

@@ -74,7 +74,7 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
     fs::write(folder.path("old.node"), "old").unwrap();
     fs::write(folder.path("locked.ele"), "old").unwrap();
     fs::create_dir(folder.path("dir")).unwrap();
-    fs::write(folder.path("locked.json"), "old").unwrap();
+    fs::write(folder.path("locked.json"), "{}").unwrap();
     for name in ["locked.ele", "locked.json"] {
         let mut permissions = fs::metadata(folder.path(name)).unwrap().permissions();
         permissions.set_readonly(true);
@@ -149,13 +149,20 @@ fn files_that_are_read_or_hold_a_mesh_are_not_replaced_by_other_files() {
     for (name, text) in [("in.msh", &*gmsh), ("kept.json", &gmsh), ("kept.html", &gmsh)] {
         fs::write(folder.path(name), text).unwrap();
     }
-    for (name, text) in [("list.json", "1\n"), ("sizes.json", sizes), ("state", "any\n")] {
+    for (name, text) in
+        [("list.json", "1\n"), ("list.svg", "1\n"), ("sizes.json", sizes), ("state", "any\n")]
+    {
         fs::write(folder.path(name), text).unwrap();
     }
     let before = folder.content();
     for (options, part) in [
         ("--report kept.json", "kept.json: the file is a mesh (gmsh)"),
         ("--html kept.html", "kept.html: the file is a mesh (gmsh). Give --html another"),
+        (
+            "--report list.json",
+            "list.json: exists and is not a report. Give --report another name, or",
+        ),
+        ("--picture list.svg", "list.svg: exists and is not a picture"),
     ] {
         folder.line(&format!("in out --engine cpu {options}")).refused(&[part]);
     }
@@ -170,6 +177,10 @@ fn files_that_are_read_or_hold_a_mesh_are_not_replaced_by_other_files() {
     }
     folder.line("quality in.msh --picture in.msh").misused(&["in.msh: a picture is PNG or SVG"]);
     assert!(folder.content() == before);
+    let run = folder.line("quality in.msh --picture list.svg");
+    assert!(!run.refused(&["list.svg: exists and is not a picture"]).err.contains("--force"));
+    folder.line("in out --engine cpu --report list.json --force").clean();
+    assert!(folder.text("list.json").starts_with('{'));
 }
 
 /// Formats without a first word, and compressed meshes.
@@ -234,8 +245,8 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
     for (line, part) in [
         ("in out --report to-in.node.json", by_content),
         ("in out --report here/to-in.ele.json", by_content),
-        ("in out --report to-in.poly.json", by_name),
-        ("in out --report poly.json", by_name),
+        ("in out --report to-in.poly.json --force", by_name),
+        ("in out --report poly.json --force", by_name),
         ("in out --report to-out.ele.json", by_name),
     ] {
         folder.line(&format!("{line} --engine cpu")).refused(&[part]);
@@ -250,12 +261,12 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
 #[test]
 fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
     let folder = small();
-    fs::write(folder.path("r.json"), "old").unwrap();
+    fs::write(folder.path("r.json"), "{}").unwrap();
     // A hard link keeps the old content if the file is replaced, and shows the new content if the file is
     // overwritten.
     fs::hard_link(folder.path("r.json"), folder.path("kept")).unwrap();
     folder.line("in out --engine cpu --report r.json").clean();
-    assert_eq!(folder.text("kept"), "old");
+    assert_eq!(folder.text("kept"), "{}");
     assert!(number(&folder.json("r.json")["sweeps"]) > 0.0);
     assert_eq!(folder.content().len(), 6);
 }
