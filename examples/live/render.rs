@@ -8,7 +8,8 @@ use gpu_smooth::{
 use super::overlay::{self, Panel};
 use super::view::View;
 
-const BACKGROUND: wgpu::Color = wgpu::Color { r: 0.89, g: 0.89, b: 0.87, a: 1.0 };
+/// Gray, linear, and darker than the palest color of triangles, from which it must differ.
+const BACKGROUND: wgpu::Color = wgpu::Color { r: 0.42, g: 0.42, b: 0.41, a: 1.0 };
 
 /// Render pipelines, and their buffers other than the vertex buffer.
 pub(crate) struct Renderer {
