@@ -138,7 +138,7 @@ impl<'a> Remarks<'a> {
     pub(crate) fn sliding(&mut self, smoother: &Smoother<'_>, count: usize, has_lost_pairs: bool) {
         let ([pairs, unlike], [together, alone]) = (smoother.pairs(), smoother.coincident());
         let mut text = match count {
-            0 => "slide: no vertex can slide, as all on lines are corners or fixed".to_owned(),
+            0 => "slide: no vertex can slide, as all on lines are corners or held".to_owned(),
             _ => {
                 let may = numbered(count, "vertex", "vertices");
                 format!("slide: {may} on the boundary and other lines may slide")
