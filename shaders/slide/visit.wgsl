@@ -133,7 +133,9 @@ fn distance_to_line(point: vec4<f32>, start: vec4<f32>, end: vec4<f32>) -> f32 {
 fn is_near(side: u32, to: vec2<f32>) -> bool {
     let v = visited;
     let first = v.knots + side * v.knot_count;
-    if length(edge(knots[first + v.own].at, there[side].at)) > v.reach {
+    // The error of a point grows with the length of its line, on which a short move may end.
+    let error = CURVE_ERROR * knots[first + there[side].piece].length;
+    if length(edge(knots[first + v.own].at, there[side].at)) + error > v.reach {
         return false;
     }
     // Ways from the neighbor before.
