@@ -29,20 +29,19 @@ pub(crate) struct TargetReport {
 }
 
 impl TargetRequest {
-    /// Returns the report on targets; `None` if elements are to be equilateral in the plane. `before` and
-    /// `after` are the objectives under the target maps.
+    /// Returns the report on targets; `None` if elements are to be equilateral in the plane. `f` returns the objectives under
+    /// the target maps before and after.
     pub(crate) fn report(
         &self,
         surface: Surface,
         size_weight: Option<f64>,
-        before: f64,
-        after: impl FnOnce() -> Result<f64, CliError>,
+        f: impl FnOnce() -> Result<[f64; 2], CliError>,
     ) -> Result<Option<TargetReport>, CliError> {
         if self.kind == TargetKind::Equilateral && surface == Surface::Plane {
             return Ok(None);
         }
         let kind = self.name();
-        let f = [before, after()?];
+        let f = f()?;
         let surface = match surface {
             Surface::Plane => "plane",
             Surface::Sphere => "sphere",

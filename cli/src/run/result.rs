@@ -56,9 +56,13 @@ pub(super) fn measure(
     let is_reported = request.outputs.report.is_some() || request.outputs.page.is_some();
     let spacing = spacing::at_walls(file, topology, &outcome.points, is_reported)?;
     let base = request.scheme().base();
-    let f_before = outcome.history.first().and_then(|first| first.of(base)).unwrap_or(f64::NAN);
-    let f_after = || Ok(ready.smoother.f(base, &outcome.points)?);
-    let target = request.target.report(request.surface, ready.size_weight, f_before, f_after)?;
+    let start = ready.mended.map_or(file.mesh(), |mended| &mended.mesh);
+    // Both in double precision, unlike the history of a run on a GPU.
+    let f = || {
+        let of = |points| ready.smoother.f(base, points);
+        Ok([of(&start.points)?, of(&outcome.points)?])
+    };
+    let target = request.target.report(request.surface, ready.size_weight, f)?;
     let interpolated = fields.interpolate(file, topology, &outcome.points)?;
     let left_over = fields.add_dependents(file, &outcome.points)?;
     let has_moved = outcome.points != *old;

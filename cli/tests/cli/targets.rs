@@ -32,8 +32,8 @@ fn listed(values: &[f64], per_row: usize) -> String {
 
 #[test]
 fn targets_are_kept_and_reported_on_both_engines() {
-    for engine in ["cpu", "gpu"] {
-        for (target, scheme) in [("keep-size", "tmop-94"), ("keep-shape", "imr")] {
+    for (target, scheme) in [("keep-size", "tmop-94"), ("keep-shape", "imr")] {
+        let starts = ["cpu", "gpu"].map(|engine| {
             let folder = folder(&[]);
             let line = format!("in out --engine {engine} --target {target} --report r.json");
             let run = folder.line(&line);
@@ -46,8 +46,12 @@ fn targets_are_kept_and_reported_on_both_engines() {
             assert_eq!((&told["kind"], &told["surface"]), (&target.into(), &"plane".into()));
             let [before, after] = [0, 1].map(|i| number(&told["f"][i]));
             assert!(after < before, "{told}");
-            assert!((number(&report["history"][0]["f"]) - before).abs() <= 1e-12 * before);
-        }
+            // The history of a device is in single precision.
+            let off = if engine == "cpu" { 1e-12 } else { 1e-4 };
+            assert!((number(&report["history"][0]["f"]) - before).abs() <= off * before);
+            before
+        });
+        assert_eq!(starts[0], starts[1], "{target}");
     }
 }
 
