@@ -1,31 +1,7 @@
-// Adds up partial sums in one workgroup.
+// The partial sums of inner products.
 
-var<workgroup> totals: array<vec2<f32>, FINISH_WORKGROUP>;
-
-// Returns the sum of the partial sums from `first` on, before `end`, the same for each invocation.
-fn sum_of(local: u32, first: u32, end: u32) -> vec2<f32> {
-    var sum = vec2(0.0);
-    // Four loads are under way at once. The order of the sum is that of a plain loop.
-    var k = first + local;
-    for (; k + 3u * FINISH_WORKGROUP < end; k += 4u * FINISH_WORKGROUP) {
-        let a = fine[sum_at(k)];
-        let b = fine[sum_at(k + FINISH_WORKGROUP)];
-        let c = fine[sum_at(k + 2u * FINISH_WORKGROUP)];
-        let d = fine[sum_at(k + 3u * FINISH_WORKGROUP)];
-        sum = pair_add(pair_add(pair_add(pair_add(sum, a), b), c), d);
-    }
-    for (; k < end; k += FINISH_WORKGROUP) {
-        sum = pair_add(sum, fine[sum_at(k)]);
-    }
-    totals[local] = sum;
-    for (var half = FINISH_WORKGROUP / 2u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if local < half {
-            totals[local] = pair_add(totals[local], totals[local + half]);
-        }
-    }
-    workgroupBarrier();
-    return totals[0];
+fn partial_sum(k: u32) -> vec2<f32> {
+    return fine[sum_at(k)];
 }
 
 // Returns the sum of all partial sums, or of the sums of their spans.

@@ -450,7 +450,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Corrections,
-        source: ["levels/sum_along_correction.wgsl"],
+        source: ["sum_of.wgsl", "levels/sum_along_correction.wgsl"],
     }
 
     /// Moves the free vertices along the correction.
@@ -548,7 +548,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Corrections,
-        source: ["spans.wgsl", "secants/total.wgsl", "secants/add_up_secants.wgsl"],
+        source: ["spans.wgsl", "secants/partial_sum.wgsl", "sum_of.wgsl", "secants/add_up_secants.wgsl"],
     }
 
     /// Completes the sums of products of secant pairs.
@@ -560,7 +560,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Corrections,
-        source: ["spans.wgsl", "secants/total.wgsl", "secants/sum_secants.wgsl"],
+        source: ["spans.wgsl", "secants/partial_sum.wgsl", "sum_of.wgsl", "secants/sum_secants.wgsl"],
     }
 
     /// Subtracts the part that the secant pairs account for from the gradient, before the levels are applied.
@@ -734,7 +734,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/add_up_step.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "sum_of.wgsl", "truncated/total.wgsl", "truncated/add_up_step.wgsl"],
     }
 
     /// Begins an iteration of conjugate gradients.
@@ -746,7 +746,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/begin_iteration.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "sum_of.wgsl", "truncated/total.wgsl", "truncated/begin_iteration.wgsl"],
     }
 
     /// The next direction of conjugate gradients.
@@ -782,7 +782,7 @@ kernels! {
         sees_bounds: false,
         sees_quadrilaterals: false,
         user: Steps,
-        source: ["spans.wgsl", "truncated/vectors.wgsl", "truncated/total.wgsl", "truncated/judge_iteration.wgsl"],
+        source: ["spans.wgsl", "truncated/vectors.wgsl", "sum_of.wgsl", "truncated/total.wgsl", "truncated/judge_iteration.wgsl"],
     }
 
     /// The centers and sizes of coarser aggregates.
