@@ -260,7 +260,7 @@ impl Outputs {
                 let text = format!("{}: the file is a mesh ({format})", path.display());
                 return Err(CliError::output(text).with_remedy(role.remedy()));
             } else if head.is_some_and(|head| !self.replaces_any && !role.may_replace(&head)) {
-                let text = format!("{}: exists and is not {}", path.display(), role.name());
+                let text = role.is_other(path);
                 let remedy = match self.mesh {
                     // Commands that write no mesh have no `--force`.
                     MeshOutput::None => role.remedy().to_string(),
@@ -297,7 +297,7 @@ impl Outputs {
                 Err(CliError::output(text).with_remedy(remedy))
             }
             Some(false) => {
-                let text = format!("{name}: exists and is not a checkpoint");
+                let text = Role::Checkpoint.is_other(path);
                 Err(CliError::output(text).with_remedy(Role::Checkpoint.remedy()))
             }
         }
@@ -317,14 +317,15 @@ impl Role {
         }
     }
 
-    /// Returns the name of the content.
-    fn name(self) -> &'static str {
-        match self {
+    /// Returns the message on a file of another kind at the path.
+    fn is_other(self, path: &Path) -> String {
+        let kind = match self {
             Self::Report => "a report",
             Self::Page => "a page",
             Self::Picture => "a picture",
             Self::Checkpoint => "a checkpoint",
-        }
+        };
+        format!("{}: exists and is not {kind}", path.display())
     }
 
     /// Returns the error for an output at the path of a mesh file, or with the extension of a mesh format.
