@@ -8,6 +8,7 @@ use crate::formats::mike;
 use crate::formats::nastran;
 use crate::formats::triangle;
 use crate::formats::triangle::names::Names;
+use crate::hdf5::{REMOVE_USER_BLOCK, user_block};
 use crate::registry::{
     ADCIRC, FREEFEM, FormatEntry, MIKE, NASTRAN, REGISTRY, STL, SURFER, TRIANGLE, XDMF,
 };
@@ -57,11 +58,15 @@ pub(crate) fn reader(source: &Source) -> Result<&'static ReaderFunctions, ReadEr
         return reader_of(source, &TRIANGLE);
     }
     // Formats without magic bytes are detected by an extension of their own, unlike FreeFem's `.msh`. An STL in text
-    // must start with the magic bytes, so its extension alone does not count.
+    // must start with the magic bytes, in capital or small letters, so its extension alone does not count.
     let is_text = memchr::memchr(0, &source.bytes[..source.bytes.len().min(512)]).is_none();
+    let is_solid = head
+        .split(u8::is_ascii_whitespace)
+        .next()
+        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let by_ending = |family: &&&FormatEntry| {
-        let is_told_otherwise =
-            (is_text && std::ptr::eq(**family, &STL)) || std::ptr::eq(**family, &ADCIRC);
+        let is_told_otherwise = (is_text && !is_solid && std::ptr::eq(**family, &STL))
+            || std::ptr::eq(**family, &ADCIRC);
         promised(family) && family.extensions != FREEFEM.extensions && !is_told_otherwise
     };
     match REGISTRY.iter().filter(|family| family.reader.is_some()).find(by_ending) {
@@ -84,6 +89,9 @@ fn other_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
             "an HTML page, not a mesh",
             "Download the mesh again, by the address of the file instead of that of a page about the file",
         ));
+    }
+    if user_block(bytes).is_some() {
+        return Some(("HDF5 behind a user block, which is not read", REMOVE_USER_BLOCK));
     }
     // Without a byte-order mark, every second byte of a text in the Latin alphabet is zero.
     let is_utf16 = |zero: usize| {

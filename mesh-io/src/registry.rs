@@ -186,7 +186,7 @@ families! {
     STL [Stl, StlBinary] = entry(
         "STL",
         &[".stl"],
-        &[b"solid ", b"solid\n", b"solid\r"],
+        &[b"solid ", b"solid\t", b"solid\n", b"solid\r"],
         reader::<stl::Stl>(),
     );
     PLY [Ply, PlyBinary] = entry("PLY", &[".ply"], &[b"ply\n", b"ply\r"], reader::<ply::Ply>());

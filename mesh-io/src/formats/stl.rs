@@ -85,7 +85,8 @@ impl FormatReader for Stl {
 
 /// Returns whether a file is binary. Some binary files start with `solid` as text does, but text has no zero bytes.
 fn is_binary(bytes: &[u8]) -> bool {
-    let begin = bytes.trim_ascii_start().get(..5);
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let begin = text.trim_ascii_start().get(..5);
     let first = &bytes[..bytes.len().min(512)];
     !begin.is_some_and(|w| w.eq_ignore_ascii_case(b"solid")) || memchr::memchr(0, first).is_some()
 }

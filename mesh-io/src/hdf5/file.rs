@@ -1,7 +1,7 @@
 //! An HDF5 file as the tree of its groups and datasets.
 
 use super::bytes::{DAMAGED, Hdf5Error};
-use super::file_bytes::{FileBytes, SIGNATURE};
+use super::file_bytes::{FileBytes, SIGNATURE, user_block};
 use super::groups::{self, Link, Target};
 use super::header::Header;
 use crate::disk::source::Source;
@@ -61,9 +61,10 @@ impl<'a> Hdf5<'a> {
         Ok(Hdf5 { source, raw, objects })
     }
 
-    /// Reads a file of HDF5 or any other format; `None` if the file does not start with the HDF5 signature.
+    /// Reads a file of HDF5 or any other format; `None` if the file has no HDF5 signature, neither at its start nor behind
+    /// a user block.
     pub(crate) fn open_any(source: &'a Source) -> Result<Option<Hdf5<'a>>, ReadError> {
-        match source.bytes.starts_with(SIGNATURE) {
+        match source.bytes.starts_with(SIGNATURE) || user_block(&source.bytes).is_some() {
             true => Hdf5::open(source).map(Some),
             false => Ok(None),
         }

@@ -21,6 +21,24 @@ pub(super) struct FileBytes<'a> {
     left: Cell<usize>,
 }
 
+/// Remedy for a file that is shorter than its superblock says.
+const COPY_AGAIN: &str = "Copy it again, or write the mesh again";
+
+/// Remedy for a file that starts with data of a program instead of HDF5.
+pub(crate) const REMOVE_USER_BLOCK: &str =
+    "Remove the user block with `h5unjam -i IN -o OUT --delete`";
+
+/// Returns the size in bytes of the user block, data of a program that precede the superblock; `None` if no superblock
+/// follows. The size is 512, 1024, 2048 and so on.
+pub(crate) fn user_block(bytes: &[u8]) -> Option<usize> {
+    let mut sizes = std::iter::successors(Some(512_usize), |size| size.checked_mul(2))
+        .take_while(|&size| size < bytes.len());
+    match bytes.starts_with(SIGNATURE) {
+        true => None,
+        false => sizes.find(|&size| bytes[size..].starts_with(SIGNATURE)),
+    }
+}
+
 /// Limit on metadata reads after the object tree is built, in multiples of the file length. The limit stops files
 /// whose structures refer to each other in a circle.
 const MAX_REREADS: usize = 64;
@@ -38,6 +56,10 @@ impl<'a> FileBytes<'a> {
         let what = "the superblock of the HDF5 file";
         let none = FieldWidths { address: 8, length: 8 };
         let mut own = ByteReader::new(bytes, 0, none, what);
+        if let Some(size) = user_block(bytes) {
+            let problem = format!("cannot read HDF5 behind a user block of {size} bytes");
+            return Err(Hdf5Error { at: size, problem, remedy: REMOVE_USER_BLOCK });
+        }
         own.expect(SIGNATURE)?;
         let version = own.byte()?;
         own.skip(match version {
@@ -61,7 +83,12 @@ impl<'a> FileBytes<'a> {
         }
         own.skip(widths.address)?;
         let place = own.at()..own.at() + widths.address;
-        own.skip(widths.address)?;
+        // A file may be longer than its end address. If the file is shorter, some dataset is cut off, which is perhaps
+        // not read, and the written file would be as short as this one.
+        if let Some(end) = own.address()?.filter(|&end| end > bytes.len()) {
+            let problem = format!("the file is cut off: {} of {end} bytes", bytes.len());
+            return Err(Hdf5Error { at: bytes.len(), problem, remedy: COPY_AGAIN });
+        }
         let sum;
         let root;
         if version < 2 {

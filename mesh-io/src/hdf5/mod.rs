@@ -30,5 +30,5 @@ pub(crate) mod write;
 pub(crate) use dataset::{Dataset, DatasetArray};
 pub(crate) use encoding::Hdf5Arrays;
 pub(crate) use file::{Hdf5, Object};
-pub(crate) use file_bytes::SIGNATURE;
+pub(crate) use file_bytes::{REMOVE_USER_BLOCK, SIGNATURE, user_block};
 pub(crate) use types::Datatype;

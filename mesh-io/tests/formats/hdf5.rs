@@ -172,6 +172,44 @@ fn only_coordinates_change() {
     }
 }
 
+/// The bytes at the end may belong to a dataset that the reader does not need, such as data of elements.
+#[test]
+fn hdf5_that_lacks_a_byte_is_refused_and_bytes_behind_its_end_are_kept() {
+    for sample in SAMPLES.iter().filter(|sample| sample.name != "raw.xdmf") {
+        let folder = sample.folder();
+        let name = sample.beside.first().unwrap_or(&sample.name);
+        let bytes = fs::read(folder.path(name)).unwrap();
+        let (length, less) = (bytes.len(), bytes.len() - 1);
+        folder.put(name, &bytes[..less]);
+        let problem = format!("{name}, byte {less}: the file is cut off: {less} of {length} bytes");
+        refused(MeshFile::read(&folder.path(sample.name)), &[&problem, "Copy it again"]);
+        let longer = [&bytes[..], b"more"].concat();
+        folder.put(name, &longer);
+        let file = folder.read(sample.name);
+        file.write(&folder.path(sample.name), &moved(&file, 1.0)).unwrap();
+        let after = fs::read(folder.path(name)).unwrap();
+        assert!(after != longer && after[..8] == bytes[..8]);
+        assert!(folder.read(sample.name).points() != file.points());
+        if sample.is_plain {
+            assert!(after.ends_with(b"more"), "{name}");
+        }
+    }
+}
+
+#[test]
+fn hdf5_behind_a_user_block_is_refused() {
+    for size in [512, 2048] {
+        for sample in SAMPLES.iter().filter(|sample| sample.name != "raw.xdmf") {
+            let folder = sample.folder();
+            let name = sample.beside.first().unwrap_or(&sample.name);
+            let bytes = fs::read(folder.path(name)).unwrap();
+            folder.put(name, [&vec![b'u'; size][..], &bytes].concat());
+            let parts = [*name, "behind a user block", "h5unjam -i IN -o OUT --delete"];
+            refused(MeshFile::read(&folder.path(sample.name)), &parts);
+        }
+    }
+}
+
 /// If a chunk at the end of the file changes its length, the new chunk replaces the old one.
 #[test]
 fn a_mesh_that_is_written_in_place_many_times_does_not_grow_without_bound() {

@@ -107,6 +107,24 @@ fn corners_are_joined_where_that_is_asked_for() {
     }
 }
 
+/// A text may start with a byte-order mark, and its first word may be in capitals or precede a tab.
+#[test]
+fn a_text_may_start_in_several_spellings() {
+    let text = ascii(&in_order(), &in_order().points, "0");
+    for start in ["\u{feff}solid ", "solid\t", "SOLID ", "Solid\t", "\u{feff}SOLID ", " solid "] {
+        let text = text.replacen("solid ", start, 1);
+        let (folder, file) = read("a.stl", text.as_bytes());
+        assert_eq!(file.format(), Format::Stl, "{start:?}");
+        assert_eq!(file.triangles(), in_order().triangles, "{start:?}");
+        file.write(&folder.path("b.stl"), file.points()).unwrap();
+        assert_eq!(folder.text("b.stl"), text);
+    }
+    let mark = [&b"\xEF\xBB\xBF"[..], &binary(&in_order(), &in_order().points, 0.0)].concat();
+    let folder = Folder::new(&[]);
+    folder.put("a.stl", mark);
+    assert!(ReadOptions::new().weld(true).read(&folder.path("a.stl")).is_err());
+}
+
 #[test]
 fn every_copy_of_a_moved_corner_is_written() {
     let mesh = in_order();
