@@ -101,12 +101,13 @@ pub enum WriteError {
         /// Remedy for the user, without a final period.
         remedy: String,
     },
-    /// The extension belongs to a format that differs from the format of the mesh.
+    /// The extension belongs to a format that differs from the format of the mesh, or the file has bytes that belong to
+    /// several arrays, of which the rewrite would change one.
     #[error("{}: {problem}. {remedy}", path.display())]
     Format {
         /// Path of the file.
         path: PathBuf,
-        /// What is wrong with the name.
+        /// What is wrong with the name or with the arrays.
         problem: String,
         /// Remedy for the user, without a final period.
         remedy: String,

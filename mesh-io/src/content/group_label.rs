@@ -1,5 +1,7 @@
 //! The label of a group: a number or a name.
 
+use crate::content::decoded::decoded;
+
 /// Number or name that identifies a group among groups of equal kind and dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum GroupLabel {
@@ -8,9 +10,9 @@ pub(crate) enum GroupLabel {
 }
 
 impl GroupLabel {
-    /// Makes a label from the bytes of a name; invalid UTF-8 becomes replacement characters.
+    /// Makes a label from the bytes of a name: UTF-8, or else Windows-1252.
     pub(crate) fn name(name: &[u8]) -> GroupLabel {
-        GroupLabel::Name(String::from_utf8_lossy(name).into_owned())
+        GroupLabel::Name(decoded(name))
     }
 
     /// Makes a label from a real number. Whole numbers up to 2^53 in size become tags, other numbers become names in

@@ -2,6 +2,7 @@
 
 pub(crate) mod constraints;
 pub(crate) mod curve_edges;
+pub(crate) mod decoded;
 pub(crate) mod faces;
 pub(crate) mod group;
 pub(crate) mod group_ends;

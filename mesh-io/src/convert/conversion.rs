@@ -139,6 +139,7 @@ impl Conversion {
             target.capabilities.lost_names_of_empty_groups(&content).into_iter().collect();
         let mut renamed = names::fit(&target.capabilities, &mut content);
         renamed.extend(target.capabilities.renumbered_zero(&content));
+        renamed.extend(names::regions(&content, file.format(), to));
         let creator = "mesh-io".to_owned();
         let encoding = match target.write {
             WriteFunction::Binary(_) => Encoding::Binary,
@@ -371,7 +372,7 @@ fn set_fields(content: &mut Content, fields: &[PointField]) {
         let is_own =
             |data: &&mut DataArray| data.name == name && data.values.len() == field.values().len();
         if let Some(data) = content.point_data.iter_mut().find(is_own) {
-            data.values = field.values().to_vec();
+            data.set_stored(field.values());
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::export::capabilities::{Capabilities, GroupSupport, join_first};
 use crate::export::content::{Content, ContentGroup};
 use crate::export::group_numbers::GroupNumbers;
 use crate::export::name_rules::{NameRules, distinct};
-use crate::formats::{cgns, ugrid};
+use crate::format::Format;
+use crate::formats::{cgns, ugrid, vtk};
 use std::collections::HashMap;
 
 /// Respells the names that a format stores but cannot spell, and names sets of vertices. Distinct names stay distinct.
@@ -104,6 +105,20 @@ fn vertex_sets(holds: &Capabilities, content: &mut Content) -> Vec<String> {
         group.name = Some(new);
     }
     line("groups of vertices", &told)
+}
+
+/// Returns a line for the region arrays that become arrays of another name, if a mesh is converted among VTK's formats
+/// and XDMF: files of these formats get the usual names, by which other programs recognize regions.
+pub(crate) fn regions(content: &Content, from: Format, to: Format) -> Vec<String> {
+    let has_arrays = |format: Format| {
+        matches!(format, Format::Vtk | Format::VtkBinary | Format::Vtu | Format::Vtp | Format::Xdmf)
+    };
+    if !has_arrays(from) || !has_arrays(to) {
+        return Vec::new();
+    }
+    let renamed = vtk::write::renamed_regions(&content.region_names);
+    let told = renamed.iter().map(|(old, new)| format!("`{old}` to `{new}`"));
+    line("data of elements", &told.collect::<Vec<_>>())
 }
 
 fn data(holds: &Capabilities, content: &mut Content) -> Vec<String> {

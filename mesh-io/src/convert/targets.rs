@@ -299,6 +299,7 @@ pub(crate) static TARGETS: &[Target] = &[
         capabilities: Capabilities {
             quadrilaterals: true,
             z: true,
+            keeps_projection: true,
             keeps_vertex_ids: true,
             vertex_groups: true,
             ..Capabilities::TRIANGLES
@@ -309,6 +310,7 @@ pub(crate) static TARGETS: &[Target] = &[
         format: Format::Selafin,
         name: "selafin",
         capabilities: Capabilities {
+            keeps_origin: true,
             point_data: DataSupport::Only(selafin::write::BED),
             ..Capabilities::TRIANGLES
         },

@@ -1,5 +1,6 @@
-//! Replacement of whole files: whatever happens, a file has either its old content or all of the new content, and
-//! several files are replaced together or not at all.
+//! Replacement of whole files: whatever happens, a file has either its old content or all of the new content. If a
+//! request to the system fails, several files are replaced together or not at all. If the process is killed between two
+//! of their renames, the main file is missing or old, and never beside new files.
 
 use crate::disk::file_system::{FileSystem, NewFile, OsFileSystem};
 use crate::disk::paths::{directory_of, resolve};
@@ -7,7 +8,7 @@ use crate::error::WriteError;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A file to be written: its path, and a function that writes the content.
@@ -66,6 +67,7 @@ pub(crate) fn write_all_if(
             return Err(with_lost(error, &lost));
         }
     }
+    HAS_WRITTEN.store(true, Ordering::Release);
     Ok(())
 }
 
@@ -81,6 +83,8 @@ fn with_lost(error: WriteError, lost: &[String]) -> WriteError {
 
 /// Lock that a write holds while it renames its temporary files.
 static COMMITTING: Mutex<()> = Mutex::new(());
+/// Whether a write of this process has ended well.
+static HAS_WRITTEN: AtomicBool = AtomicBool::new(false);
 /// Paths of the temporary files that writes of this process have created.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -92,6 +96,13 @@ fn lock<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
 pub struct BlockedWrites {
     _committing: MutexGuard<'static, ()>,
     _temporaries: MutexGuard<'static, Vec<PathBuf>>,
+}
+
+impl BlockedWrites {
+    /// Returns whether this process has replaced or made a file before.
+    pub fn has_written(&self) -> bool {
+        HAS_WRITTEN.load(Ordering::Acquire)
+    }
 }
 
 /// Removes the temporary files of unfinished writes on other threads, before the program ends: [`std::process::exit`]

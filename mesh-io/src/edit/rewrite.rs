@@ -21,9 +21,16 @@ pub(crate) struct Rewrite<'a> {
 
 impl Rewrite<'_> {
     /// Writes the content to `out`, with changed numbers and edits replaced.
+    ///
+    /// # Errors
+    /// The errors of `out`, and [`io::ErrorKind::InvalidData`] if ranges to be replaced overlap: a damaged file, or one
+    /// with several arrays of the same bytes. After an error, `out` has part of the content.
     pub(crate) fn write(&self, out: &mut (dyn Write + Send)) -> io::Result<()> {
         let mut at = 0;
         for edit in self.edits {
+            if edit.range.start < at || edit.range.end > self.bytes.len() {
+                return Err(overlap(edit.range.start));
+            }
             self.write_range(at..edit.range.start, out)?;
             out.write_all(&edit.bytes)?;
             at = edit.range.end;
@@ -61,7 +68,10 @@ impl Rewrite<'_> {
     }
 
     /// Returns the rewritten content of a byte range.
-    fn block(&self, range: Range<usize>) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// If changed numbers overlap or extend beyond the range.
+    fn block(&self, range: Range<usize>) -> io::Result<Vec<u8>> {
         let mut changes = Vec::new();
         for column in self.columns {
             let items = column.first_from(range.start)..column.first_from(range.end);
@@ -74,28 +84,38 @@ impl Rewrite<'_> {
         let mut out = Vec::with_capacity(range.len() + range.len() / 4);
         let mut copied = range.start;
         for NumberEdit { range, value, encoding, width } in changes {
-            out.extend_from_slice(&self.bytes[copied..range.start]);
+            let between = self.bytes.get(copied..range.start);
+            out.extend_from_slice(between.ok_or_else(|| overlap(range.start))?);
             let start = out.len();
             encoding.write(value, &mut out);
             let blanks = std::iter::repeat_n(b' ', (start + width).saturating_sub(out.len()));
             // If the field has no blank at its end, the old number is right-aligned, and so is the new number.
-            let is_right = width > 0 && self.bytes[..range.end].last().is_some_and(|&b| b > b' ');
+            let last = range.end.checked_sub(1).and_then(|last| self.bytes.get(last));
+            let is_right = width > 0 && last.is_some_and(|&b| b > b' ');
             match is_right {
                 true => drop(out.splice(start..start, blanks)),
                 false => out.extend(blanks),
             }
             copied = range.end;
         }
-        out.extend_from_slice(&self.bytes[copied..range.end]);
-        out
+        let rest = self.bytes.get(copied..range.end);
+        out.extend_from_slice(rest.ok_or_else(|| overlap(copied))?);
+        Ok(out)
     }
+}
+
+/// Makes the error of ranges that overlap at a byte offset.
+#[cold]
+fn overlap(at: usize) -> io::Error {
+    let problem = format!("two numbers to be replaced overlap at byte {at} of the file as read");
+    io::Error::new(io::ErrorKind::InvalidData, problem)
 }
 
 /// Writes the blocks of a file in order. While one thread writes finished blocks, other threads make the next blocks.
 fn write_blocks(
     out: &mut (dyn Write + Send),
     count: usize,
-    make: impl Fn(usize) -> Vec<u8> + Sync,
+    make: impl Fn(usize) -> io::Result<Vec<u8>> + Sync,
 ) -> io::Result<()> {
     let at_once = 2 * rayon::current_num_threads();
     let mut made: Vec<Vec<u8>> = Vec::new();
@@ -106,7 +126,7 @@ fn write_blocks(
             || map_parts(next, |_, block| make(block)),
         );
         written?;
-        made = next;
+        made = next.into_iter().collect::<io::Result<_>>()?;
     }
     made.iter().try_for_each(|block| out.write_all(block))
 }
@@ -186,6 +206,40 @@ mod tests {
             let mut out = Vec::new();
             Rewrite { bytes: &bytes, columns: &columns, edits: &[] }.write(&mut out).unwrap();
             assert!(out == expected, "{vertices} vertices");
+        }
+    }
+
+    /// Ranges that overlap or end behind the file are errors, whatever their order.
+    #[test]
+    fn ranges_that_overlap_are_errors() {
+        let edit = |range: Range<usize>| ByteEdit { range, bytes: b"new".into() };
+        let written = |edits: &[ByteEdit], starts: &[usize]| {
+            let (old, new) = ([0.0], [1.0]);
+            let encoding = NumberEncoding::Binary(ByteOrder::Big, Precision::Double);
+            let places: Vec<Offsets> =
+                starts.iter().map(|&start| Offsets::List(vec![start])).collect();
+            let columns: Vec<_> = places
+                .iter()
+                .map(|places| EditableColumn::of_array(places, encoding, &old, &new))
+                .collect();
+            let mut out = Vec::new();
+            Rewrite { bytes: &[0; 40], columns: &columns, edits }
+                .write(&mut out)
+                .map(|()| out.len())
+        };
+        assert_eq!(written(&[edit(2..5), edit(5..5)], &[8, 16]).unwrap(), 43);
+        let overlapping: [(&[ByteEdit], &[usize]); 7] = [
+            (&[edit(2..5), edit(2..5)], &[]),
+            (&[edit(2..5), edit(4..6)], &[]),
+            (&[edit(30..41)], &[]),
+            (&[], &[8, 8]),
+            (&[], &[8, 12]),
+            (&[], &[36]),
+            (&[edit(10..12)], &[8]),
+        ];
+        for (edits, starts) in overlapping {
+            let error = written(edits, starts).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::InvalidData, "{starts:?}");
         }
     }
 

@@ -1,16 +1,20 @@
 //! Capabilities of formats, and the losses of a mesh in a format.
 
 use super::content::{Content, ContentGroup, DataArray};
-use super::group_numbers::{GroupNumbers, determines, is_region_zero};
+use super::group_numbers::{self, GroupNumbers, determines, is_region_zero};
 use super::implied_cells::ImpliedCells;
 use super::name_rules::NameRules;
 use super::sides;
 use crate::content::group_label::GroupLabel;
 use crate::precision::Precision;
+use crate::text::token::on_one_line;
 use crate::visit::items::{CellKind, PeriodicNodes};
 
 /// Loss of periodic pairs, for users.
 pub(crate) const PERIODIC: &str = "pairs of periodic vertices";
+
+/// MIKE's projection of local coordinates, which have no place on the globe.
+pub(crate) const NO_PROJECTION: &str = "NON-UTM";
 
 /// Elements, groups, names and data that a format can store.
 #[derive(Clone, Copy)]
@@ -21,6 +25,10 @@ pub(crate) struct Capabilities {
     pub(crate) polygons: bool,
     /// Whether vertices have third coordinates.
     pub(crate) z: bool,
+    /// Whether the format stores an origin, which programs add to the coordinates.
+    pub(crate) keeps_origin: bool,
+    /// Whether the format stores the projection of the coordinates.
+    pub(crate) keeps_projection: bool,
     /// Whether the format stores arbitrary ids of vertices.
     pub(crate) keeps_vertex_ids: bool,
     /// Groups that the format can assign to an element.
@@ -122,6 +130,8 @@ impl Capabilities {
         quadrilaterals: false,
         polygons: false,
         z: false,
+        keeps_origin: false,
+        keeps_projection: false,
         keeps_vertex_ids: false,
         groups: GroupSupport::None,
         names_empty_groups: false,
@@ -145,6 +155,13 @@ impl Capabilities {
         if !self.z && !content.z_values.is_empty() {
             lost.push("third coordinates".into());
         }
+        if !self.keeps_origin && content.origin != [0; 2] {
+            let [x, y] = content.origin;
+            lost.push(format!("the origin ({x}, {y}), which is not added to coordinates"));
+        }
+        if !self.keeps_projection && !["", NO_PROJECTION].contains(&&*content.projection) {
+            lost.push(format!("the projection {}", on_one_line(content.projection.as_bytes(), 40)));
+        }
         let starts = content.first_vertex_id().is_some_and(|first| first <= 1);
         let mut numbers = content.points.as_flattened().iter().chain(&content.z_values);
         if numbers.any(|&x| self.precision.rounded(x).to_bits() != x.to_bits()) {
@@ -166,6 +183,9 @@ impl Capabilities {
                 let names = group_names(names.into_iter());
                 lost.push(format!("names of groups of vertices, which become numbers: {names}"));
             }
+            if self.vertex_groups && content.has_vertex_in_several_groups() {
+                lost.push("further groups of a vertex: the first group is kept".into());
+            }
         }
         let stored = [0, 1, 2].map(|dimension| self.stored_kinds(content, dimension));
         // The numbers of groups that other groups determine are not written.
@@ -182,12 +202,31 @@ impl Capabilities {
             let groups = group_names(content.groups.iter().filter(is_negative));
             lost.push(format!("negative numbers of groups, which become others: {groups}"));
         }
+        let is_wide = |group: &&ContentGroup| group.tag().is_some_and(group_numbers::is_wide);
+        let of_elements = content.groups.iter().filter(|group| {
+            self.groups != GroupSupport::None && !is_left_out(group) && is_wide(group)
+        });
+        let of_vertices = content.vertex_groups.iter().map(|(group, _)| group);
+        let of_vertices = of_vertices.filter(|group| self.vertex_groups && is_wide(group));
+        let wide: Vec<_> = of_elements.chain(of_vertices).collect();
+        if !wide.is_empty() {
+            let groups = group_names(wide.into_iter());
+            lost.push(format!("numbers of groups beyond 32 bits, which become others: {groups}"));
+        }
         if !self.vertex_groups && !self.vertex_sets && !content.vertex_groups.is_empty() {
             let groups = content.vertex_groups.iter().map(|(group, _)| group);
             lost.push(format!("groups of vertices: {}", group_names(groups)));
         }
         self.point_data.losses("data of vertices", &content.point_data, &mut lost);
         self.cell_data.losses("data of elements", &content.cell_data, &mut lost);
+        let of_vertices = content.point_data.iter().filter(|data| self.point_data.supports(data));
+        let of_elements = content.cell_data.iter().filter(|data| self.cell_data.supports(data));
+        let large = of_vertices.chain(of_elements).filter(|data| data.has_large_numbers());
+        let mut large: Vec<&str> = large.map(|data| data.name.as_str()).collect();
+        large.dedup();
+        if !large.is_empty() {
+            lost.push(format!("digits of whole numbers from 2^53 on: {}", join_first(&large)));
+        }
         let is_curve = |tag: i64| {
             let is_own = |group: &ContentGroup| {
                 group.dimension == 1 && group.kind == "entity" && group.tag() == Some(tag)
@@ -220,8 +259,9 @@ impl Capabilities {
 
     /// Returns a line on regions with the tag 0, if the format cannot give this tag to a group.
     pub(crate) fn renumbered_zero(&self, content: &Content) -> Option<String> {
+        let stored = [0, 1, 2].map(|dimension| self.stored_kinds(content, dimension));
         let is_zero = |group: &ContentGroup| {
-            let stored = self.stored_kinds(content, group.dimension);
+            let stored = &stored[usize::from(group.dimension)];
             is_region_zero(content, group) && stored.contains(&group.kind.as_str())
         };
         let has_none = self.groups == GroupSupport::PhysicalAndEntity;

@@ -21,6 +21,10 @@ use crate::visit::items::{CellKind, PeriodicNodes};
 pub struct Content {
     /// x and y of each vertex.
     pub(crate) points: Vec<[f64; 2]>,
+    /// Coordinates of the origin, which programs add to `points`.
+    pub(crate) origin: [i32; 2],
+    /// Name or definition of the projection of the coordinates; empty if the file has none.
+    pub(crate) projection: String,
     /// The third coordinate of each vertex; empty if all are `common_z`.
     pub(crate) z_values: Vec<f64>,
     /// The third coordinate of all vertices, if `z_values` is empty.
@@ -33,6 +37,8 @@ pub struct Content {
     pub(crate) sets: Vec<Vec<u32>>,
     /// Kind of the groups that the cell data of the regions make; `None` if the regions are entries of the format.
     pub(crate) region_kind: Option<String>,
+    /// Kinds of the groups of elements as the file calls them, each once: in VTK's formats and XDMF, names of arrays.
+    pub(crate) region_names: Vec<String>,
     /// Groups with a name in the file, but without cells and vertices.
     pub(crate) empty_groups: Vec<ContentGroup>,
     /// Groups of vertices, each with its vertices.
@@ -119,9 +125,16 @@ pub struct DataArray {
     pub(crate) is_real: bool,
     /// `components` values for each vertex or cell, NaN if the file gives none.
     pub(crate) values: Vec<f64>,
+    /// Factor and offset by which the values were unpacked; `None` if the file does not pack them.
+    pub(crate) packing: Option<[f64; 2]>,
 }
 
 impl DataArray {
+    /// Sets the values from those that the file stores, which are unpacked.
+    pub(crate) fn set_stored(&mut self, stored: &[f64]) {
+        self.values = unpacked(stored.to_vec(), self.packing);
+    }
+
     /// Returns the name. The second and later time steps of a result have the step's number after the name.
     pub fn name(&self) -> &str {
         &self.name
@@ -130,6 +143,13 @@ impl DataArray {
     /// Returns the number of components per vertex or cell, at least 1.
     pub fn components(&self) -> usize {
         self.components
+    }
+
+    /// Returns whether some whole number is so large that `values` may have rounded it: doubles represent every whole number
+    /// below 2^53 in size. The number 2^53 itself may stand for its successor.
+    pub(crate) fn has_large_numbers(&self) -> bool {
+        const LIMIT: f64 = 9_007_199_254_740_992.0;
+        !self.is_real && self.values.iter().any(|value| value.abs() >= LIMIT)
     }
 
     /// Returns whether the file stores real numbers; otherwise it stores whole numbers.
@@ -141,6 +161,14 @@ impl DataArray {
     pub fn values(&self) -> &[f64] {
         &self.values
     }
+}
+
+/// Multiplies stored values by the factor of `packing` and adds its offset.
+pub(crate) fn unpacked(mut stored: Vec<f64>, packing: Option<[f64; 2]>) -> Vec<f64> {
+    if let Some([factor, offset]) = packing {
+        stored.iter_mut().for_each(|value| *value = *value * factor + offset);
+    }
+    stored
 }
 
 impl<'c> Cell<'c> {
@@ -201,6 +229,16 @@ impl Content {
     /// Lists the groups to which the file assigns single vertices, each with the indices of its vertices.
     pub fn vertex_groups(&self) -> impl Iterator<Item = (&ContentGroup, &[u32])> {
         self.vertex_groups.iter().map(|(group, vertices)| (group, &vertices[..]))
+    }
+
+    /// Returns whether a vertex is in two groups of vertices.
+    pub(crate) fn has_vertex_in_several_groups(&self) -> bool {
+        let mut is_in = vec![false; self.points.len()];
+        self.vertex_groups.iter().any(|(_, vertices)| {
+            let again = vertices.iter().any(|&vertex| is_in[vertex as usize]);
+            vertices.iter().for_each(|&vertex| is_in[vertex as usize] = true);
+            again
+        })
     }
 
     /// Returns the data of vertices, without third coordinates, which [`z`](Self::z) returns.

@@ -1,14 +1,15 @@
 //! Visitor that builds the format-independent content of a mesh file.
 
 use super::capabilities::PERIODIC;
-use super::content::{Content, ContentGroup, DataArray};
+use super::content::{Content, ContentGroup, DataArray, unpacked};
+use crate::content::decoded::decoded;
 use crate::content::group_keys::GroupKeys;
 use crate::content::group_label::GroupLabel;
 use crate::content::id_index::IdIndexBuilder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::text::cursor::Cursor;
-use crate::visit::field::scatter;
+use crate::visit::field::{has_room, scatter};
 use crate::visit::items::{
     CellKind, Element, GroupScope, PeriodicNodes, PointNumbers, RegionAttribute,
 };
@@ -43,7 +44,7 @@ struct ContentBuilder {
     last: HashMap<(u8, [i64; 2]), u32>,
     /// The array that was announced last.
     announced: Option<PendingArray>,
-    /// Number of time steps so far, for each array name with several time steps.
+    /// Number of time steps so far, for each name of vertex data with several time steps.
     steps: HashMap<String, usize>,
     /// Cell data, with the element id of each tuple; `None` for the ids 0, 1, 2 and so on.
     by_tag: Vec<(DataArray, Option<Vec<u64>>)>,
@@ -61,6 +62,19 @@ struct PendingArray {
     components: usize,
     is_real: bool,
     is_height: bool,
+    /// Factor and offset of packed numbers.
+    packing: Option<[f64; 2]>,
+}
+
+/// Returns the name of the next array called `name` behind `arrays`. The time steps of a result have equal names, and later
+/// steps get a number. `steps` has the number of time steps so far, for each name with several time steps.
+fn step_name(arrays: &[DataArray], steps: &mut HashMap<String, usize>, name: String) -> String {
+    if !arrays.iter().any(|data| data.name == name) {
+        return name;
+    }
+    let step = steps.entry(name.clone()).or_insert(1);
+    *step += 1;
+    format!("{name} {step}")
 }
 
 /// Returns the common word for kinds of groups that formats name differently.
@@ -95,7 +109,18 @@ impl ContentBuilder {
         for group in content.groups.iter_mut().chain(of_vertices) {
             group.name = keys.name_of(&group.kind, group.dimension, &group.label);
         }
-        content.remove_counters();
+        // Data that `region_array` names stay data. No format but gmsh's has a use for the numbers of entities.
+        let counters = content.remove_counters();
+        let is_lost = |kind: &String| {
+            let is_data = |data: &DataArray| common_kind(&data.name) == *kind;
+            kind != "entity" && !content.cell_data.iter().any(is_data)
+        };
+        let mut lost: Vec<String> = counters.into_iter().filter(is_lost).collect();
+        lost.sort_unstable();
+        let lost = lost
+            .iter()
+            .map(|kind| format!("numbers that differ for nearly every triangle: {kind}"));
+        content.unsupported.extend(lost);
         let first = content.z_values.first().copied();
         if content.z_values.iter().all(|&z| Some(z) == first) {
             content.common_z = first.unwrap_or(0.0);
@@ -124,6 +149,7 @@ impl ContentBuilder {
     /// Adds the cell data that the reader has passed to the content.
     fn add_cell_data(&mut self) {
         let Self { content, by_tag, .. } = self;
+        let steps = &mut HashMap::new();
         // An element may have become several cells, and data may be given for some cells only.
         for (data, tags) in by_tag.drain(..).filter(|(data, _)| data.components > 0) {
             let rows: HashMap<u64, usize> = match tags {
@@ -131,6 +157,11 @@ impl ContentBuilder {
                 None => (0..).zip(0..data.values.len() / data.components.max(1)).collect(),
             };
             let each = data.components;
+            if !has_room(data.values.len(), each, content.cells.len()) {
+                let problem = "whose number of values does not fit the number of elements";
+                content.unsupported.push(format!("{}, {problem}", data.name));
+                continue;
+            }
             let mut values = Vec::with_capacity(content.cells.len() * each);
             for tag in &content.cells.ids {
                 match rows.get(tag).and_then(|row| data.values.get(row * each..(row + 1) * each)) {
@@ -138,7 +169,8 @@ impl ContentBuilder {
                     None => values.resize(values.len() + each, f64::NAN),
                 }
             }
-            content.cell_data.push(DataArray { values, ..data });
+            let name = step_name(&content.cell_data, steps, data.name);
+            content.cell_data.push(DataArray { name, values, ..data });
         }
     }
 
@@ -149,6 +181,7 @@ impl ContentBuilder {
         let is_own = |data: &&DataArray| data.name == array && data.components == 1;
         let Some(data) = self.content.cell_data.iter().find(is_own) else { return };
         let numbers = data.values.clone();
+        self.add_region_name(array);
         for (cell, number) in numbers.into_iter().enumerate().filter(|(_, x)| !x.is_nan()) {
             let dimension = self.content.cells.kinds[cell].dimension();
             let group = self.group(array, dimension, GroupLabel::number(number));
@@ -157,6 +190,12 @@ impl ContentBuilder {
                 groups.push(group);
             }
             self.content.cells.sets[cell] = self.number_of(groups);
+        }
+    }
+
+    fn add_region_name(&mut self, name: &str) {
+        if !self.content.region_names.iter().any(|known| known == name) {
+            self.content.region_names.push(name.to_owned());
         }
     }
 
@@ -293,6 +332,7 @@ impl MeshVisitor for ContentBuilder {
     }
 
     fn region_attributes(&mut self, columns: Vec<RegionAttribute>) {
+        columns.iter().for_each(|column| self.add_region_name(&column.kind));
         self.columns = columns;
         self.last.clear();
     }
@@ -315,7 +355,7 @@ impl MeshVisitor for ContentBuilder {
     }
 
     fn group_name(&mut self, kind: &str, dimension: Option<u8>, tag: i64, name: &[u8]) {
-        let name = String::from_utf8_lossy(name).into_owned();
+        let name = decoded(name);
         self.keys.set_name(&common_kind(kind), dimension, tag, name);
     }
 
@@ -323,10 +363,11 @@ impl MeshVisitor for ContentBuilder {
         // Most formats take no data without a name.
         let name = match name.trim_ascii() {
             b"" => UNNAMED.to_owned(),
-            _ => String::from_utf8_lossy(name).into_owned(),
+            _ => decoded(name),
         };
         let components = usize::try_from(components).unwrap_or(usize::MAX);
-        self.announced = Some(PendingArray { name, components, is_real, is_height: false });
+        self.announced =
+            Some(PendingArray { name, components, is_real, is_height: false, packing: None });
         true
     }
 
@@ -338,11 +379,13 @@ impl MeshVisitor for ContentBuilder {
     }
 
     fn point_numbers(&mut self, numbers: PointNumbers) {
-        let Some(PendingArray { name, components, is_real, is_height }) = self.announced.take()
+        let Some(PendingArray { name, components, is_real, is_height, packing }) =
+            self.announced.take()
         else {
             return;
         };
         let PointNumbers { numbers, nodes, .. } = numbers;
+        let (numbers, is_real) = (unpacked(numbers, packing), is_real || packing.is_some());
         let values = match nodes {
             None => numbers,
             Some(nodes) => {
@@ -365,17 +408,8 @@ impl MeshVisitor for ContentBuilder {
             }
             return;
         }
-        // The time steps of a result have equal names, and later steps get a number.
-        let others = self.content.point_data.iter();
-        let name = match others.filter(|data| data.name == name).count() {
-            0 => name,
-            _ => {
-                let step = self.steps.entry(name.clone()).or_insert(1);
-                *step += 1;
-                format!("{name} {step}")
-            }
-        };
-        self.content.point_data.push(DataArray { name, components, is_real, values });
+        let name = step_name(&self.content.point_data, &mut self.steps, name);
+        self.content.point_data.push(DataArray { name, components, is_real, values, packing });
     }
 
     fn cell_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
@@ -383,9 +417,12 @@ impl MeshVisitor for ContentBuilder {
     }
 
     fn cell_numbers(&mut self, values: Vec<f64>, tags: Option<Vec<u64>>) {
-        if let Some(PendingArray { name, components, is_real, .. }) = self.announced.take() {
+        if let Some(PendingArray { name, components, is_real, packing, .. }) = self.announced.take()
+        {
+            let (values, is_real) = (unpacked(values, packing), is_real || packing.is_some());
             // Parts of a mesh may list the values of their own cells in separate arrays of equal name.
-            let before = self.by_tag.iter_mut().find(|(data, _)| data.name == name);
+            // Later time steps have the name of the first, and the parts of the last step go on.
+            let before = self.by_tag.iter_mut().rfind(|(data, _)| data.name == name);
             if let (Some((data, Some(known))), Some(tags)) = (before, &tags)
                 && data.components == components
                 && known.last() < tags.first()
@@ -394,8 +431,20 @@ impl MeshVisitor for ContentBuilder {
                 known.extend(tags);
                 return;
             }
-            self.by_tag.push((DataArray { name, components, is_real, values }, tags));
+            self.by_tag.push((DataArray { name, components, is_real, values, packing }, tags));
         }
+    }
+
+    fn packing(&mut self, packing: [f64; 2]) {
+        self.announced.iter_mut().for_each(|array| array.packing = Some(packing));
+    }
+
+    fn projection(&mut self, projection: &[u8]) {
+        self.content.projection = decoded(projection);
+    }
+
+    fn origin(&mut self, at: [i32; 2]) {
+        self.content.origin = at;
     }
 
     fn unsupported(&mut self, what: &str) {

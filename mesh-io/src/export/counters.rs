@@ -6,11 +6,11 @@ use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 
 impl Content {
-    /// Removes the unnamed groups of surfaces of each kind whose numbers count triangles.
-    pub(crate) fn remove_counters(&mut self) {
+    /// Removes the unnamed groups of surfaces of each kind whose numbers count triangles. Returns the kinds.
+    pub(crate) fn remove_counters(&mut self) -> HashSet<String> {
         let triangles = self.cells.kinds.iter().filter(|kind| **kind == CellKind::Triangle).count();
         if !counts_triangles(self.groups.len(), triangles) {
-            return;
+            return HashSet::new();
         }
         let kinds = self.counting_kinds(triangles);
         let is_counter =
@@ -34,6 +34,7 @@ impl Content {
         let renumbered: Vec<u32> = renumbered.collect();
         self.cells.sets.iter_mut().for_each(|set| *set = renumbered[*set as usize]);
         (self.groups, self.sets) = (left, sets);
+        kinds
     }
 
     /// Returns the kinds of groups whose numbers count triangles.

@@ -19,7 +19,8 @@ impl GroupNumbers {
             Some(kind) => content.column(kind),
             None => Vec::new(),
         };
-        GroupNumbers { columns: [0, 1, 2].map(column), numbers: numbers(&content.groups, negative) }
+        let numbers = numbers(content.groups.iter(), negative);
+        GroupNumbers { columns: [0, 1, 2].map(column), numbers }
     }
 
     /// Returns the most important group of a cell.
@@ -41,30 +42,36 @@ impl GroupNumbers {
 
 /// Returns a number for each group, unique within its kind and dimension. The number is the group's tag, if the tag
 /// fits into 32 bits with a permitted sign, else a positive number unequal to every tag.
-fn numbers(groups: &[ContentGroup], negative: bool) -> Vec<i64> {
-    let is_fit = |tag: i64| i32::try_from(tag).is_ok_and(|tag| negative || tag >= 0);
+pub(crate) fn numbers<'g>(
+    groups: impl Iterator<Item = &'g ContentGroup> + Clone,
+    negative: bool,
+) -> Vec<i64> {
+    let is_fit = |tag: i64| !is_wide(tag) && (negative || tag >= 0);
     let mut taken: HashSet<(&str, u8, i64)> = HashSet::new();
-    for group in groups {
+    for group in groups.clone() {
         if let GroupLabel::Tag(tag) = group.label {
             taken.insert((&group.kind, group.dimension, tag));
         }
     }
     let mut next: HashMap<(&str, u8), i64> = HashMap::new();
-    let number = |group: &'_ ContentGroup| -> i64 {
-        match group.label {
-            GroupLabel::Tag(tag) if is_fit(tag) => tag,
-            _ => {
-                let (kind, dimension) = (shared_kind(groups, group), group.dimension);
-                let next = next.entry((kind, dimension)).or_insert(1);
-                while taken.contains(&(kind, dimension, *next)) {
-                    *next += 1;
-                }
+    let number = |group: &'g ContentGroup| match group.label {
+        GroupLabel::Tag(tag) if is_fit(tag) => tag,
+        _ => {
+            let (kind, dimension) = (&*group.kind, group.dimension);
+            let next = next.entry((kind, dimension)).or_insert(1);
+            while taken.contains(&(kind, dimension, *next)) {
                 *next += 1;
-                *next - 1
             }
+            *next += 1;
+            *next - 1
         }
     };
-    groups.iter().map(number).collect()
+    groups.map(number).collect()
+}
+
+/// Returns whether a number does not fit into 32 bits.
+pub(crate) fn is_wide(tag: i64) -> bool {
+    i32::try_from(tag).is_err()
 }
 
 /// Returns whether a group is a region of surfaces with the tag 0 beside regions with other tags of the same kind. A tag of 0
@@ -74,10 +81,6 @@ pub(crate) fn is_region_zero(content: &Content, group: &ContentGroup) -> bool {
         other.kind == group.kind && other.dimension == 2 && other.tag() != Some(0)
     };
     group.dimension == 2 && group.tag() == Some(0) && content.groups.iter().any(is_beside)
-}
-
-fn shared_kind<'g>(groups: &'g [ContentGroup], group: &ContentGroup) -> &'g str {
-    groups.iter().find(|own| own.kind == group.kind).map_or("", |own| &own.kind)
 }
 
 /// Returns whether elements of the dimension with equal `main` groups have equal `other` groups, which have no names

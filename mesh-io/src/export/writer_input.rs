@@ -2,8 +2,7 @@
 
 use super::capabilities::Capabilities;
 use super::content::{Content, ContentGroup, DataArray};
-use super::group_numbers::GroupNumbers;
-use crate::content::group_label::GroupLabel;
+use super::group_numbers::{self, GroupNumbers};
 use crate::visit::items::CellKind;
 
 /// Mesh to be written in a format, with the format's capabilities and the group numbers.
@@ -137,15 +136,15 @@ impl<'a> WriterInput<'a> {
         })
     }
 
-    /// Returns the tag of the first tagged vertex group of each vertex; 0 for vertices without tagged groups.
+    /// Returns the number of the first vertex group of each vertex; 0 for vertices without groups.
     pub(crate) fn vertex_group_numbers(&self) -> Vec<i64> {
-        let mut tags = vec![0; self.content.points.len()];
-        for (group, vertices) in self.content.vertex_groups.iter().rev() {
-            if let GroupLabel::Tag(tag) = group.label {
-                vertices.iter().for_each(|&vertex| tags[vertex as usize] = tag);
-            }
+        let groups = &self.content.vertex_groups;
+        let numbers = group_numbers::numbers(groups.iter().map(|(group, _)| group), true);
+        let mut of_vertices = vec![0; self.content.points.len()];
+        for ((_, vertices), number) in groups.iter().zip(numbers).rev() {
+            vertices.iter().for_each(|&vertex| of_vertices[vertex as usize] = number);
         }
-        tags
+        of_vertices
     }
 
     /// Lists the data of vertices that the format holds.

@@ -3,7 +3,7 @@
 //! The format: <https://adcirc.org/home/documentation/users-manual-v53/input-file-descriptions/adcirc-grid-and-boundary-information-file-fort-14/>.
 //! Programs read the grid by Fortran's list-directed input: commas may separate numbers, and an item may continue on
 //! the next line. The number after x and y is a node's depth. Lists of boundaries at the end of the file are read for
-//! groups and for the pairs of nodes of weirs. Their nodes are on the boundary of the mesh and stay fixed anyway.
+//! groups and for the pairs of nodes of weirs, and to find files that are cut off. Their nodes are on the boundary of the mesh and stay fixed anyway.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
@@ -11,7 +11,7 @@ use crate::edit::numbers::CoordinateEncoding;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::numbered_nodes::numbered_nodes;
-use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::syntax::Syntax;
 use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
@@ -48,9 +48,7 @@ impl FormatReader for Adcirc {
             Element { id, .. } if id == elements + 1 => Ok(()),
             _ => Err(cursor.error("a boundary", CORRECT)),
         })?;
-        if visitor.asks_for_groups() || visitor.asks_for_periodic_pairs() {
-            boundaries(cursor, visitor);
-        }
+        boundaries(cursor, visitor)?;
         Ok(CoordinateStorage::in_place(Format::Adcirc, CoordinateEncoding::TEXT))
     }
 }
@@ -70,17 +68,30 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Element, ReadError> {
 }
 
 /// Visits the boundaries as lines: open boundaries (`open1`), then land boundaries (`land1`), which are named `island1`
-/// if their type is that of an island. A weir has the lines of both banks, and its pairs of nodes are visited. A damaged
-/// list ends the reading without an error, as the mesh does not depend on boundaries.
-fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
+/// if their type is that of an island. A weir has the lines of both banks, and its pairs of nodes are visited. A grid may
+/// end without boundaries, or have other text after its elements.
+///
+/// # Errors
+/// If the file ends within the boundaries, if a number is no number, or if a further land boundary follows the last one.
+fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
     for is_open in [true, false] {
-        let Some(count) = number(cursor) else { return };
-        // The row has the number of nodes of all boundaries together.
-        if !cursor.next_row() {
-            return;
+        let side = if is_open { "open" } else { "land" };
+        let mut next = cursor.clone();
+        if !next.next_row() {
+            return Ok(());
         }
+        let Ok(count) = next.integer("the number of boundaries") else { return Ok(()) };
+        *cursor = next;
+        // The row has the number of nodes of all boundaries together.
+        if !cursor.next_row() && count > 0 {
+            let problem =
+                format!("the file ends before the nodes of its {count} {side} boundaries");
+            return Err(cursor.error(problem, CUT_OFF));
+        }
+        let what = format!("{side} boundaries");
         for index in 1..=count {
-            let Some(length) = number(cursor) else { return };
+            cursor.row(index - 1, count, &what)?;
+            let length = cursor.integer(format_args!("the length of {side} boundary {index}"))?;
             let kind = if is_open { 0 } else { cursor.integer("a type").unwrap_or(0) };
             let word = match (is_open, kind) {
                 (true, _) => "open",
@@ -93,18 +104,33 @@ fn boundaries(cursor: &mut Cursor<'_>, visitor: &mut dyn MeshVisitor) {
             }
             // Types of weirs, pipes and vertical walls inside of the mesh (NBVV with IBCONN).
             let is_weir = matches!(kind, 4 | 24 | 5 | 25 | 64);
-            let Some(Bank { mut nodes, pairs }) = bank(cursor, length, is_weir) else { return };
+            let what = format!("nodes of {side} boundary {index}");
+            let Bank { mut nodes, pairs } = bank(cursor, length, is_weir, &what)?;
             if word == "island" && !visitor.asks_for_data() {
                 // Islands are closed, and need not list their first node a second time.
                 nodes.extend(nodes.first().copied());
             }
             visitor.weir(&pairs);
             let name = format!("{word}{index}");
+            // A node that does not exist is no reason to refuse the mesh, which does not depend on boundaries.
             if visitor.asks_for_groups() && lines(cursor, visitor, name, &nodes, &pairs).is_err() {
-                return;
+                return Ok(());
             }
         }
+        if !is_open && count > 0 {
+            // Other programs may write text or single numbers behind the land boundaries.
+            end_of_list(cursor, count, "land boundaries", |cursor| {
+                let length = cursor.integer("a length")?;
+                cursor.integer("a type")?;
+                cursor.row(0, 1, "nodes")?;
+                match length {
+                    0 => Err(cursor.error("no boundary", CORRECT)),
+                    _ => cursor.integer("a node"),
+                }
+            })?;
+        }
     }
+    Ok(())
 }
 
 /// The nodes of a boundary. For a weir, `pairs` has each node with the node that faces it on the other bank.
@@ -113,17 +139,24 @@ struct Bank {
     pairs: Vec<[u64; 2]>,
 }
 
-/// Reads the nodes of a boundary, one in each row; `None` for a damaged list.
-fn bank(cursor: &mut Cursor<'_>, length: u64, is_weir: bool) -> Option<Bank> {
+/// Reads the nodes of a boundary, one in each row. `what` names the nodes in errors.
+fn bank(
+    cursor: &mut Cursor<'_>,
+    length: u64,
+    is_weir: bool,
+    what: &str,
+) -> Result<Bank, ReadError> {
     let mut bank = Bank { nodes: Vec::new(), pairs: Vec::new() };
-    for _ in 0..length {
-        let node = number(cursor)?;
+    for done in 0..length {
+        cursor.row(done, length, what)?;
+        let node = cursor.integer(format_args!("one of the {what}"))?;
         bank.nodes.push(node);
         if is_weir {
-            bank.pairs.push([node, cursor.integer("a node").ok()?]);
+            let other = cursor.integer(format_args!("the other node of one of the {what}"))?;
+            bank.pairs.push([node, other]);
         }
     }
-    Some(bank)
+    Ok(bank)
 }
 
 /// Visits the lines of a boundary: its nodes, and for a weir the nodes on the other bank.
@@ -146,10 +179,4 @@ fn lines(
     }
     visitor.group_scopes(&[]);
     Ok(())
-}
-
-/// Reads the whole number at the start of the next row; `None` for other rows, or at the end of the file.
-fn number(cursor: &mut Cursor<'_>) -> Option<u64> {
-    cursor.next_row().then_some(())?;
-    cursor.integer("a number").ok()
 }

@@ -16,7 +16,7 @@ use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
 use crate::visit::items::{CellKind, Element, RegionAttribute};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::{each_row, nodes, volume};
+use crate::visit::rows::{each_row, end_of_list, nodes, volume};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
@@ -70,6 +70,7 @@ impl FormatReader for Jigsaw {
                     let start = cursor.clone();
                     let names = NodeNames { one: "a point", all: "points" };
                     let z_values = counted_nodes(cursor, count, dimensions, names, visitor)?;
+                    end_of_list(cursor, count, "points", |cursor| cursor.point("a point"))?;
                     points = Some((List { cursor: start, count }, z_values));
                 }
                 b"EDGE2" | b"TRIA3" | b"QUAD4" => {
@@ -109,17 +110,19 @@ impl FormatReader for Jigsaw {
         visitor.region_attributes(vec![RegionAttribute::tags_from_one("tag")]);
         for (kind, List { mut cursor, count }) in lists.elements {
             visitor.expect_elements(cursor.capacity(count, "0;1;2;0\n".len()));
+            let row = |cursor: &mut Cursor<'_>| Ok((nodes(cursor, kind)?, tag(cursor)?));
             each_row(
                 &mut cursor,
                 count,
                 "elements",
                 visitor,
-                |cursor| Ok((nodes(cursor, kind)?, tag(cursor)?)),
+                row,
                 |cursor, visitor, done, (nodes, tag)| {
                     let element = Element { id: done, kind, region: [tag, 0], nodes };
                     visitor.element(cursor, &element)
                 },
             )?;
+            end_of_list(&cursor, count, "elements", row)?;
         }
         Ok(CoordinateStorage::in_place(Format::Jigsaw, CoordinateEncoding::TEXT))
     }

@@ -62,7 +62,10 @@ impl FormatReader for Mfem {
                     lists.push(List { cursor: cursor.clone(), count });
                     each_row(cursor, count, "elements", visitor, element, |_, _, _, _| Ok(()))?;
                 }
-                b"attribute_sets" | b"bdr_attribute_sets" => skip_sets(cursor),
+                b"attribute_sets" | b"bdr_attribute_sets" => {
+                    visitor.unsupported(&format!("the section {}", quoted(keyword)));
+                    skip_sets(cursor);
+                }
                 b"vertices" => break,
                 other => {
                     let problem = format!("a section `{}` is not read", quoted(other));

@@ -14,7 +14,7 @@ use crate::text::cursor::Cursor;
 use crate::text::token::{float, integer};
 use crate::visit::items::{CellKind, Element};
 use crate::visit::reader::FormatReader;
-use crate::visit::rows::{each_row, nodes};
+use crate::visit::rows::{each_row, end_of_list, nodes};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 
@@ -34,7 +34,7 @@ impl FormatReader for Mike {
             cursor.tokens(2);
         }
         let count = cursor.vertex_count()?;
-        cursor.rest();
+        visitor.projection(cursor.rest());
         let before = &mut cursor.clone();
         let z_values = numbered_nodes(cursor, count, false, visitor)?;
         if visitor.asks_for_groups() {
@@ -54,6 +54,7 @@ impl FormatReader for Mike {
         each_row(cursor, elements, "elements", visitor, element, |cursor, visitor, _, element| {
             visitor.element(cursor, &element)
         })?;
+        end_of_list(cursor, elements, "elements", element)?;
         Ok(CoordinateStorage::in_place(Format::Mike, CoordinateEncoding::TEXT))
     }
 }

@@ -57,6 +57,7 @@ impl<'h, 'a> PointData<'h, 'a> {
                 if visitor.point_array(name, parts.components, is_real)
                     && let Some(numbers) = self.numbers(variable, record, part, parts, missing)
                 {
+                    variable.packing().into_iter().for_each(|packing| visitor.packing(packing));
                     visitor.point_numbers(numbers);
                 }
             }
@@ -102,6 +103,7 @@ impl<'h, 'a> PointData<'h, 'a> {
                 encoding: NumberEncoding::Binary(variable.order, precision),
                 space: home,
                 file_index: 0,
+                shared: None,
             }
         });
         Some(PointNumbers { numbers, nodes: None, location: stored })

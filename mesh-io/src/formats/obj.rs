@@ -244,6 +244,14 @@ fn face(
 fn left_out(mut cursor: Cursor<'_>, visitor: &mut dyn MeshVisitor) {
     while cursor.next_row() {
         match cursor.token() {
+            Some(b"v") => {
+                // Behind x, y and z, a row may have a weight, or the red, green and blue of a color.
+                match std::iter::from_fn(|| cursor.token()).count() {
+                    0..=3 => {}
+                    4 => visitor.unsupported("weights of vertices"),
+                    _ => visitor.unsupported("colors of vertices"),
+                }
+            }
             Some(b"vt") => visitor.unsupported("texture coordinates"),
             Some(b"vn") => visitor.unsupported("normals"),
             Some(b"mtllib") => visitor.unsupported("the name of a library of materials"),

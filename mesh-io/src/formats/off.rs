@@ -19,6 +19,9 @@ use crate::visit::z_values::ZValues;
 
 pub(crate) struct Off;
 
+/// Numbers behind the coordinates of a vertex, for users.
+const OF_VERTICES: &str = "normals, colors or texture coordinates";
+
 impl FormatReader for Off {
     const VERTICES: &'static str = "the list of vertices";
 
@@ -44,7 +47,7 @@ impl FormatReader for Off {
             }
         };
         if more > 0 {
-            visitor.unsupported("normals, colors or texture coordinates");
+            visitor.unsupported(OF_VERTICES);
         }
         if cursor.is_at(b'B') {
             return Err(cursor.error("binary OFF is not read", "Save as text"));
@@ -74,9 +77,12 @@ impl FormatReader for Off {
                 for _ in 0..more {
                     cursor.real("a normal, color or texture coordinate of a vertex")?;
                 }
-                Ok((point, z))
+                Ok((point, z, !cursor.syntax.is_of_words() && !cursor.is_at_end()))
             },
-            |cursor, visitor, done, ((x_at, at), z)| {
+            |cursor, visitor, done, ((x_at, at), z, has_more)| {
+                if has_more {
+                    visitor.unsupported(OF_VERTICES);
+                }
                 visitor.node(cursor, done, 2, x_at, at);
                 z_values.push(z);
                 Ok(())
@@ -87,7 +93,12 @@ impl FormatReader for Off {
         visitor.expect_elements(cursor.capacity(faces, "3 0 1 2\n".len()));
         // A color may follow the corners of a face on its row.
         *cursor = cursor.clone().with_syntax(Syntax::RECORDS);
-        each_row(cursor, faces, "faces", visitor, face, |cursor, visitor, id, (kind, nodes)| {
+        let colored_face = |cursor: &mut Cursor<'_>| Ok((face(cursor)?, !cursor.is_at_end()));
+        each_row(cursor, faces, "faces", visitor, colored_face, |cursor, visitor, id, read| {
+            let ((kind, nodes), has_color) = read;
+            if has_color {
+                visitor.unsupported("colors of faces");
+            }
             visitor.element(cursor, &Element { id, kind, region: [0; 2], nodes })
         })?;
         end_of_list(cursor, faces, "faces", face)?;

@@ -27,7 +27,8 @@ const NO_MATERIAL: i64 = i64::MIN;
 enum Row {
     /// A node: the id, the offset of x, x and y, (the offset of z, z).
     Node(u64, usize, [f64; 2], (usize, f64)),
-    Element(Element),
+    /// An element, and whether further numbers follow its material.
+    Element(Element, bool),
     /// The nodes of a node string in one row, without signs.
     String(Vec<u64>, NodestringEnd),
     /// The number and name of a material.
@@ -73,7 +74,12 @@ impl FormatReader for Sms {
         visitor.region_attributes(materials());
         all_rows(cursor, visitor, element, |cursor, visitor, row| {
             match row {
-                Row::Element(element) => visitor.element(cursor, &element)?,
+                Row::Element(element, has_more) => {
+                    if has_more {
+                        visitor.unsupported("further materials or values of elements");
+                    }
+                    visitor.element(cursor, &element)?;
+                }
                 Row::String(nodes, end) => {
                     // A row that continues a string belongs to the group of the string's first row.
                     let label = GroupLabel::Tag(string);
@@ -162,7 +168,7 @@ fn element(cursor: &mut Cursor<'_>) -> Result<Row, ReadError> {
     let material = if cursor.is_at_end() { 0 } else { cursor.signed("a material").unwrap_or(0) };
     let of_none = kind == CellKind::Line && material == 0;
     let region = [if of_none { NO_MATERIAL } else { material }, 0];
-    Ok(Row::Element(Element { id: tag, kind, region, nodes }))
+    Ok(Row::Element(Element { id: tag, kind, region, nodes }, !cursor.is_at_end()))
 }
 
 /// Reads a row of a node string. The last node of a string is negative, and the string's name may follow.

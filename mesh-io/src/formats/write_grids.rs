@@ -1,5 +1,6 @@
 //! Writes grids of coastal models: SMS's `.2dm`, the grids of ADCIRC and SCHISM, and MIKE's `.mesh`.
 
+use crate::export::capabilities::NO_PROJECTION;
 use crate::export::content::{Content, DataArray};
 use crate::export::put;
 use crate::export::writer_input::WriterInput;
@@ -78,7 +79,7 @@ fn take(content: &mut Content, name: &str) -> Option<Vec<f64>> {
 }
 
 fn of_vertices(name: &str, values: Vec<f64>) -> DataArray {
-    DataArray { name: name.to_owned(), components: 1, is_real: true, values }
+    DataArray { name: name.to_owned(), components: 1, is_real: true, values, packing: None }
 }
 
 /// Removes z, or else a depth, from the node variables of UGRID. Returns the values, and true for depths. `None` if
@@ -167,11 +168,14 @@ pub(crate) fn write_adcirc(input: &WriterInput<'_>) -> String {
     out
 }
 
-/// Writes the layout since 2012, as bathymetry in meters (kind of data 100079, unit 1000) in local coordinates.
+/// Writes the layout since 2012, as bathymetry in meters (kind of data 100079, unit 1000). Coordinates of a file without a
+/// projection are local coordinates.
 pub(crate) fn write_mike(input: &WriterInput<'_>) -> String {
     let content = input.content;
     let codes = node_codes(input);
-    let mut out = format!("100079  1000  {}  NON-UTM\n", content.points.len());
+    let projection =
+        if content.projection.is_empty() { NO_PROJECTION } else { &content.projection };
+    let mut out = format!("100079  1000  {}  {projection}\n", content.points.len());
     for (vertex, code) in codes.into_iter().enumerate() {
         put!(out, "{} {} {code}\n", input.vertex_id(vertex), input.xyz(vertex));
     }

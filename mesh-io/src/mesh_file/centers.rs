@@ -1,5 +1,6 @@
 //! Centers of faces and edges, which UGRID files may store.
 
+use crate::content::decoded::decoded;
 use crate::content::id_index::IdIndex;
 use crate::content::remark::Remark;
 use crate::error::FieldError;
@@ -161,7 +162,7 @@ impl MeshVisitor for CenterVisitor {
     }
 
     fn center_array(&mut self, name: &[u8], axis: usize) -> bool {
-        self.last = (String::from_utf8_lossy(name).into_owned(), axis);
+        self.last = (decoded(name), axis);
         true
     }
 

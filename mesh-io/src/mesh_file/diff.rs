@@ -317,10 +317,11 @@ fn number_ranges(
     ranges
 }
 
-/// Returns the ranges of both lists, sorted by start.
+/// Returns the ranges of both lists, sorted by start. Ranges of several arrays with the same bytes are listed once.
 fn merged(mut ranges: Vec<Range<usize>>, more: Vec<Range<usize>>) -> Vec<Range<usize>> {
     ranges.extend(more);
-    ranges.sort_unstable_by_key(|range| range.start);
+    ranges.sort_unstable_by_key(|range| (range.start, range.end));
+    ranges.dedup();
     ranges
 }
 

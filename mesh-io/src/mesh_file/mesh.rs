@@ -235,6 +235,11 @@ impl MeshFile {
         self.parsed.encoding
     }
 
+    /// Returns another array with bytes of the points, for messages; `None` if the points have bytes of their own.
+    pub(crate) fn shared_with(&self) -> Option<&str> {
+        self.parsed.shared_with.as_deref()
+    }
+
     /// Returns the encoded array of the points; `None` if the file stores points unencoded.
     pub(crate) fn encoded_points(&self) -> Option<&dyn EncodedArrays> {
         self.parsed.encoded.as_deref()

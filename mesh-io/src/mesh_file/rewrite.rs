@@ -14,6 +14,7 @@ use crate::error::WriteError;
 use crate::formats::selafin::conditions;
 use crate::mesh_file::mesh::MeshFile;
 use crate::registry::FormatEntry;
+use crate::text::token::quoted;
 use crate::visit::field::PointField;
 use crate::visit::storage::{ArrayLocation, ByteSpace};
 use std::io::{self, Write};
@@ -61,7 +62,8 @@ impl MeshFile {
         fields: &[PointField],
     ) -> Result<(), WriteError> {
         self.check_points(path, points)?;
-        self.check_destination(path)?;
+        self.check_shared(path, Edits { points, fields })?;
+        self.check_files(path)?;
         let packs = self.compression_of(path);
         let renamed = &(self.reader().renames)(self.source(), path);
         let file_write = |(part, destination)| -> FileWrite<'_> {
@@ -146,6 +148,7 @@ impl MeshFile {
         fields: &[PointField],
     ) -> Result<(), WriteError> {
         self.check_points(name, points)?;
+        self.check_shared(name, Edits { points, fields })?;
         if self.files().len() > 1 {
             let problem = "the mesh is of several files".to_owned();
             let remedy = "Name a file to write to".to_owned();
@@ -227,12 +230,20 @@ impl MeshFile {
             };
         let own =
             |field: &&PointField| field.location().is_some_and(|stored| stored.file_index == part);
+        let mut shared_ranges = Vec::new();
         for field in fields.iter().filter(own).filter(|field| field.is_changed()) {
-            let (Some(column), Some(ArrayLocation { space: home, .. })) =
+            let (Some(column), Some(ArrayLocation { space: home, shared, .. })) =
                 (field.column(), field.location())
             else {
                 continue;
             };
+            // Fields with the same bytes have equal new numbers, which are written once.
+            if let Some(shared) = shared {
+                if shared_ranges.contains(&&shared.range) {
+                    continue;
+                }
+                shared_ranges.push(&shared.range);
+            }
             match home {
                 ByteSpace::File => in_file.push(column),
                 ByteSpace::Points => in_points.push(column),
@@ -282,11 +293,17 @@ impl MeshFile {
 
     /// Checks, without writing, whether [`write`](Self::write) to `path` can succeed. `path` must not have the ending
     /// of another format, its directory must exist and accept new files, and no directory or read-only file may block a
-    /// destination.
+    /// destination. No other array of the file may have bytes of the points, as new points would change the array.
     ///
     /// # Errors
     /// [`WriteError`] if the file cannot be written, with the reason.
     pub fn check_destination(&self, path: &Path) -> Result<(), WriteError> {
+        self.check_shared_points(path)?;
+        self.check_files(path)
+    }
+
+    /// Checks, without writing, whether all files of a write to `path` can be replaced or made.
+    fn check_files(&self, path: &Path) -> Result<(), WriteError> {
         self.destinations(path)?
             .iter()
             .try_for_each(|destination| atomic::ensure_writable(destination))
@@ -320,6 +337,41 @@ impl MeshFile {
             );
         }
         (self.reader().destinations)(self.source(), path)
+    }
+
+    /// Checks that no other array has bytes of the points, as new points would change the array.
+    fn check_shared_points(&self, path: &Path) -> Result<(), WriteError> {
+        let Some(other) = self.shared_with() else { return Ok(()) };
+        let (path, name) = (path.to_owned(), self.source().name());
+        let problem =
+            format!("the points of {name} have the bytes of {other} too, and would change both");
+        let remedy = "Convert the mesh first: the new file has separate bytes for each".to_owned();
+        Err(WriteError::Format { path, problem, remedy })
+    }
+
+    /// Checks that the changes of a write change no other array. Data with the same bytes may change together, to the same
+    /// numbers. A write without changes passes.
+    fn check_shared(&self, path: &Path, edits: Edits<'_>) -> Result<(), WriteError> {
+        let Edits { points, fields } = edits;
+        // Third coordinates are a field with bytes of the points.
+        if fields.iter().any(PointField::is_changed) || !self.is_unmoved(points) {
+            self.check_shared_points(path)?;
+        }
+        for field in fields.iter().filter(|field| field.is_changed()) {
+            let Some(shared) = field.location().and_then(|stored| stored.shared.as_ref()) else {
+                continue;
+            };
+            let copies = fields.iter().filter(|other| other.is_copy_of(field)).count();
+            if copies <= shared.others {
+                let (own, other) = (quoted(field.name().as_bytes()), &shared.other);
+                let problem =
+                    format!("'{own}' has the bytes of {other} too, and would change both");
+                let remedy = "Interpolate both or neither, or convert the mesh first: the new file has separate bytes for each"
+                    .to_owned();
+                return Err(WriteError::Format { path: path.to_owned(), problem, remedy });
+            }
+        }
+        Ok(())
     }
 
     fn check_points(&self, path: &Path, points: &[[f64; 2]]) -> Result<(), WriteError> {

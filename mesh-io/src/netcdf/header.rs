@@ -63,6 +63,19 @@ impl Variable {
         ["_FillValue", "missing_value"].iter().find_map(|name| self.attribute(name)?.real())
     }
 
+    /// Returns the factor and the offset of packed numbers, by the CF conventions, section 8.1: stored numbers times
+    /// `scale_factor`, plus `add_offset`. `None` for numbers that are not packed.
+    pub(crate) fn packing(&self) -> Option<[f64; 2]> {
+        let number = |name: &str, absent| {
+            self.attribute(name)
+                .and_then(Attribute::real)
+                .filter(|x| x.is_finite())
+                .unwrap_or(absent)
+        };
+        let packing = [number("scale_factor", 1.0), number("add_offset", 0.0)];
+        (packing != [1.0, 0.0]).then_some(packing)
+    }
+
     /// Decodes `bytes`, a part of the variable's values, as real numbers. Empty if the variable has another type.
     pub(crate) fn reals(&self, bytes: &[u8]) -> Vec<f64> {
         match self.number {

@@ -1,5 +1,6 @@
 //! Reads arrays of cell data, one value for each element of a kind.
 
+use crate::content::decoded::decoded;
 use crate::content::regions::Interner;
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -108,7 +109,7 @@ impl MeshVisitor for ValueVisitor<'_> {
     }
 
     fn cell_array(&mut self, name: &[u8], components: u64, _: bool) -> bool {
-        let index = self.names.iter().position(|own| own.as_bytes() == name);
+        let index = self.names.iter().position(|own| *own == decoded(name));
         self.announced = index.filter(|_| components == 1);
         self.announced.is_some()
     }

@@ -116,6 +116,17 @@ impl PointField {
         self.new.iter().zip(&self.old).any(|(&new, &old)| bits(new) != old.to_bits())
     }
 
+    /// Returns whether `other` is an array of the same bytes, type and new numbers.
+    pub(crate) fn is_copy_of(&self, other: &PointField) -> bool {
+        let (Some(own), Some(stored)) = (&self.location, &other.location) else { return false };
+        let (Some(bytes), Some(shared)) = (&own.shared, &stored.shared) else { return false };
+        let bits = |field: &PointField| field.new.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        own.file_index == stored.file_index
+            && bytes.range == shared.range
+            && own.encoding == stored.encoding
+            && bits(self) == bits(other)
+    }
+
     /// Returns old and new numbers as a column for a rewrite; `None` if the numbers cannot be replaced.
     pub(crate) fn column(&self) -> Option<EditableColumn<'_>> {
         let ArrayLocation { offsets, encoding, .. } = self.location.as_ref()?;
@@ -123,15 +134,31 @@ impl PointField {
     }
 }
 
+/// Returns whether an array of `components` values for each of `count` vertices or cells may be made from `numbers`
+/// numbers of a file. A damaged file may announce any number of components, so the array may exceed the numbers only by
+/// tuples of usual length.
+pub(crate) fn has_room(numbers: usize, components: usize, count: usize) -> bool {
+    /// Limit on the components of an array that lacks values for some vertices or cells. The arrays of results have
+    /// 9 components at most, and those of histories and spectra up to some hundred.
+    const MAX_SPARSE_COMPONENTS: usize = 256;
+    count
+        .checked_mul(components)
+        .is_some_and(|values| components <= MAX_SPARSE_COMPONENTS || values <= numbers)
+}
+
 /// Returns `components` values for each of `count` vertices: the vertex's tuple in `numbers`, or NaN for vertices
-/// without a tuple. Tuples with vertex indices of `count` or more are dropped.
+/// without a tuple. Tuples with vertex indices of `count` or more are dropped. Returns `numbers` unchanged, which then
+/// are fewer than `count * components`, if [`has_room`] does not hold.
 pub(crate) fn scatter(
     numbers: &[f64],
     components: usize,
     count: usize,
     vertices: impl Iterator<Item = u32>,
 ) -> Vec<f64> {
-    let mut values = vec![f64::NAN; count.saturating_mul(components)];
+    if !has_room(numbers.len(), components, count) {
+        return numbers.to_vec();
+    }
+    let mut values = vec![f64::NAN; count * components];
     for (tuple, vertex) in numbers.chunks(components.max(1)).zip(vertices) {
         let start = (vertex as usize).saturating_mul(components);
         if let Some(own) = values.get_mut(start..start.saturating_add(tuple.len())) {

@@ -1,6 +1,7 @@
 //! Makes a mesh from a file's nodes and elements.
 
 use crate::content::constraints::{Constraints, PeriodicPairs};
+use crate::content::decoded::decoded;
 use crate::content::faces::Faces;
 use crate::content::id_index::IdIndexBuilder;
 use crate::content::numbering::{earlier, further_name, joined_regions};
@@ -44,6 +45,7 @@ pub(crate) fn parse_by(
         repeated_vertices: copies,
         file_index,
         says_degrees,
+        shared_with,
     } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
     let has_z = assembler.has_z;
@@ -120,6 +122,7 @@ pub(crate) fn parse_by(
         has_centers,
         has_z,
         says_degrees,
+        shared_with,
     })
 }
 
@@ -368,7 +371,7 @@ impl MeshVisitor for MeshBuilder {
     fn cell_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
         self.announced = None;
         let is_ghosts = vtk_ghosts(name).is_some();
-        let name = String::from_utf8_lossy(name).into_owned();
+        let name = decoded(name);
         if is_ghosts {
             self.ghost_array = Some(name).filter(|_| components == 1);
             return false;
@@ -396,7 +399,7 @@ impl MeshVisitor for MeshBuilder {
     }
 
     fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {
-        let name = String::from_utf8_lossy(name).into_owned();
+        let name = decoded(name);
         if is_real && self.named.insert(name.clone()) {
             self.data.push(name);
         }

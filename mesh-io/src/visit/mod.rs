@@ -15,6 +15,7 @@ pub(crate) mod reader;
 pub(crate) mod records;
 pub(crate) mod rows;
 pub(crate) mod send;
+pub(crate) mod shared;
 pub(crate) mod storage;
 pub(crate) mod visitor;
 pub(crate) mod weld;

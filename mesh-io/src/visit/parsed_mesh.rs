@@ -57,4 +57,6 @@ pub(crate) struct ParsedMesh {
     pub(crate) has_z: bool,
     /// Whether the file says that coordinates are longitude and latitude in degrees; `None` if it gives no unit.
     pub(crate) says_degrees: Option<bool>,
+    /// Another array with bytes of the points, in messages; `None` if the points have bytes of their own.
+    pub(crate) shared_with: Option<String>,
 }

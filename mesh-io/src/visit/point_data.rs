@@ -1,5 +1,6 @@
 //! Visitor of a second reading, which collects arrays of point data.
 
+use crate::content::decoded::decoded;
 use crate::content::id_index::IdIndexBuilder;
 use crate::disk::source::Source;
 use crate::error::ReadError;
@@ -65,7 +66,7 @@ impl MeshVisitor for PointDataVisitor<'_> {
     }
 
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
-        let name = String::from_utf8_lossy(name).into_owned();
+        let name = decoded(name);
         let wanted = match self.wanted {
             FieldSelection::Named(names) => names.contains(&name),
             FieldSelection::Real => is_real,

@@ -2,6 +2,7 @@
 
 use crate::edit::numbers::{CoordinateEncoding, EncodedArrays, NumberEncoding, Offsets};
 use crate::format::Format;
+use crate::visit::shared::SharedBytes;
 use std::sync::Arc;
 
 /// Offsets and encoding of an array's numbers, for replacing the numbers in a rewrite.
@@ -11,12 +12,20 @@ pub(crate) struct ArrayLocation {
     pub(crate) space: ByteSpace,
     /// The index of the file with the array, in the order of [`Source::files`](crate::disk::source::Source::files).
     pub(crate) file_index: usize,
+    /// The bytes of the array that other arrays have too; `None` if the array has bytes of its own.
+    pub(crate) shared: Option<SharedBytes>,
 }
 
 impl ArrayLocation {
     /// Returns the location, always `Some`, of numbers that the main file stores unencoded.
     pub(crate) fn in_place(offsets: Offsets, encoding: NumberEncoding) -> Option<ArrayLocation> {
-        Some(ArrayLocation { offsets, encoding, space: ByteSpace::File, file_index: 0 })
+        Some(ArrayLocation {
+            offsets,
+            encoding,
+            space: ByteSpace::File,
+            file_index: 0,
+            shared: None,
+        })
     }
 }
 
@@ -44,6 +53,8 @@ pub(crate) struct CoordinateStorage {
     /// Whether attributes of the coordinates say that they are longitude and latitude in degrees; `None` if no attribute
     /// gives a unit.
     pub(crate) says_degrees: Option<bool>,
+    /// Another array with bytes of the points, in messages; `None` if the points have bytes of their own.
+    pub(crate) shared_with: Option<String>,
 }
 
 /// All occurrences of coordinates in a file that repeats vertices, such as an STL.
@@ -64,6 +75,7 @@ impl CoordinateStorage {
             repeated_vertices: None,
             file_index: 0,
             says_degrees: None,
+            shared_with: None,
         }
     }
 }

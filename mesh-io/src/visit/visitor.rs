@@ -172,6 +172,14 @@ pub(crate) trait MeshVisitor {
     fn cell_array(&mut self, _name: &[u8], _components: u64, _is_real: bool) -> bool {
         false
     }
+    /// Visits the name of the projection of the coordinates, or its definition as text. By default, the projection is ignored.
+    fn projection(&mut self, _projection: &[u8]) {}
+    /// Visits the factor and the offset of the array announced last, before its numbers, which are packed: programs
+    /// multiply the stored numbers by the factor and add the offset. By default, numbers stay as they are stored.
+    fn packing(&mut self, _packing: [f64; 2]) {}
+    /// Visits the point whose coordinates programs add to those of all nodes, in the units of the file. By default, the
+    /// origin is ignored, and nodes keep the coordinates of the file.
+    fn origin(&mut self, _at: [i32; 2]) {}
     /// Visits the numbers of the cell data announced last, unless the visitor declined. `tags` holds the element id of
     /// each tuple; `None` if tuple `i` belongs to the element with id `i`.
     fn cell_numbers(&mut self, _numbers: Vec<f64>, _tags: Option<Vec<u64>>) {}

@@ -91,6 +91,7 @@ impl ZValues {
                 encoding,
                 space: home,
                 file_index,
+                shared: None,
             });
             visitor.point_numbers(PointNumbers { numbers, nodes: self.nodes, location: stored });
         }

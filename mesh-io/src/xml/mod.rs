@@ -1,5 +1,6 @@
 //! Start tags of XML files in file order, with their offsets, attributes and text.
 
+use crate::content::decoded::decoded;
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::text::cursor::CORRECT;
@@ -177,7 +178,7 @@ fn ill_formed(error: &quick_xml::Error) -> String {
 /// Returns the value of an attribute or the text of an element without escapes: `a"b` for `a&quot;b`. If an entity is
 /// unknown, the whole text is returned unchanged.
 pub(crate) fn plain_text(value: &[u8]) -> String {
-    let text = String::from_utf8_lossy(value).into_owned();
+    let text = decoded(value);
     quick_xml::escape::unescape(&text).map(Cow::into_owned).unwrap_or(text)
 }
 

@@ -51,6 +51,13 @@ fn triangle_errors_name_line_and_remedy() {
         &changed("4 3 1", "4 6 1"),
         &["m.ele:1:", "6 nodes", "Make the mesh with 3-node triangles"],
     );
+    // No group is made, and no memory reserved, for attributes that the file has no room for.
+    for count in ["400000000", "1000000000000", "18446744073709551615"] {
+        ele(
+            &changed("4 3 1", &format!("4 3 {count}")),
+            &[&format!("m.ele:1: {count} attributes per triangle do not fit"), "Correct the line"],
+        );
+    }
     ele(&changed("4 3 1", "4 4 1"), &["m.ele:1: the elements have 4 nodes: tetrahedra", "plane"]);
     ele(&changed("4 3 1", "5 3 1"), &["m.ele:6: the file ends after 4 of 5 triangles", "cut off"]);
     ele(&changed("2 2 3 5", "2 2 2 5"), &["m.ele:3: triangle 2 lists vertex 2 twice", "Remove"]);

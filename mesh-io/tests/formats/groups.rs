@@ -183,10 +183,12 @@ fn both_banks_of_a_weir_of_adcirc_are_one_group_and_pairs() {
             assert_eq!(file.group_ends().unwrap(), [0, 2, 3, 5, 6]);
         }
     }
-    // A list that ends too early has the pairs of the weirs before.
+    // A weir without the node on its other bank.
     let text = format!("weir\n4 8\n{nodes}{elements}0\n0\n2\n5\n3 4\n{rows}3 24\n1 4\n2\n");
-    let file = MeshFile::from_bytes("fort.14".as_ref(), text.into_bytes()).unwrap();
-    assert_eq!(file.constraints().weirs.len(), 1);
+    let error = MeshFile::from_bytes("fort.14".as_ref(), text.into_bytes()).unwrap_err();
+    assert!(
+        error.to_string().starts_with("fort.14:25: the other node of one of the nodes of land")
+    );
 }
 
 /// Vertices of required triangles stay fixed, as mmg does not change such triangles.

@@ -2,7 +2,7 @@
 
 use super::Folder;
 use mesh_io::{Conversion, Format};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// Returns a square with one named group of lines per side and a named surface.
 fn square(names: [&str; 5]) -> String {
@@ -97,4 +97,71 @@ fn data_stay_apart_where_names_are_words() {
     let fields = fields.iter().filter(|field| field.name() != "z");
     let found: Vec<_> = fields.map(|field| (field.name(), field.values()[0])).collect();
     assert_eq!(found, [("a_b_2", 1.0), ("a_b", 4.0), ("x_2", 7.0)]);
+}
+
+/// Objects and materials both have numbers from 1 on in gmsh's formats, of which the materials keep theirs. A search for
+/// free numbers from 1, or a list of kinds for each group, would take minutes.
+#[test]
+fn very_many_groups_have_numbers_of_their_own_in_files_of_gmsh() {
+    const GROUPS: usize = 30_000;
+    let mut text = String::new();
+    for group in 0..GROUPS {
+        text += &format!("v {group} 0\nv {group} 1\n");
+        if group > 0 {
+            let first = 2 * group - 1;
+            text += &format!("o part{group}\nusemtl steel{group}\n");
+            text += &format!("f {first} {} {}\n", first + 2, first + 1);
+        }
+    }
+    let folder = Folder::new(&[("a.obj", &text)]);
+    let file = folder.read("a.obj");
+    for format in [Format::Gmsh22, Format::Gmsh41] {
+        let conversion = Conversion::new(&file, format).unwrap().unwrap();
+        conversion.write(&folder.path("b.msh")).unwrap();
+        let groups = folder.read("b.msh").groups().unwrap();
+        let physical: Vec<_> = groups.iter().filter(|group| group.kind == "physical").collect();
+        assert_eq!(physical.len(), 2 * (GROUPS - 1), "{format}");
+        let tags: HashSet<_> = physical.iter().map(|group| group.tag).collect();
+        assert_eq!(tags.len(), physical.len(), "{format}");
+        for group in physical {
+            let number = group.name.as_ref().unwrap().trim_start_matches(char::is_alphabetic);
+            let triangle = number.parse::<u32>().unwrap() - 1;
+            assert_eq!(group.triangles(), [triangle], "{format}");
+        }
+    }
+}
+
+/// Arrays of regions get the names by which other programs recognize regions.
+#[test]
+fn arrays_of_regions_that_get_a_usual_name_are_told() {
+    let vtk = |name: &str| {
+        format!(
+            "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n0 0 0 1 0 0 1 1 0 0 1 0\n\
+             POLYGONS 2 8\n3 0 1 2\n3 0 2 3\nCELL_DATA 2\nSCALARS {name} int 1\nLOOKUP_TABLE default\n1 2\n"
+        )
+    };
+    for (name, new) in
+        [("MaterialIds", "MaterialIDs"), ("material", "MaterialIDs"), ("MaterialIDs", "")]
+    {
+        let folder = Folder::new(&[("in.vtk", &vtk(name))]);
+        let file = folder.read("in.vtk");
+        for (to, out) in
+            [(Format::Vtu, "out.vtu"), (Format::Vtk, "out.vtk"), (Format::Xdmf, "out.xdmf")]
+        {
+            let conversion = Conversion::new(&file, to).unwrap().unwrap();
+            let told = match new {
+                "" => Vec::new(),
+                new => vec![format!("data of elements: `{name}` to `{new}`")],
+            };
+            assert_eq!(conversion.renamings(), told);
+            conversion.write(&folder.path(out)).unwrap();
+            assert_eq!(
+                folder.read(out).groups().unwrap().iter().next().unwrap().kind,
+                "MaterialIDs"
+            );
+        }
+        // In other formats, groups have the numbers, and no array has a name.
+        let conversion = Conversion::new(&file, Format::Gmsh41).unwrap().unwrap();
+        assert_eq!(conversion.renamings(), [""; 0]);
+    }
 }

@@ -1,6 +1,7 @@
 //! Boundary conditions of a zone and their families, as groups of elements or vertices.
 
 use super::file::{File, labeled};
+use crate::content::decoded::decoded;
 use crate::content::group_label::GroupLabel;
 use crate::hdf5::Object;
 use crate::visit::items::GroupScope;
@@ -111,7 +112,7 @@ impl<'a> File<'a> {
     /// Returns the kinds and names of a boundary condition's groups: the boundary condition, the names of its family,
     /// and the family.
     fn names(&self, name: &[u8], node: &'a Object) -> Vec<(&'static str, String)> {
-        let text = |name: &[u8]| String::from_utf8_lossy(name).into_owned();
+        let text = |name: &[u8]| decoded(name);
         let mut names = vec![("boundary", text(name))];
         let family = self.hdf5.child(node, b"FamilyName").and_then(|own| self.text(own));
         let Some(family) = family else { return names };

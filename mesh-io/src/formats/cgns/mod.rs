@@ -138,6 +138,7 @@ impl<'a> File<'a> {
                     encoding: form,
                     space: home,
                     file_index: 0,
+                    shared: None,
                 };
                 visitor.point_numbers(PointNumbers {
                     numbers,

@@ -113,6 +113,12 @@ impl File<'_> {
                 visitor.unsupported(what);
             }
         }
+        // The first property is the number of each block or set.
+        let has_more =
+            |name: &&str| self.header.numbered(name).iter().any(|&(number, _)| number > 1);
+        if ["eb_prop", "ss_prop", "ns_prop"].iter().any(has_more) {
+            visitor.unsupported("further properties of blocks and sets");
+        }
         // Data without a time have a single time step at the time zero.
         let has_times = self.header.variable("time_whole").is_some_and(|times| {
             let steps = self.steps(times);

@@ -2,7 +2,7 @@
 //! one type.
 
 use super::kind::kind_of;
-use super::lists::{block_fits, row};
+use super::lists::{block_fits, note_partitions, row};
 use super::repeats::{ElementSender, has_equal_neighbors};
 use super::text2::columns;
 use super::words::{Progress, Words};
@@ -112,8 +112,12 @@ pub(super) fn elements(
             let tag = words.natural(cursor, "an element tag")?;
             let mut region = [0; 2];
             region[..groups.min(2)].fill_with(|| i64::from(words.int()));
-            // Tags after the second list mesh partitions.
-            words.skip(4 * groups.saturating_sub(2));
+            // Tags after the second list mesh partitions, or have zeros.
+            let mut has_partitions = false;
+            (2..groups).for_each(|_| has_partitions |= words.int() != 0);
+            if has_partitions {
+                note_partitions(visitor);
+            }
             let mut nodes = [0; 4];
             for node in &mut nodes[..kind.nodes()] {
                 *node = words.natural(cursor, format_args!("a node of element {tag}"))?;

@@ -25,7 +25,14 @@ pub(super) fn read(
     visitor: &mut dyn MeshVisitor,
 ) {
     let cursor = &mut cursor.clone();
-    let Some((name, components, count)) = head(cursor) else { return };
+    let Some(Head { name, time, components, count }) = head(cursor) else {
+        visitor.unsupported("data without a name, or with damaged tags");
+        return;
+    };
+    // Data without a time have the time zero.
+    if time != 0.0 && visitor.asks_for_data() {
+        visitor.unsupported("times of time steps");
+    }
     if nodes.is_some_and(|nodes| count.saturating_mul(MIN_NODE_SHARE) < nodes) {
         visitor.unsupported("data of few nodes");
         return;
@@ -34,22 +41,34 @@ pub(super) fn read(
         Some(_) => visitor.point_array(name, components, true),
         None => visitor.asks_for_cell_arrays() && visitor.cell_array(name, components, true),
     };
-    if is_wanted
-        && let Some(numbers) = match order {
-            None => text(cursor, components, count),
-            Some(order) => binary(cursor, order, components, count),
-        }
-    {
-        match nodes {
-            Some(_) => visitor.point_numbers(numbers),
-            None => visitor.cell_numbers(numbers.numbers, numbers.nodes),
-        }
+    if !is_wanted {
+        return;
+    }
+    let numbers = match order {
+        None => text(cursor, components, count),
+        Some(order) => binary(cursor, order, components, count),
+    };
+    match (numbers, nodes) {
+        (Some(numbers), Some(_)) => visitor.point_numbers(numbers),
+        (Some(numbers), None) => visitor.cell_numbers(numbers.numbers, numbers.nodes),
+        (None, _) => visitor.unsupported("data that are cut off or damaged"),
     }
 }
 
-/// Reads the tags of a section: the name, the components per node or element, and the number of nodes or elements with
-/// data. `None` if a tag is damaged, or if there are not 1 to 9 components.
-fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
+/// The tags of a section.
+struct Head<'a> {
+    name: &'a [u8],
+    /// The first real tag, 0 without one.
+    time: f64,
+    /// Numbers per node or element.
+    components: u64,
+    /// Number of nodes or elements with data.
+    count: u64,
+}
+
+/// Reads the tags of a section. `None` without a name, if a tag is damaged, or if there are not 1 to 9
+/// components.
+fn head<'a>(cursor: &mut Cursor<'a>) -> Option<Head<'a>> {
     let mut name = None;
     for place in 0..count(cursor)? {
         cursor.next_row().then_some(())?;
@@ -58,9 +77,12 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
             name = Some(unquoted(text));
         }
     }
-    // The first real tag is a time. No real tag is used.
-    for _ in 0..count(cursor)? {
+    let mut time = 0.0;
+    for place in 0..count(cursor)? {
         cursor.next_row().then_some(())?;
+        if place == 0 {
+            time = cursor.real("a time").unwrap_or(0.0);
+        }
     }
     let mut integers = [0; 3];
     for place in 0..count(cursor)? {
@@ -70,9 +92,10 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], u64, u64)> {
             *known = u64::try_from(integer).ok()?;
         }
     }
-    let [_, components, nodes] = integers;
+    let [_, components, count] = integers;
+    let name = name?;
     // Scalars, vectors and tensors, with or without padding.
-    (1..=9).contains(&components).then_some((name?, components, nodes))
+    (1..=9).contains(&components).then_some(Head { name, time, components, count })
 }
 
 fn count(cursor: &mut Cursor<'_>) -> Option<u64> {

@@ -135,3 +135,8 @@ pub(super) fn all_in_blocks(
     let problem = format!("the blocks hold {done} of the {count} {what} the section announces");
     Err(cursor.error(problem, "Correct the counts, or save the mesh again"))
 }
+
+/// Reports that elements or entities have partitions, which a conversion loses.
+pub(super) fn note_partitions(visitor: &mut dyn MeshVisitor) {
+    visitor.unsupported("partitions of the mesh");
+}

@@ -1,7 +1,7 @@
 //! Reads the sections of a file in order, each by its version and encoding.
 
 use super::encoding::{FileEncoding, Version, form};
-use super::lists::{note_parameters, row};
+use super::lists::{note_parameters, note_partitions, row};
 use super::model::Model;
 use super::{
     binary2, binary4, binary40, data, ghosts, model, periodic, text2, text4, text40, words,
@@ -130,6 +130,9 @@ fn visit_sections(
             }
             b"Entities" | b"PartitionedEntities" if visitor.asks_for_groups() => {
                 let partitioned = name == b"PartitionedEntities";
+                if partitioned {
+                    note_partitions(visitor);
+                }
                 model.read(cursor, known(cursor, encoding)?, partitioned)?;
                 let name = str::from_utf8(name).unwrap_or_default();
                 end_of_section(cursor, name, opened, "entities")?;

@@ -2,7 +2,7 @@
 
 use super::encoding::Version;
 use super::kind::{kind_of, node_tags};
-use super::lists::{counts, each};
+use super::lists::{counts, each, note_partitions};
 use super::repeats::ElementSender;
 use super::words::Progress;
 use crate::error::ReadError;
@@ -53,9 +53,19 @@ pub(super) fn elements(
     let progress = Progress::new(0, count, "elements");
     let read = |cursor: &mut Cursor<'_>, _| element(cursor, version);
     let mut elements = ElementSender::default();
-    each(cursor, count, progress, visitor, read, |cursor, visitor, _, element| {
-        elements.send(cursor, visitor, &element)
-    })?;
+    each(
+        cursor,
+        count,
+        progress,
+        visitor,
+        read,
+        |cursor, visitor, _, (element, has_partitions)| {
+            if has_partitions {
+                note_partitions(visitor);
+            }
+            elements.send(cursor, visitor, &element)
+        },
+    )?;
     Ok(count)
 }
 
@@ -69,10 +79,10 @@ fn node(cursor: &mut Cursor<'_>) -> Result<Node, ReadError> {
     Ok((tag, point, cursor.z(format_args!("node {tag}"))?))
 }
 
-/// Reads the row of an element. In version 1, the two tags stand without their number, and the number of nodes precedes
-/// the nodes.
+/// Reads the row of an element. Returns the element, and whether it has partitions. In version 1, the two tags stand without
+/// their number, and the number of nodes precedes the nodes.
 #[inline]
-fn element(cursor: &mut Cursor<'_>, version: Version) -> Result<Element, ReadError> {
+fn element(cursor: &mut Cursor<'_>, version: Version) -> Result<(Element, bool), ReadError> {
     let tag = cursor.integer("an element tag")?;
     let kind = cursor.integer(format_args!("the type of element {tag}"))?;
     let kind = kind_of(cursor, kind)?;
@@ -86,19 +96,23 @@ fn element(cursor: &mut Cursor<'_>, version: Version) -> Result<Element, ReadErr
             let problem = format!("element {tag} is a {} of {count} nodes", kind.name());
             return Err(cursor.error(problem, CORRECT));
         }
-        return Ok(Element { id: tag, kind, region, nodes: node_tags(cursor, kind, tag)? });
+        let nodes = node_tags(cursor, kind, tag)?;
+        return Ok((Element { id: tag, kind, region, nodes }, false));
     }
     let groups = cursor.integer(format_args!("the number of tags of element {tag}"))?;
     let mut region = [0; 2];
     for number in region.iter_mut().take(usize::try_from(groups).unwrap_or(usize::MAX)) {
         *number = cursor.signed(format_args!("a tag of element {tag}"))?;
     }
-    // Tags after the second list mesh partitions.
+    // Tags after the second list mesh partitions, or have zeros.
+    let mut has_partitions = false;
     for _ in 2..groups {
-        if cursor.token().is_none() {
+        let Some(token) = cursor.token() else {
             let problem = format!("element {tag} announces {groups} tags, but its line has fewer");
             return Err(cursor.error(problem, CORRECT));
-        }
+        };
+        has_partitions |= token != b"0";
     }
-    Ok(Element { id: tag, kind, region, nodes: node_tags(cursor, kind, tag)? })
+    let nodes = node_tags(cursor, kind, tag)?;
+    Ok((Element { id: tag, kind, region, nodes }, has_partitions))
 }

@@ -159,6 +159,23 @@ fn block(numbers: [i64; 3], count: usize, out: &mut Rows) {
     sizes(&[count as u64], out);
 }
 
+/// For each dimension, a tag below which no tag is free. A search from 1 for each of many groups would take quadratic
+/// time.
+#[derive(Default)]
+struct FreeTags([i64; 3]);
+
+impl FreeTags {
+    /// Returns the least positive tag of a dimension that `taken` lacks, and adds the tag to `taken`.
+    fn take(&mut self, dimension: u8, taken: &mut HashSet<(u8, i64)>) -> i64 {
+        let last = &mut self.0[usize::from(dimension)];
+        *last += 1;
+        while !taken.insert((dimension, *last)) {
+            *last += 1;
+        }
+        *last
+    }
+}
+
 /// Physical groups: all groups of the mesh except entities.
 struct Physicals {
     /// The tag of each group of the content, 0 for a group that is no physical group.
@@ -190,10 +207,9 @@ impl Physicals {
                 }
             }
         }
+        let mut free = FreeTags::default();
         for group in others {
-            let dimension = content.groups[group].dimension;
-            let free = (1..).find(|&number| taken.insert((dimension, number)));
-            tags[group] = free.unwrap_or(0);
+            tags[group] = free.take(content.groups[group].dimension, &mut taken);
         }
         let of_set = |set: &Vec<u32>| {
             let mut set: Vec<i64> = set.iter().map(|&group| tags[group as usize]).collect();
@@ -225,12 +241,15 @@ impl Physicals {
         };
         let mut rows: Vec<(u8, i64, &str)> = used.into_iter().filter_map(row).collect();
         let mut taken: HashSet<(u8, i64)> = self.taken(input);
+        let mut free = FreeTags::default();
         for group in &input.content.empty_groups {
             // A group of another kind may have the number.
             let (dimension, wanted) = (group.dimension, group.tag().filter(|&tag| tag > 0));
-            let mut numbers = wanted.into_iter().chain(1..);
-            let number = numbers.find(|&number| taken.insert((dimension, number)));
-            rows.extend(number.zip(group.name()).map(|(number, name)| (dimension, number, name)));
+            let number = match wanted.filter(|&tag| taken.insert((dimension, tag))) {
+                Some(tag) => tag,
+                None => free.take(dimension, &mut taken),
+            };
+            rows.extend(group.name().map(|name| (dimension, number, name)));
         }
         rows.sort_unstable();
         if !rows.is_empty() {

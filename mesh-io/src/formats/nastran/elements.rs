@@ -1,6 +1,6 @@
 //! Visits the elements, and the nodes that masses, springs and rigid elements constrain.
 
-use super::nodes::whole;
+use super::nodes::{number, whole};
 use super::types::{Class, RigidFields, class};
 use crate::content::remark::Remark;
 use crate::error::ReadError;
@@ -54,11 +54,12 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
     })?;
     if let Some(first) = names.first() {
         let word = if names.len() == 1 { "called" } else { "such as" };
-        visitor.remark(Remark::elements(
-            holding,
-            "element",
-            &format!(" {word} {}", quoted(name_bytes(first))),
-        ));
+        let first = quoted(name_bytes(first));
+        visitor.remark(Remark::elements(holding, "element", &format!(" {word} {first}")));
+        visitor.unsupported(&format!("elements that constrain nodes, {word} {first}"));
+    }
+    if asks_for_data {
+        left_out(rows, visitor);
     }
     others.retain(|name| !matches!(name_bytes(name), b"" | b"GRDSET"));
     if let Some(first) = others.first() {
@@ -69,6 +70,33 @@ pub(super) fn send(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) -> Result<(
         });
     }
     send_constrained_nodes(rows, held, visitor)
+}
+
+/// Reports fields of nodes and elements that are not read and are neither blank nor 0: those behind z of a node, and those
+/// behind the nodes of an element.
+#[cold]
+fn left_out(rows: &Cursor<'_>, visitor: &mut dyn MeshVisitor) {
+    let cursor = &mut rows.clone();
+    while cursor.next_row() {
+        let row = cursor.row_range();
+        let name = CardLine::starting_at(cursor.bytes, row.start).name();
+        let has_more = |read: usize| {
+            card::words(cursor.bytes, row.clone()).skip(read).any(|word| number(word) != Some(0.0))
+        };
+        match (name_bytes(&name), class(&name)) {
+            // Number, coordinate system, x, y and z. GRDSET has its systems and constraints in the same fields.
+            (b"GRID" | b"GRDSET", _) if has_more(5) => {
+                visitor.unsupported("systems and constraints of nodes (CD, PS, SEID)");
+            }
+            (_, Some(Class::Of(kind))) if has_more(2 + kind.nodes()) => {
+                visitor.unsupported(
+                    "fields of elements behind their nodes, such as thicknesses and angles",
+                );
+            }
+            (b"CONROD", _) if has_more(3) => visitor.unsupported("properties of CONROD"),
+            _ => {}
+        }
+    }
 }
 
 /// Visits the nodes that elements constrain, as points. Ids without a GRID card, such as scalar points, are not in the

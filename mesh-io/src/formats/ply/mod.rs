@@ -69,12 +69,31 @@ impl FormatReader for Ply {
                 }
             }
         }
-        if items.order.is_none() {
-            let listed = lists.iter().map(|list| list.count).fold(0, u64::saturating_add);
+        let listed = lists.iter().map(|list| list.count).fold(0, u64::saturating_add);
+        if items.order.is_some() {
+            end_of_bytes(cursor, listed)?;
+        } else {
             end_of_list(cursor, listed, "items", |cursor| cursor.real("a number"))?;
         }
         layout.ok_or_else(|| cursor.error("it has no element vertex", "Save the mesh again"))
     }
+}
+
+/// Checks that a binary file ends after its `listed` items. Blanks and zeros may follow.
+///
+/// # Errors
+/// At the first further byte. A count that is too small would drop elements of the mesh without a word.
+fn end_of_bytes(cursor: &Cursor<'_>, listed: u64) -> Result<(), ReadError> {
+    let at = Cursor::at_byte_offset(cursor.source, cursor.at_byte());
+    let mut rest = cursor.clone();
+    while let Some(&[byte]) = rest.take(1) {
+        if byte != 0 && !byte.is_ascii_whitespace() {
+            let problem =
+                format!("further bytes follow the {listed} items that the header announces");
+            return Err(at.error(problem, "Correct the counts, or write the mesh again"));
+        }
+    }
+    Ok(())
 }
 
 /// The scalar properties of vertices, except coordinates.
@@ -232,6 +251,9 @@ impl Items {
         if list.properties[y].number != number || y != x + 1 {
             let problem = "y does not follow x with the same type";
             return Err(cursor.error(problem, "Save vertices with x, y and z in this order"));
+        }
+        if list.properties.iter().any(|property| property.length.is_some()) {
+            visitor.unsupported("lists of numbers of vertices");
         }
         let z = named(b"z").filter(|&z| list.properties[z].precision().is_some());
         let mut z_values = ZValues::new(visitor);

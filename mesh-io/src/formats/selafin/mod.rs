@@ -125,11 +125,13 @@ impl FormatReader for Selafin {
             conditions::visit(list, cursor, &faces, visitor);
         }
         if visitor.asks_for_data() {
+            visitor.origin([parameters[2], parameters[3]]);
             if parameters[9] == 1 {
                 visitor.unsupported("the date of a SELAFIN");
             }
-            steps(after_mesh, order, precision, &names, numbers, visitor);
-        } else {
+        }
+        steps(after_mesh, order, precision, &names, numbers, visitor)?;
+        if !visitor.asks_for_data() {
             names.iter().for_each(|name| _ = visitor.point_array(name, 1, true));
         }
         let numbers = CoordinateEncoding::Binary { order, precision, y_after };
@@ -137,8 +139,11 @@ impl FormatReader for Selafin {
     }
 }
 
-/// Reads the time steps, each a time and a record for each variable. The first damaged or incomplete step ends the
-/// reading without an error, as the mesh does not depend on time steps.
+/// Reads the time steps up to the end of the file, each a time and a record for each variable. Passes the numbers on if the
+/// visitor asks for data.
+///
+/// # Errors
+/// If the file ends within a step, or if a record is damaged.
 fn steps(
     mut cursor: Cursor<'_>,
     order: ByteOrder,
@@ -146,17 +151,16 @@ fn steps(
     names: &[&[u8]],
     bytes: usize,
     visitor: &mut dyn MeshVisitor,
-) {
+) -> Result<(), ReadError> {
     let cursor = &mut cursor;
-    while let Ok(time) = record(cursor, order, "the time of a step", None) {
-        if time.iter().any(|&byte| byte != 0) {
+    while cursor.clone().take(1).is_some() {
+        let time = record(cursor, order, "the time of a step", None)?;
+        if visitor.asks_for_data() && time.iter().any(|&byte| byte != 0) {
             visitor.unsupported("the times of a SELAFIN");
         }
         for name in names {
-            let Ok(values) = record(cursor, order, "the values of a variable", Some(bytes)) else {
-                return;
-            };
-            if visitor.point_array(name, 1, true) {
+            let values = record(cursor, order, "the values of a variable", Some(bytes))?;
+            if visitor.asks_for_data() && visitor.point_array(name, 1, true) {
                 let size = precision.bytes();
                 let numbers = values.chunks_exact(size).map(|x| order.real(precision, x)).collect();
                 let places = Offsets::Regular { start: cursor.last_taken(), stride: size };
@@ -166,6 +170,7 @@ fn steps(
             }
         }
     }
+    Ok(())
 }
 
 /// Takes a Fortran record and returns its content, which starts at [`Cursor::last_taken`]. Messages call the record

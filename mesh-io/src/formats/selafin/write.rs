@@ -25,8 +25,9 @@ pub(crate) fn write_selafin(input: &WriterInput<'_>) -> Vec<u8> {
     if bed.is_some() {
         record(&mut out, format!("{BED:<16}{:<16}", "M").as_bytes());
     }
-    // The first parameter is always 1. All others are 0: no origin, no date, one plane.
-    record(&mut out, &ints([1, 0, 0, 0, 0, 0, 0, 0, 0, 0]));
+    // The first parameter is always 1. Parameters behind the origin are 0: no date, one plane.
+    let [x, y] = content.origin;
+    record(&mut out, &ints([1, 0, x, y, 0, 0, 0, 0, 0, 0]));
     let triangles = triangles(input);
     let points = content.points.len() as i32;
     record(&mut out, &ints([triangles.len() as i32, points, 3, 1]));

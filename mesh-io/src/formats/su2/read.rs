@@ -11,7 +11,7 @@ use crate::error::ReadError;
 use crate::format::Format;
 use crate::formats::su2::motions::Motions;
 use crate::formats::vtk::types;
-use crate::text::cursor::{CORRECT, Cursor};
+use crate::text::cursor::{CORRECT, CUT_OFF, Cursor};
 use crate::text::parallel_rows::take_rows;
 use crate::text::syntax::Syntax;
 use crate::text::token::{integer, key_value, quoted};
@@ -51,6 +51,8 @@ impl FormatReader for Su2 {
         // The number of points before each zone, and the number of all points.
         let (mut zones, mut points) = (vec![0], 0_u64);
         let (mut marker, mut motions) = (None, None::<Motions>);
+        // The number of markers that each zone announces, and the number of zones.
+        let (mut announced, mut all_zones) = (Vec::new(), 0);
         while cursor.next_row() {
             let (key, all) = key_and_values(cursor);
             let value = first(all);
@@ -111,13 +113,24 @@ impl FormatReader for Su2 {
                 {
                     motions.as_mut().into_iter().for_each(|motions| motions.read(key, all));
                 }
-                b"NMARK" | b"NZONE" | b"IZONE" => {}
+                b"NMARK" => {
+                    announced.resize(zones.len(), None);
+                    announced[zones.len() - 1] = Some(number(cursor, "NMARK", value)?);
+                }
+                b"NZONE" => all_zones = number(cursor, "NZONE", value)?,
+                b"IZONE" => {}
                 // Counts of other lists, and boxes for free-form deformation.
                 _ if visitor.asks_for_data() && !value.is_empty() => {
                     visitor.unsupported(&format!("what {}= is", quoted(key)));
                 }
                 _ => {}
             }
+        }
+        check_markers(cursor, &announced, &lists)?;
+        let found = zones.len() as u64;
+        if all_zones > found {
+            let problem = format!("the file ends after {found} of {all_zones} zones");
+            return Err(cursor.error(problem, CUT_OFF));
         }
         visitor.end_nodes(cursor)?;
         if let Some(motions) = motions {
@@ -143,6 +156,35 @@ impl FormatReader for Su2 {
         }
         Ok(CoordinateStorage::in_place(Format::Su2, CoordinateEncoding::TEXT))
     }
+}
+
+/// Checks that each zone with `NMARK` has as many markers as `NMARK` announces. `cursor` is at the end of the file.
+///
+/// # Errors
+/// If a zone has fewer markers, as in a file that is cut off between two markers, or if further markers follow, which SU2
+/// does not read. Copies of vertices in other processes (`SEND_RECEIVE`) may follow.
+fn check_markers(
+    cursor: &Cursor<'_>,
+    announced: &[Option<u64>],
+    lists: &[List<'_>],
+) -> Result<(), ReadError> {
+    for (zone, &count) in announced.iter().enumerate() {
+        let Some(count) = count else { continue };
+        let of_zone = lists.iter().filter(|list| list.zone == zone && list.marker.is_some());
+        let found = of_zone.clone().count() as u64;
+        if found < count {
+            let end = if zone + 1 < announced.len() { "zone" } else { "file" };
+            let problem = format!("the {end} ends after {found} of {count} markers (NMARK)");
+            return Err(cursor.error(problem, CUT_OFF));
+        }
+        let mut of_boundary = of_zone.filter(|list| list.marker != Some(b"SEND_RECEIVE"));
+        let further = usize::try_from(count).ok().and_then(|count| of_boundary.nth(count));
+        if let Some(further) = further {
+            let problem = format!("further markers follow the {count} that NMARK announces");
+            return Err(further.cursor.error(problem, "Correct NMARK, or write the mesh again"));
+        }
+    }
+    Ok(())
 }
 
 /// Visits the elements of a list, whose nodes are numbered within a zone. The range has the zone's points, counted over

@@ -14,7 +14,7 @@ use crate::formats::triangle::files;
 use crate::formats::triangle::rows::{VertexNumbering, header, rows, vertex_header};
 use crate::formats::triangle::segments::{Segments, listed_vertices};
 use crate::precision::Precision;
-use crate::text::cursor::Cursor;
+use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::float;
 use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
@@ -190,6 +190,11 @@ fn triangles(
         }
     }
     let columns = cursor.integer_or(0, "the number of attributes per triangle")?;
+    // A row may lack attributes, but no row is longer than the file. Each attribute takes a blank and a character.
+    if columns > cursor.capacity(columns, " 1".len()) as u64 {
+        let problem = format!("{columns} attributes per triangle do not fit in the file");
+        return Err(cursor.error(problem, CORRECT));
+    }
     visitor.expect_elements(cursor.capacity(count, "1 1 2 3\n".len()));
     let mut attributes = Attributes { columns, ..Attributes::default() };
     let read = |cursor: &mut _| triangle(cursor, node, numbers, columns);
@@ -273,12 +278,14 @@ impl<'a> Attributes<'a> {
     }
 
     fn send_groups(&self, text: &[u8], visitor: &mut dyn MeshVisitor) {
-        let kinds: Vec<String> =
-            (0..self.columns).map(|column| column_name(column, self.columns)).collect();
-        let labels = tokens(text).map(attribute);
-        let groups = kinds.iter().zip(labels);
+        // Rows may have fewer attributes than the header announces, so tokens are counted, not columns.
+        let groups: Vec<(String, GroupLabel)> = (0..self.columns)
+            .zip(tokens(text))
+            .map(|(column, token)| (column_name(column, self.columns), attribute(token)))
+            .collect();
         let groups: Vec<GroupScope<'_>> = groups
-            .map(|(what, label)| GroupScope { kind: what.as_str(), label, dimension: None })
+            .iter()
+            .map(|(kind, label)| GroupScope { kind, label: label.clone(), dimension: None })
             .collect();
         visitor.group_scopes(&groups);
     }
@@ -329,10 +336,19 @@ fn segments(
     }
     visitor.group_scopes(&[]);
     visitor.remark(Remark::elements(segments.count, "segment", &format!(" of {}", poly.name())));
-    // Holes and regions matter only to the mesh generator.
+    // Holes and regions matter only to the mesh generator. Files without regions end behind the holes.
     let cursor = &mut segments.cursor;
-    if cursor.next_row() && cursor.integer("the number of holes").is_ok_and(|holes| holes > 0) {
-        visitor.unsupported("holes of the .poly");
+    for (counted, told) in [
+        ("the number of holes", "holes of the .poly"),
+        ("the number of regions", "region points of the .poly"),
+    ] {
+        let count = if cursor.next_row() { cursor.integer(counted).unwrap_or(0) } else { 0 };
+        if count > 0 {
+            visitor.unsupported(told);
+        }
+        if !(0..count).all(|_| cursor.next_row()) {
+            break;
+        }
     }
     Ok(())
 }

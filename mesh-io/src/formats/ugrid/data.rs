@@ -4,13 +4,34 @@ use super::centers::Tables;
 use super::kind::TableKind;
 use super::mesh::Mesh;
 use super::table::Table;
+use crate::content::decoded::decoded;
 use crate::content::remark::Remark;
+use crate::export::capabilities::join_first;
 use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};
 use crate::visit::visitor::MeshVisitor;
 
 /// Start of the names of the variables of edges in older nets of Delft3D FM.
 const LINK: &[u8] = b"NetLink";
+
+/// Attributes of the mesh variable that name tables which follow from the faces.
+const CONNECTIVITIES: [&str; 6] = [
+    "edge_node_connectivity",
+    "face_edge_connectivity",
+    "face_face_connectivity",
+    "edge_face_connectivity",
+    "node_face_connectivity",
+    "boundary_node_connectivity",
+];
+/// Tables of older nets of Delft3D FM that follow from the links.
+const NET_TABLES: [&[u8]; 3] = [b"NetElemNode", b"NetElemLink", b"BndLink"];
+
+/// Returns whether a variable has times, by the CF conventions, section 4.4.
+fn is_time(variable: &Variable) -> bool {
+    let units = variable.text("units").unwrap_or_default();
+    variable.text("standard_name") == Some(b"time")
+        || memchr::memmem::find(units, b" since ").is_some()
+}
 
 /// Owners of the numbers of a variable.
 #[derive(Clone, Copy, PartialEq)]
@@ -56,11 +77,15 @@ impl<'h, 'a> Mesh<'h, 'a> {
             }
         }
         if visitor.asks_for_data() {
-            self.left_out(visitor);
+            let is_other = |variable: &&Variable| {
+                is_data(variable) && self.located(variable, lengths).is_none()
+            };
+            let others = self.header.variables.iter().filter(is_other);
+            self.left_out(others, visitor);
         }
         let left = self.centers(tables, &places, &mut points, visitor);
         if !left.is_empty() {
-            let names: Vec<_> = left.iter().map(|own| String::from_utf8_lossy(&own.name)).collect();
+            let names: Vec<_> = left.iter().map(|own| decoded(&own.name)).collect();
             visitor.remark(Remark::Text(format!(
                 "{}: positions of edges or faces, which are not updated",
                 names.join(", ")
@@ -122,15 +147,21 @@ impl<'h, 'a> Mesh<'h, 'a> {
                     && let Some(own) =
                         points.numbers(variable, record, part, parts, variable.missing())
                 {
+                    variable.packing().into_iter().for_each(|packing| visitor.packing(packing));
                     visitor.cell_numbers(own.numbers, Some(ids.clone().collect()));
                 }
             }
         }
     }
 
-    /// Reports content that a conversion loses. Edges, neighbors and coordinates of faces follow from the mesh, and
-    /// attributes of variables are comments, so neither is reported.
-    fn left_out(&self, visitor: &mut dyn MeshVisitor) {
+    /// Reports content that a conversion loses. `others` are the variables that are neither parts of the mesh nor data of
+    /// nodes and faces. Edges, neighbors and coordinates of faces follow from the mesh, and attributes of variables are
+    /// comments, so neither is reported.
+    fn left_out<'v>(
+        &self,
+        others: impl Iterator<Item = &'v Variable>,
+        visitor: &mut dyn MeshVisitor,
+    ) {
         let has = |is_lost: &dyn Fn(&Variable) -> bool| self.header.variables.iter().any(is_lost);
         let is_at = |variable: &Variable, place: &[u8]| variable.text("location") == Some(place);
         let is_of_links =
@@ -141,8 +172,34 @@ impl<'h, 'a> Mesh<'h, 'a> {
         if self.connectivity.0 == TableKind::Edges && has(&|variable| is_at(variable, b"face")) {
             visitor.unsupported("variables of faces");
         }
-        if self.header.records > 1 {
+        if [self.x, self.y].iter().any(|axis| axis.packing().is_some()) {
+            visitor.unsupported("scale factors and offsets of coordinates");
+        }
+        let (times, others): (Vec<_>, Vec<_>) = others.partition(|variable| is_time(variable));
+        if self.header.records > 1 || !times.is_empty() {
             visitor.unsupported("times of time steps");
+        }
+        let is_of_mesh = |variable: &Variable| {
+            CONNECTIVITIES
+                .iter()
+                .any(|attribute| self.named(attribute).iter().any(|own| own.name == variable.name))
+                || self.is_of_links() && NET_TABLES.contains(&&variable.name[..])
+        };
+        // A variable without dimensions, such as that of a coordinate system, has its content in attributes.
+        let is_scalar = |variable: &Variable| variable.shape.is_empty() && !variable.is_record;
+        let is_told = |variable: &Variable| {
+            is_at(variable, b"edge")
+                || is_at(variable, b"face") && self.connectivity.0 == TableKind::Edges
+        };
+        let names = others
+            .into_iter()
+            .filter(|own| !is_of_mesh(own) && !is_scalar(own) && !is_told(own))
+            .map(|own| decoded(&own.name));
+        let names: Vec<String> = names.collect();
+        if !names.is_empty() {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let names = join_first(&names);
+            visitor.unsupported(&format!("variables of neither nodes nor faces: {names}"));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::binary::byte_order::ByteOrder;
 use crate::export::content::DataArray;
+use crate::export::content_builder::common_kind;
 use crate::export::put;
 use crate::export::rows::Rows;
 use crate::export::writer_input::WriterInput;
@@ -21,6 +22,14 @@ fn array_name(what: &str) -> &str {
         "marker" | "boundary" | "nodestring" | "list" => "cell_tags",
         other => other,
     }
+}
+
+/// Returns the old and the new name of each region array that has another name in the written file. `names` are names of
+/// arrays in a file of VTK's formats or of XDMF.
+pub(crate) fn renamed_regions(names: &[String]) -> Vec<(&str, String)> {
+    let new = |name: &String| array_name(&common_kind(name)).to_owned();
+    let renamed = names.iter().map(|name| (name.as_str(), new(name)));
+    renamed.filter(|(old, new)| old != new).collect()
 }
 
 /// An array of real or whole numbers for the written file.

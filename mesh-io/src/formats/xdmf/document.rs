@@ -119,6 +119,38 @@ pub(super) fn items(source: &Source) -> Result<Vec<Item>, ReadError> {
     }
 }
 
+/// Lists content of the file that a conversion loses and that [`items`] leaves out.
+///
+/// # Errors
+/// If the file is not XML.
+pub(super) fn left_out(source: &Source) -> Result<Vec<&'static str>, ReadError> {
+    let mut tags = XmlTags::new(source);
+    let (mut lost, mut times) = (Vec::new(), 0);
+    while let Some(tag) = tags.next()? {
+        let own = Section::of(&tag)?;
+        let is_in = |name: &str| tags.parent().is_some_and(|parent| parent.name() == name);
+        match own.name.as_str() {
+            // Data without a time have a single time step at the time zero.
+            "Time" => {
+                times += 1;
+                let time = own.value(&["Value"]).and_then(|time| time.trim().parse::<f64>().ok());
+                if times > 1 || time != Some(0.0) {
+                    lost.push("times of time steps");
+                }
+            }
+            "Set" => lost.push("sets of nodes or cells (Set)"),
+            "DataItem" if is_in("Attribute") && own.value(&["Reference"]).is_some() => {
+                lost.push("attributes that refer to other items");
+            }
+            "Attribute" if own.value(&["Reference"]).is_some() => {
+                lost.push("attributes that refer to other items");
+            }
+            _ => {}
+        }
+    }
+    Ok(lost)
+}
+
 /// Separates the items of the mesh from those of mesh tags: items in grids that have a Topology, where the Geometry is
 /// in another grid with a Topology.
 pub(super) fn split(items: Vec<Item>) -> (Vec<Item>, Vec<Item>) {

@@ -156,8 +156,8 @@ impl<'a> HeavyData<'a> {
     }
 
     /// Returns file index and byte range that identify an item's numbers: in a raw file the bytes of the numbers, in
-    /// HDF5 the first byte of the dataset's header. `None` if the XML contains the numbers, or if the item cannot be
-    /// located.
+    /// HDF5 the first byte of the dataset's header. `None` if the XML contains the numbers, which no other item has, or
+    /// if the item cannot be located.
     pub(super) fn range_of(&self, item: &Item) -> Option<(usize, Range<usize>)> {
         let (Content::Hdf5 { file, .. } | Content::Raw { file, .. }) = &item.content else {
             return None;
@@ -250,5 +250,6 @@ pub(super) fn stored(numbers: &mut HeavyArray<'_>, heavy: &HeavyData<'_>) -> Opt
         encoding,
         space: home,
         file_index,
+        shared: None,
     })
 }

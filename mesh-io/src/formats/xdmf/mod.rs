@@ -20,12 +20,13 @@ use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
 use crate::visit::items::PointNumbers;
 use crate::visit::reader::FormatReader;
+use crate::visit::shared::{SharedBytes, shared_bytes};
 use crate::visit::storage::CoordinateStorage;
 use crate::visit::visitor::MeshVisitor;
 use crate::visit::z_values::TextNumbers;
 use document::{Content, Item};
 use heavy::HeavyData;
-use std::ops::Range;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 pub(crate) struct Xdmf;
@@ -66,8 +67,12 @@ impl FormatReader for Xdmf {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
         let (items, tagged) = document::split(document::items(source)?);
-        let file = File { source, items, tagged, heavy: HeavyData::open(source)? };
-        let (layout, points) = file.points(file.only("Geometry")?, visitor)?;
+        let heavy = HeavyData::open(source)?;
+        let shared = shared(items.iter().chain(&tagged), &heavy);
+        let file = File { source, items, tagged, heavy, shared };
+        let geometry = file.only("Geometry")?;
+        let (layout, points) = file.points(geometry, visitor)?;
+        let shared_with = file.shared.get(&geometry.at).map(|shared| shared.other.clone());
         let topology = file.only("Topology")?;
         let (tags, lines) = file.tag_regions(topology)?;
         let (cells, regions) = file.elements(topology, tags, visitor)?;
@@ -75,12 +80,15 @@ impl FormatReader for Xdmf {
         for tags in lines {
             id = file.lines_of_tags(tags, id, visitor)?;
         }
+        if visitor.asks_for_data() {
+            document::left_out(source)?.iter().for_each(|what| visitor.unsupported(what));
+        }
         if visitor.asks_for_cell_arrays() {
             file.cell_data(&regions, cells, visitor);
         }
-        file.point_data(points, visitor)?;
+        file.point_data(points, visitor);
         file.heavy.check_no_overlaps()?;
-        Ok(layout)
+        Ok(CoordinateStorage { shared_with, ..layout })
     }
 }
 
@@ -92,6 +100,25 @@ struct File<'a> {
     /// Items of mesh tags.
     tagged: Vec<Item>,
     heavy: HeavyData<'a>,
+    /// Items with bytes of other items in companion files, by the offsets of their tags.
+    shared: HashMap<usize, SharedBytes>,
+}
+
+/// Returns the items with bytes of other items in companion files, by the offsets of their tags: several attributes may
+/// name one dataset, or the dataset of the points.
+fn shared<'i>(
+    items: impl Iterator<Item = &'i Item>,
+    heavy: &HeavyData<'_>,
+) -> HashMap<usize, SharedBytes> {
+    let items: Vec<&Item> = items.collect();
+    let ranges: Vec<_> = items.iter().map(|item| heavy.range_of(item)).collect();
+    let name = |index: usize| match items[index].section.as_str() {
+        "Geometry" => "the points".to_owned(),
+        "Topology" => "the elements".to_owned(),
+        _ => format!("'{}'", quoted(items[index].name.as_bytes())),
+    };
+    let found = shared_bytes(&ranges, name);
+    items.iter().zip(found).filter_map(|(item, own)| Some((item.at, own?))).collect()
 }
 
 impl Item {
@@ -149,35 +176,18 @@ impl<'a> File<'a> {
     }
 
     /// Visits the data of `points` points.
-    fn point_data(&self, points: u64, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
-        // Only the first of several items with the same bytes can be rewritten, and none with the bytes of the mesh:
-        // edits must not overlap.
-        let mut known: Vec<(usize, Range<usize>)> = Vec::new();
-        for section in ["Geometry", "Topology"] {
-            let numbers = match visitor.asks_for_data() {
-                true => self.heavy.range_of(self.only(section)?),
-                false => None,
-            };
-            known.extend(numbers);
-        }
+    fn point_data(&self, points: u64, visitor: &mut dyn MeshVisitor) {
         for item in self.attributes("node") {
             let (components, is_real) = (item.components(points), self.is_real(item));
             if visitor.point_array(item.name.as_bytes(), components, is_real)
                 && let Ok(mut numbers) = self.numbers(item)
             {
-                if let Some((part, range)) = self.heavy.range_of(item) {
-                    let is_other = |(known, own): &(usize, Range<usize>)| {
-                        *known != part || own.end <= range.start || range.end <= own.start
-                    };
-                    if !known.iter().all(is_other) {
-                        numbers.location = None;
-                    }
-                    known.push((part, range));
+                if let Some(stored) = &mut numbers.location {
+                    stored.shared = self.shared.get(&item.at).cloned();
                 }
                 visitor.point_numbers(numbers);
             }
         }
-        Ok(())
     }
 
     /// Reads the numbers of an item with data. Only real numbers can be rewritten.

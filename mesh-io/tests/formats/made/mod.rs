@@ -7,7 +7,7 @@ mod exodus;
 mod gmsh;
 mod grids;
 mod nastran;
-mod netcdf;
+pub(crate) mod netcdf;
 pub(crate) mod nets;
 mod ply;
 mod text;

@@ -15,16 +15,16 @@ struct Variable {
 
 /// Value of an attribute.
 #[derive(Clone, Copy)]
-pub(super) enum Attribute {
+pub(crate) enum Attribute {
     Text(&'static str),
     Whole(i32),
     Real(f64),
 }
 
 /// Builder of a file. `version` is 1, 2 (64-bit offsets) or 5 (64-bit counts and offsets).
-pub(super) struct NetCdf {
+pub(crate) struct NetCdf {
     out: Binary,
-    pub(super) version: u8,
+    pub(crate) version: u8,
     variables: Vec<Variable>,
 }
 
@@ -43,22 +43,22 @@ impl Built {
     }
 
     /// Returns the byte ranges of all variables, in all records.
-    pub(super) fn lists(&self) -> Vec<Range<usize>> {
+    pub(crate) fn lists(&self) -> Vec<Range<usize>> {
         self.places.iter().map(|(_, range)| range.clone()).collect()
     }
 
     /// Returns the byte ranges of the lengths of some dimensions.
-    pub(super) fn lengths(&self, names: &[&str]) -> Vec<Range<usize>> {
+    pub(crate) fn lengths(&self, names: &[&str]) -> Vec<Range<usize>> {
         let wanted = self.lengths.iter().filter(|(name, _)| names.contains(name));
         wanted.map(|(_, range)| range.clone()).collect()
     }
 }
 
 /// Name of the record dimension.
-pub(super) const RECORDS: &str = "time_step";
+pub(crate) const RECORDS: &str = "time_step";
 
 impl NetCdf {
-    pub(super) fn new(version: u8) -> NetCdf {
+    pub(crate) fn new(version: u8) -> NetCdf {
         NetCdf { out: Binary::empty(true), version, variables: Vec::new() }
     }
 
@@ -80,13 +80,13 @@ impl NetCdf {
         self.variables.push(Variable { name, number, dimensions, content, attributes: Vec::new() });
     }
 
-    pub(super) fn ints(&mut self, name: &str, dimensions: &[&'static str], numbers: &[i32]) {
+    pub(crate) fn ints(&mut self, name: &str, dimensions: &[&'static str], numbers: &[i32]) {
         let mut content = Binary::empty(true);
         content.ints(numbers);
         self.add(name, 4, dimensions, content.bytes);
     }
 
-    pub(super) fn reals(
+    pub(crate) fn reals(
         &mut self,
         name: &str,
         precision: Precision,
@@ -99,7 +99,7 @@ impl NetCdf {
         self.add(name, number, dimensions, content.bytes);
     }
 
-    pub(super) fn names(&mut self, name: &str, dimensions: &[&'static str], texts: &[&str]) {
+    pub(crate) fn names(&mut self, name: &str, dimensions: &[&'static str], texts: &[&str]) {
         let content = texts.iter().flat_map(|text| {
             let mut row = text.as_bytes().to_vec();
             row.resize(16, 0);
@@ -109,7 +109,7 @@ impl NetCdf {
     }
 
     /// Adds an attribute to the variable that was added last.
-    pub(super) fn attribute(&mut self, name: &'static str, content: Attribute) {
+    pub(crate) fn attribute(&mut self, name: &'static str, content: Attribute) {
         self.variables.last_mut().unwrap().attributes.push((name, content));
     }
 
@@ -134,7 +134,7 @@ impl NetCdf {
     }
 
     /// Finishes the file with `records` records.
-    pub(super) fn build(mut self, dimensions: &[(&'static str, usize)], records: usize) -> Built {
+    pub(crate) fn build(mut self, dimensions: &[(&'static str, usize)], records: usize) -> Built {
         let variables = std::mem::take(&mut self.variables);
         self.out.text("CDF");
         self.out.bytes.push(self.version);

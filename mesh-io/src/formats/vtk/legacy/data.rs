@@ -4,7 +4,8 @@
 use crate::binary::byte_order::ByteOrder;
 use crate::content::group_label::GroupLabel;
 use crate::edit::numbers::{NumberEncoding, Offsets};
-use crate::formats::vtk::legacy::skip::{array_name, size_of, skip_section, take};
+use crate::formats::vtk::bits_and_texts::{bits, lost_text};
+use crate::formats::vtk::legacy::skip::{array_name, size_at, skip_section, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
@@ -99,12 +100,14 @@ impl Data<'_> {
             b"COLOR_SCALARS" => {
                 let name = cursor.token()?;
                 let components = cursor.integer("the number of colors").ok()?;
-                self.array(cursor, name, b"unsigned_char", components, self.count)?;
+                // In text, VTK writes and reads colors as real numbers from 0 to 1.
+                let kind: &[u8] = if self.binary { b"unsigned_char" } else { b"float" };
+                self.array(cursor, name, kind, components, self.count)?;
             }
             b"LOOKUP_TABLE" => {
-                let name = cursor.token()?;
-                let size = cursor.integer("the size of a table").ok()?;
-                self.array(cursor, name, b"unsigned_char", 4, size)?;
+                cursor.token()?;
+                let size = cursor.integer("the size of a table").ok()?.checked_mul(4)?;
+                skip_section(cursor, self.binary, b"unsigned_char", size).ok()?;
             }
             b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
             b"FIELD" => {
@@ -137,6 +140,13 @@ impl Data<'_> {
         let count = components.checked_mul(tuples)?;
         let of_all = tuples == self.count;
         let precision = precision_of(kind);
+        if is_text(kind) {
+            if self.visitor.asks_for_data() {
+                let owners = if self.of_cells { "elements" } else { "vertices" };
+                self.visitor.unsupported(&lost_text(owners, name));
+            }
+            return skip_section(cursor, self.binary, kind, count).ok();
+        }
         if of_all
             && components == 1
             && self.visitor.asks_for_ghosts()
@@ -151,24 +161,21 @@ impl Data<'_> {
             && of_all
             && self.visitor.point_array(name, components, precision.is_some())
         {
-            let numbers = self.numbers(cursor, kind, count)?;
+            let Some(numbers) = self.numbers_or_skip(cursor, kind, count)? else { return Some(()) };
             self.visitor.point_numbers(numbers);
             return Some(());
         }
-        let is_region =
-            components == 1 && names_regions(name) && self.found.columns.len() < MAX_ARRAYS;
+        let is_region = components == 1
+            && names_regions(name)
+            && self.found.columns.len() < MAX_ARRAYS
+            && !(self.binary && kind.eq_ignore_ascii_case(b"bit"));
         if self.of_cells
             && of_all
             && !is_region
             && self.visitor.asks_for_cell_arrays()
             && self.visitor.cell_array(name, components, precision.is_some())
         {
-            // Numbers that cannot be read hide no later array.
-            let start = cursor.clone();
-            let Some(found) = self.numbers(cursor, kind, count) else {
-                *cursor = start;
-                return skip_section(cursor, self.binary, kind, count).ok();
-            };
+            let Some(found) = self.numbers_or_skip(cursor, kind, count)? else { return Some(()) };
             self.visitor.cell_numbers(found.numbers, None);
             return Some(());
         }
@@ -179,7 +186,7 @@ impl Data<'_> {
         // Region number of each cell: an integer, or the bits of a real number.
         let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<GroupLabel>);
         if self.binary {
-            let size = size_of(kind)?;
+            let size = size_at(cursor, kind, tuples)?;
             // Bits identify real numbers. Negative zero differs from zero in its bits but names the same region.
             let negative_zero = precision.map(|_| i64::MIN >> (64 - 8 * size));
             let positive = |bits: i64| if Some(bits) == negative_zero { 0 } else { bits };
@@ -199,12 +206,33 @@ impl Data<'_> {
         Some(())
     }
 
+    /// Reads numbers as [`numbers`](Self::numbers) does. Numbers that cannot be read are skipped, so that they hide no
+    /// later array. Returns `Some(None)` for skipped numbers, and `None` if the array cannot be skipped either.
+    fn numbers_or_skip(
+        &self,
+        cursor: &mut Cursor<'_>,
+        kind: &[u8],
+        count: u64,
+    ) -> Option<Option<PointNumbers>> {
+        let start = cursor.clone();
+        let numbers = self.numbers(cursor, kind, count);
+        if numbers.is_none() {
+            *cursor = start;
+            skip_section(cursor, self.binary, kind, count).ok()?;
+        }
+        Some(numbers)
+    }
+
     /// Reads `count` numbers of any type as real numbers. Only `float` and `double` arrays can be rewritten, so other
     /// types get no location.
     fn numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], count: u64) -> Option<PointNumbers> {
         let precision = precision_of(kind);
+        if self.binary && kind.eq_ignore_ascii_case(b"bit") {
+            let numbers = bits(take(cursor, count.div_ceil(8), 1).ok()?, count)?;
+            return Some(PointNumbers { numbers, nodes: None, location: None });
+        }
         if self.binary {
-            let (size, value) = (size_of(kind)?, value_of(kind));
+            let (size, value) = (size_at(cursor, kind, count)?, value_of(kind));
             let bytes = take(cursor, count, size).ok()?.chunks_exact(size);
             let numbers = bytes.map(|number| value(ByteOrder::Big.signed(number))).collect();
             let places = Offsets::Regular { start: cursor.last_taken(), stride: size };
@@ -221,6 +249,11 @@ impl Data<'_> {
         let numbers = numbers.finish(precision.unwrap_or_default(), None);
         Some(PointNumbers { location: numbers.location.filter(|_| precision.is_some()), ..numbers })
     }
+}
+
+/// Returns whether an array of this type holds texts instead of numbers.
+fn is_text(kind: &[u8]) -> bool {
+    kind.eq_ignore_ascii_case(b"string") || kind.eq_ignore_ascii_case(b"utf8_string")
 }
 
 /// Returns the precision of a number type; `None` for types of whole numbers.

@@ -1,6 +1,6 @@
 //! Cell lists of a legacy VTK file.
 
-use super::skip::take;
+use super::skip::{size_at, take};
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
@@ -115,13 +115,13 @@ pub(super) fn read<'a>(
         ahead.next_row() && ahead.token().is_some_and(|word| word.eq_ignore_ascii_case(b"OFFSETS"));
     if by_offsets {
         *cursor = ahead;
-        let size = width(cursor)?;
+        let size = width(cursor, first)?;
         let offsets = integers(cursor, first, binary.then_some(size))?;
         cursor.row(0, 1, "lists of CONNECTIVITY")?;
         if !cursor.token().is_some_and(|word| word.eq_ignore_ascii_case(b"CONNECTIVITY")) {
             return Err(cursor.error("OFFSETS without CONNECTIVITY", CORRECT));
         }
-        let size = width(cursor)?;
+        let size = width(cursor, second)?;
         let first = start_of(cursor, binary);
         let numbers = integers(cursor, second, binary.then_some(size))?;
         let count = offsets.len().saturating_sub(1);
@@ -156,12 +156,16 @@ fn start_of<'a>(cursor: &Cursor<'a>, binary: bool) -> Cursor<'a> {
     }
 }
 
-/// Reads the name of an integer type. Returns the width of the type in bytes.
-fn width(cursor: &mut Cursor<'_>) -> Result<usize, ReadError> {
-    match cursor.token().unwrap_or_default().to_ascii_lowercase().as_slice() {
-        b"vtktypeint64" | b"vtktypeuint64" | b"vtkidtype" | b"long" => Ok(8),
-        b"vtktypeint32" | b"vtktypeuint32" | b"int" => Ok(4),
-        other => {
+/// Reads the name of the type of the `count` integers that follow. Returns their width in bytes.
+fn width(cursor: &mut Cursor<'_>, count: u64) -> Result<usize, ReadError> {
+    let kind = cursor.token().unwrap_or_default().to_ascii_lowercase();
+    match (kind.as_slice(), size_at(cursor, &kind, count)) {
+        (
+            b"vtktypeint64" | b"vtktypeuint64" | b"vtkidtype" | b"long" | b"vtktypeint32"
+            | b"vtktypeuint32" | b"int",
+            Some(size),
+        ) => Ok(size),
+        (other, _) => {
             let problem = format!("whole numbers of the type `{}` are not read", quoted(other));
             Err(cursor.error(problem, "Save them as vtktypeint32 or vtktypeint64"))
         }

@@ -18,7 +18,7 @@ pub(super) fn skip_section(
         (b"string" | b"utf8_string", false) => each(cursor, count, |c| c.line().is_some()),
         (_, false) => each(cursor, count, |c| c.next_word() && c.token().is_some()),
         (b"bit", true) => take(cursor, count.div_ceil(8), 1).map(|_| ()),
-        (kind, true) => match size_of(kind) {
+        (kind, true) => match size_at(cursor, kind, count) {
             Some(size) => take(cursor, count, size).map(|_| ()),
             None => {
                 let problem = format!("an array of the type `{}` is not read", quoted(kind));
@@ -53,15 +53,68 @@ fn strings(cursor: &mut Cursor<'_>, count: u64) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// Returns the width in bytes of a binary number type; `None` for types that cannot be read.
-pub(super) fn size_of(kind: &[u8]) -> Option<usize> {
+/// Returns the width in bytes of the `count` binary numbers of type `kind` that follow; `None` for types that cannot be
+/// read.
+///
+/// VTK writes numbers of the type `vtkIdType` in 4 bytes (`vtkDataWriter::WriteArray`), and reads them so. Other
+/// programs write 8 bytes, as many as VTK has in memory. The width is 8 if an array of 8 bytes is followed by a keyword,
+/// by the next array of a field or by the end of the file, and an array of 4 bytes by none of them.
+pub(super) fn size_at(cursor: &Cursor<'_>, kind: &[u8], count: u64) -> Option<usize> {
+    if !kind.eq_ignore_ascii_case(b"vtkidtype") {
+        return size_of(kind);
+    }
+    let fits = |size: usize| {
+        let length = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
+        let end = length.and_then(|length| cursor.at_byte().checked_add(length));
+        end.and_then(|end| cursor.bytes.get(end..)).is_some_and(may_follow)
+    };
+    Some(if !fits(4) && fits(8) { 8 } else { 4 })
+}
+
+/// Returns whether the bytes after an array start with a keyword or with the head of an array of a field, or are blank.
+fn may_follow(bytes: &[u8]) -> bool {
+    /// Keywords that stand after an array in a dataset or in its data.
+    const KEYWORDS: [&[u8]; 21] = [
+        b"METADATA",
+        b"POINT_DATA",
+        b"CELL_DATA",
+        b"SCALARS",
+        b"VECTORS",
+        b"NORMALS",
+        b"TENSORS",
+        b"TENSORS6",
+        b"GLOBAL_IDS",
+        b"PEDIGREE_IDS",
+        b"TEXTURE_COORDINATES",
+        b"COLOR_SCALARS",
+        b"LOOKUP_TABLE",
+        b"FIELD",
+        b"POINTS",
+        b"CELLS",
+        b"POLYGONS",
+        b"LINES",
+        b"VERTICES",
+        b"CELL_TYPES",
+        b"CONNECTIVITY",
+    ];
+    let bytes = bytes.trim_ascii_start();
+    let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+    let Some(first) = words.next() else { return true };
+    let mut is_count = || words.next().is_some_and(|word| word.iter().all(u8::is_ascii_digit));
+    KEYWORDS.iter().any(|keyword| first.eq_ignore_ascii_case(keyword))
+        || (is_count() && is_count() && words.next().is_some_and(|kind| kind.is_ascii()))
+}
+
+/// Returns the width in bytes of a binary number type; `None` for types that cannot be read, and for `vtkIdType`, whose
+/// width [`size_at`] finds.
+fn size_of(kind: &[u8]) -> Option<usize> {
     match kind.to_ascii_lowercase().as_slice() {
         // meshio writes the names that start with `vtktype` for whole numbers of all sizes.
         b"char" | b"unsigned_char" | b"signed_char" | b"vtktypeint8" | b"vtktypeuint8" => Some(1),
         b"short" | b"unsigned_short" | b"vtktypeint16" | b"vtktypeuint16" => Some(2),
         b"int" | b"unsigned_int" | b"float" | b"vtktypeint32" | b"vtktypeuint32" => Some(4),
-        b"double" | b"long" | b"unsigned_long" | b"vtkidtype" | b"vtktypeint64"
-        | b"vtktypeuint64" => Some(8),
+        b"double" | b"long" | b"unsigned_long" | b"vtktypeint64" | b"vtktypeuint64" => Some(8),
         _ => None,
     }
 }

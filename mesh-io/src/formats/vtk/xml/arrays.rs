@@ -7,12 +7,15 @@ use crate::binary::int_array::IntArray;
 use crate::disk::source::Source;
 use crate::edit::numbers::{AppendedOffset, NumberEncoding, Offsets};
 use crate::error::{Location, ReadError};
+use crate::formats::vtk::bits_and_texts::bits;
 use crate::precision::Precision;
 use crate::text::cursor::{CUT_OFF, Cursor};
 use crate::text::token::quoted;
 use crate::visit::items::PointNumbers;
+use crate::visit::shared::{SharedBytes, shared_bytes};
 use crate::visit::storage::{ArrayLocation, ByteSpace};
 use crate::visit::z_values::TextNumbers;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -22,9 +25,52 @@ pub(super) struct File<'a> {
     pub(super) document: Document,
     /// Offsets of the appended arrays, which a rewrite corrects.
     pub(super) offsets: Arc<[AppendedOffset]>,
+    /// Appended arrays with bytes of other arrays, by the offsets of their tags.
+    pub(super) shared: HashMap<usize, SharedBytes>,
 }
 
-impl File<'_> {
+impl<'a> File<'a> {
+    /// Makes a file from its parsed tags, and finds arrays with common bytes: VTK reads files of which several arrays
+    /// have one offset.
+    pub(super) fn new(source: &'a Source, document: Document) -> File<'a> {
+        let offsets = document.offsets().into();
+        let mut file = File { source, document, offsets, shared: HashMap::new() };
+        let arrays = &file.document.arrays;
+        let ranges: Vec<_> =
+            arrays.iter().map(|array| Some((0, file.appended_range(array)?))).collect();
+        let name = |index: usize| match arrays[index].section.as_str() {
+            "Points" if file.document.pieces.len() > 1 => {
+                format!("the points of piece {}", arrays[index].piece + 1)
+            }
+            "Points" => "the points".to_owned(),
+            "PointData" | "CellData" | "FieldData" => {
+                format!("'{}'", quoted(arrays[index].name.as_bytes()))
+            }
+            _ => "the elements".to_owned(),
+        };
+        let shared = shared_bytes(&ranges, name);
+        let shared = arrays.iter().zip(shared);
+        file.shared = shared.filter_map(|(array, own)| Some((array.at, own?))).collect();
+        file
+    }
+
+    /// Returns the range of an appended array in the file; `None` for other arrays, for damaged arrays, and for arrays
+    /// without numbers, whose offset may be that of the next array.
+    fn appended_range(&self, array: &Array) -> Option<Range<usize>> {
+        let (appended, (offset, _)) = (self.document.appended?, array.offset.as_ref()?);
+        if self.document.owners(array) == Some(0) {
+            return None;
+        }
+        let start = appended.start.checked_add(*offset)?;
+        let length = self.encoding(appended.base64).length(self.source.bytes.get(start..)?)?;
+        Some(start..start + length)
+    }
+
+    fn encoding(&self, base64: bool) -> BlockEncoding {
+        let Document { order, header, compressor, .. } = self.document;
+        BlockEncoding { order, header, compressor, base64 }
+    }
+
     /// Returns the array with a name, in any case, in a section of a piece; the section's first array if `name` is
     /// `None`.
     ///
@@ -59,9 +105,8 @@ impl File<'_> {
         &self,
         array: &Array,
     ) -> Result<(BlockEncoding, DecodedBlocks<'_>, Range<usize>), ReadError> {
-        let Document { order, header, compressor, appended, .. } = self.document;
-        let wrapping = |base64| BlockEncoding { order, header, compressor, base64 };
-        let (wrapping, start, end) = match (&array.offset, appended) {
+        let wrapping = |base64| self.encoding(base64);
+        let (wrapping, start, end) = match (&array.offset, self.document.appended) {
             (Some((offset, _)), Some(appended)) => {
                 let start = appended.start.saturating_add(*offset);
                 (wrapping(appended.base64), start, self.source.bytes.len())
@@ -122,6 +167,14 @@ impl File<'_> {
             let stored = numbers.location.filter(|_| precision.is_some());
             return Ok(PointNumbers { location: stored, ..numbers });
         }
+        if array.number == "Bit" {
+            let (_, found, _) = self.unwrap(array)?;
+            let count =
+                self.document.owners(array).and_then(|own| own.checked_mul(array.components));
+            let numbers = count.and_then(|count| bits(&found.bytes, count));
+            let numbers = numbers.ok_or_else(|| self.damaged(array))?;
+            return Ok(PointNumbers { numbers, nodes: None, location: None });
+        }
         let Some(precision) = precision else {
             let numbers: Vec<f64> = match array.number.starts_with('U') {
                 true => {
@@ -154,7 +207,8 @@ impl File<'_> {
             }
         };
         let offsets = Offsets::Regular { start, stride };
-        let stored = Some(ArrayLocation { offsets, encoding, space: home, file_index: 0 });
+        let shared = self.shared.get(&array.at).cloned();
+        let stored = Some(ArrayLocation { offsets, encoding, space: home, file_index: 0, shared });
         Ok(PointNumbers { numbers, nodes: None, location: stored })
     }
 

@@ -67,6 +67,44 @@ impl BlockEncoding {
         }
     }
 
+    /// Returns the length of the encoded array at the start of `input` by its header, without decoding the array. `None`
+    /// if the header is damaged or `input` ends too early.
+    pub(super) fn length(&self, input: &[u8]) -> Option<usize> {
+        let length = match (self.compressor, self.base64) {
+            (None, false) => self.header.checked_add(self.number(input.get(..self.header)?)?)?,
+            (None, true) => {
+                let (length, has_separate_header) = self.base64_header(input)?;
+                match has_separate_header {
+                    true => encoded(self.header).checked_add(encoded(length))?,
+                    false => encoded(self.header.checked_add(length)?),
+                }
+            }
+            (Some(_), base64) => {
+                let blocks = self.numbers(input, 3)?[0];
+                let counts = self.numbers(input, blocks.checked_add(3)?)?;
+                let header = self.header * counts.len();
+                let compressed = counts[3..].iter().try_fold(0_usize, |a, &b| a.checked_add(b))?;
+                match base64 {
+                    false => header.checked_add(compressed)?,
+                    true => encoded(header).checked_add(encoded(compressed))?,
+                }
+            }
+        };
+        (length <= input.len()).then_some(length)
+    }
+
+    /// Returns the number of bytes of an uncompressed array that the header of its base64 text gives, and whether the
+    /// header is a text of its own.
+    fn base64_header(&self, input: &[u8]) -> Option<(usize, bool)> {
+        let apart = encoded(self.header);
+        // Padding of a header that is encoded alone. A header followed by numbers in the same base64 text has less
+        // padding, or none.
+        let padding = 3 - self.header % 3;
+        let has_separate_header = input.get(apart - padding..apart)? == &b"=="[..padding];
+        let first = decode(input.get(..apart)?)?;
+        Some((self.number(first.get(..self.header)?)?, has_separate_header))
+    }
+
     fn unwrap_plain<'a>(&self, input: &'a [u8]) -> Option<DecodedBlocks<'a>> {
         if !self.base64 {
             let length = self.number(input.get(..self.header)?)?;
@@ -80,12 +118,7 @@ impl BlockEncoding {
             });
         }
         let apart = encoded(self.header);
-        // Padding of a header that is encoded alone. A header followed by numbers in the same base64 text has less
-        // padding, or none.
-        let padding = 3 - self.header % 3;
-        let header_apart = input.get(apart - padding..apart)? == &b"=="[..padding];
-        let first = decode(input.get(..apart)?)?;
-        let length = self.number(first.get(..self.header)?)?;
+        let (length, header_apart) = self.base64_header(input)?;
         let (mut bytes, taken) = match header_apart {
             true => (decode(input.get(apart..)?.get(..encoded(length))?)?, apart + encoded(length)),
             false => {
@@ -260,6 +293,8 @@ mod tests {
                                     "{wrapping:?} {header_apart}"
                                 );
                                 assert!(wrapping.unwrap(&wrapped[..length - 1]).is_none());
+                                assert_eq!(wrapping.length(&wrapped), Some(length));
+                                assert_eq!(wrapping.length(&wrapped[..length - 1]), None);
                             }
                         }
                     }

@@ -4,6 +4,7 @@ use super::arrays::{File, precision_of};
 use super::document::{Array, Content};
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
+use crate::formats::vtk::bits_and_texts::lost_text;
 use crate::formats::vtk::cells::{BulkBackoff, Cell, Triangles};
 use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
 use crate::formats::vtk::types;
@@ -191,7 +192,9 @@ impl File<'_> {
             for array in self.document.arrays.iter().filter(|array| array.piece == piece) {
                 let of_points = array.section == "PointData" && announced.points > 0;
                 let is_real = precision_of(array).is_some();
-                if of_points
+                if of_points && array.is_text() {
+                    visitor.unsupported(&lost_text("vertices", array.name.as_bytes()));
+                } else if of_points
                     && visitor.point_array(array.name.as_bytes(), array.components, is_real)
                     && let Ok(mut numbers) = self.numbers(array)
                 {
@@ -222,6 +225,9 @@ impl File<'_> {
             let is_real = precision_of(array).is_some();
             match array.section.as_str() {
                 "FieldData" => visitor.unsupported("field data"),
+                "CellData" if array.piece == piece && array.is_text() => {
+                    visitor.unsupported(&lost_text("elements", array.name.as_bytes()));
+                }
                 "CellData"
                     if array.piece == piece
                         && !is_region
@@ -242,5 +248,5 @@ impl File<'_> {
 
 fn is_region_array(array: &Array) -> bool {
     let named = names_regions(array.name.as_bytes());
-    array.section == "CellData" && array.components == 1 && named
+    array.section == "CellData" && array.components == 1 && named && !array.is_text()
 }

@@ -78,6 +78,13 @@ pub(super) struct Appended {
     pub(super) base64: bool,
 }
 
+impl Array {
+    /// Returns whether the array holds texts instead of numbers.
+    pub(super) fn is_text(&self) -> bool {
+        self.number == "String"
+    }
+}
+
 impl Document {
     pub(super) fn read(source: &Source) -> Result<Document, ReadError> {
         let mut document = Document {
@@ -129,6 +136,21 @@ impl Document {
             })
         };
         self.arrays.iter().filter_map(offset).collect()
+    }
+
+    /// Returns the number of points or cells whose numbers an array has; `None` if the section of the array has no
+    /// count.
+    pub(super) fn owners(&self, array: &Array) -> Option<u64> {
+        let Piece { points, cells } = self.pieces.get(array.piece)?;
+        match array.section.as_str() {
+            "Points" | "PointData" => Some(*points),
+            "Cells" | "CellData" => Some(cells.iter().fold(0, |sum, own| sum.saturating_add(*own))),
+            "Verts" => Some(cells[0]),
+            "Lines" => Some(cells[1]),
+            "Strips" => Some(cells[2]),
+            "Polys" => Some(cells[3]),
+            _ => None,
+        }
     }
 
     fn header_of(&mut self, tag: &XmlTag<'_>) -> Result<(), ReadError> {

@@ -34,8 +34,7 @@ impl FormatReader for Vtu {
         visitor: &mut dyn MeshVisitor,
     ) -> Result<CoordinateStorage, ReadError> {
         let document = Document::read(source)?;
-        let offsets = document.offsets().into();
-        let file = File { source, document, offsets };
+        let file = File::new(source, document);
         if !source.options.welds {
             return file.visit(visitor);
         }
@@ -54,7 +53,7 @@ impl FormatReader for Vtu {
 impl File<'_> {
     /// Visits all items of the mesh. Returns the encoding and location of the coordinates.
     fn visit(&self, visitor: &mut dyn MeshVisitor) -> Result<CoordinateStorage, ReadError> {
-        let points::PointStorage { numbers, encoded } = points::read(self, visitor)?;
+        let points::PointStorage { numbers, encoded, shared_with } = points::read(self, visitor)?;
         self.cells(visitor)?;
         if visitor.asks_for_ghosts() {
             self.ghosts(visitor)?;
@@ -64,6 +63,7 @@ impl File<'_> {
             Content::Grid => Format::Vtu,
             Content::Polygons => Format::Vtp,
         };
-        Ok(CoordinateStorage { encoded, ..CoordinateStorage::in_place(format, numbers) })
+        let storage = CoordinateStorage::in_place(format, numbers);
+        Ok(CoordinateStorage { encoded, shared_with, ..storage })
     }
 }

@@ -23,6 +23,8 @@ pub(super) struct PointStorage {
     pub(super) numbers: CoordinateEncoding,
     /// Encoded point arrays; `None` if coordinates are replaced in place.
     pub(super) encoded: Option<Box<dyn EncodedArrays>>,
+    /// Another array with bytes of the points, in messages; `None` if the points have bytes of their own.
+    pub(super) shared_with: Option<String>,
 }
 
 /// State of reading the points of all pieces.
@@ -41,6 +43,8 @@ struct Points<'s, 'f> {
     /// Offset at which the last point array starts. Arrays that are replaced in place must be in file order, as
     /// coordinate offsets ascend.
     end: usize,
+    /// Another array with bytes of an array of points so far, in messages.
+    shared_with: Option<String>,
 }
 
 /// Visits the points of all pieces, and their third coordinates. Returns encoding and location of the coordinates for a
@@ -58,13 +62,14 @@ pub(super) fn read(
         bytes: 0,
         count: 0,
         end: 0,
+        shared_with: None,
     };
     for (piece, announced) in file.document.pieces.iter().enumerate() {
         if announced.points > 0 || file.document.pieces.len() == 1 {
             points.read(file, file.array(piece, "Points", None)?, announced.points)?;
         }
     }
-    let Points { z_values, numbers, encoded, visitor, .. } = points;
+    let Points { z_values, numbers, encoded, shared_with, visitor, .. } = points;
     let Some((numbers, is_encoded)) = numbers else {
         return Err(file.source.error("it has no piece with points", CORRECT));
     };
@@ -75,7 +80,7 @@ pub(super) fn read(
     });
     visitor.end_nodes(&Cursor::new(file.source))?;
     z_values.send_from("z", numbers.into(), home, 0, visitor);
-    Ok(PointStorage { numbers, encoded })
+    Ok(PointStorage { numbers, encoded, shared_with })
 }
 
 impl<'f> Points<'_, 'f> {
@@ -114,6 +119,9 @@ impl<'f> Points<'_, 'f> {
         }
         self.end = start;
         self.count += count;
+        if let (Some(shared), None) = (file.shared.get(&points.at), &self.shared_with) {
+            self.shared_with = Some(shared.other.clone());
+        }
         Ok(())
     }
 

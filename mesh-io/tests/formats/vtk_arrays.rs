@@ -1,0 +1,215 @@
+//! Arrays of data in VTK's two formats: their types, lengths and names.
+
+use super::Folder;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use mesh_io::{Content, Conversion, Format};
+
+/// Returns a VTU of two triangles with these sections of data.
+fn vtu(data: &str) -> String {
+    format!(
+        "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n\
+         <Piece NumberOfPoints=\"4\" NumberOfCells=\"2\">\n{data}\n<Points>\n\
+         <DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0</DataArray>\n\
+         </Points>\n<Cells>\n\
+         <DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 0 2 3</DataArray>\n\
+         <DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 6</DataArray>\n\
+         <DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 5</DataArray>\n</Cells>\n</Piece>\n\
+         </UnstructuredGrid>\n</VTKFile>\n"
+    )
+}
+
+/// Returns the content of a file, and the losses of its conversion to another format.
+fn converted(name: &str, bytes: impl AsRef<[u8]>, to: Format) -> (Content, String) {
+    let folder = Folder::new(&[]);
+    folder.put(name, bytes);
+    let file = folder.read(name);
+    let losses = Conversion::new(&file, to).unwrap().unwrap().losses().join("; ");
+    (file.content().unwrap(), losses)
+}
+
+/// Memory is reserved for the numbers of a file, not for those that a damaged header announces.
+#[test]
+fn an_array_with_a_wrong_number_of_components_is_a_loss() {
+    for count in ["400000000", "18446744073709551615"] {
+        let data = format!(
+            "<CellData><DataArray type=\"Float64\" Name=\"t\" NumberOfComponents=\"{count}\" \
+             format=\"ascii\">1 2</DataArray></CellData>"
+        );
+        let (content, losses) = converted("a.vtu", vtu(&data), Format::Gmsh41);
+        assert_eq!(losses, "t, whose number of values does not fit the number of elements");
+        assert!(content.cell_data().is_empty());
+        let of_points = data.replace("CellData", "PointData");
+        let (_, losses) = converted("a.vtu", vtu(&of_points), Format::Gmsh41);
+        assert_eq!(losses, "t, whose number of values does not fit the number of vertices");
+    }
+}
+
+/// Returns a binary legacy VTK of two triangles, with sections before the points and after the cells.
+fn legacy(before: &[u8], data: &[u8]) -> Vec<u8> {
+    let mut file = b"# vtk DataFile Version 4.2\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\n".to_vec();
+    file.extend(before);
+    file.extend(b"POINTS 4 double\n");
+    let points: [f64; 12] = [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.];
+    file.extend(points.into_iter().flat_map(f64::to_be_bytes));
+    file.extend(b"\nCELLS 2 8\n");
+    file.extend([3, 0, 1, 2, 3, 0, 2, 3].into_iter().flat_map(i32::to_be_bytes));
+    file.extend(b"\nCELL_TYPES 2\n");
+    file.extend([5, 5].into_iter().flat_map(i32::to_be_bytes));
+    file.extend(b"\n");
+    file.extend(data);
+    file
+}
+
+/// Returns the bytes of whole numbers, big-endian, in `width` bytes each.
+fn whole(numbers: &[i64], width: usize) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_be_bytes()[8 - width..].to_vec()).collect()
+}
+
+/// VTK writes numbers of the type `vtkIdType` in 4 bytes, other programs in 8. An array of a wrong width would hide the
+/// regions after it.
+#[test]
+fn numbers_of_the_type_vtkidtype_have_4_or_8_bytes() {
+    // The bytes of 35 and 10 are the start of a comment and a line end, and those of 1 and 2 count as blanks.
+    for (width, ids) in [4, 8].into_iter().flat_map(|width| [(width, [1, 2]), (width, [35, 10])]) {
+        let (ids_read, region) = (ids.map(|id| id as f64), whole(&[7, 9], 4));
+        let bytes = whole(&ids, width);
+        let array = |head: &str, end: &[u8]| [head.as_bytes(), &bytes, end].concat();
+        let regions = [b"SCALARS MaterialIDs int 1\nLOOKUP_TABLE default\n", &region[..]].concat();
+        let field = [b"MaterialIDs 1 2 int\n", &region[..], b"\n"].concat();
+        let data = [
+            array("CELL_DATA 2\nSCALARS id vtkIdType 1\nLOOKUP_TABLE default\n", b"\n"),
+            array("CELL_DATA 2\nGLOBAL_IDS id vtkIdType\n", b"\n"),
+            array("CELL_DATA 2\nFIELD FieldData 2\nid 1 2 vtkIdType\n", b"\n"),
+            array(
+                "CELL_DATA 2\nFIELD FieldData 2\nid 1 2 vtkIdType\n",
+                b"METADATA\nINFORMATION 0\n\n",
+            ),
+        ];
+        let follows = [&regions, &regions, &field, &field];
+        let before = array("FIELD FieldData 1\ncycle 1 2 vtkIdType\n", b"\n");
+        for (data, follows) in data.iter().zip(follows) {
+            let file = legacy(&before, &[&data[..], follows].concat());
+            let folder = Folder::new(&[]);
+            folder.put("a.vtk", &file);
+            let read = folder.read("a.vtk");
+            assert_eq!(read.regions(), Some(&[0, 1][..]), "{width} bytes");
+            let content = read.content().unwrap();
+            let [data] = content.cell_data() else {
+                panic!("{} arrays", content.cell_data().len())
+            };
+            assert_eq!((data.name(), data.values()), ("id", &ids_read[..]), "{width} bytes");
+        }
+        // The array may be the last of the file.
+        let points = whole(&[4, 5, 6, 7], width);
+        let last =
+            [b"POINT_DATA 4\nSCALARS n vtkIdType\nLOOKUP_TABLE default\n", &points[..]].concat();
+        let (content, _) = converted("a.vtk", legacy(&before, &last), Format::Vtk);
+        assert_eq!(content.point_data()[0].values(), [4.0, 5.0, 6.0, 7.0], "{width} bytes");
+    }
+}
+
+/// Returns name and values of each array of cell data.
+fn cell_data(content: &Content) -> Vec<(&str, &[f64])> {
+    content.cell_data().iter().map(|data| (data.name(), data.values())).collect()
+}
+
+/// Texts cannot be converted, and bits are numbers. Neither hides a later array.
+#[test]
+fn texts_of_a_legacy_vtk_are_losses_and_bits_are_numbers() {
+    let string = |text: &str| [&[0xC0 | text.len() as u8][..], text.as_bytes()].concat();
+    let (ab, long) = (string("ab"), string("a text"));
+    let fields = |owners: &str, strings: &[&[u8]], bits: u8, region: &[i64]| {
+        let count = strings.len();
+        let head = format!("{owners} {count}\nFIELD FieldData 3\nname 1 {count} string\n");
+        let (middle, end) = (format!("\nflag 1 {count} bit\n"), format!("\nn 1 {count} int\n"));
+        let numbers = whole(region, 4);
+        [
+            head.as_bytes(),
+            &strings.concat(),
+            middle.as_bytes(),
+            &[bits],
+            end.as_bytes(),
+            &numbers,
+            b"\n",
+        ]
+        .concat()
+    };
+    let of_points = fields("POINT_DATA", &[&ab, &long, &ab, &ab], 0b0110_1111, &[4, 3, 2, 1]);
+    let of_cells = fields("CELL_DATA", &[&long, &ab], 0b1000_0000, &[7, 8]);
+    let binary = legacy(b"", &[of_points, of_cells].concat());
+    let text = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+                0 0 0 1 0 0 1 1 0 0 1 0\nCELLS 2 8\n3 0 1 2 3 0 2 3\nCELL_TYPES 2\n5 5\nPOINT_DATA 4\nFIELD FieldData 3\n\
+                name 1 4 string\nab\n3\n\nab\nflag 1 4 bit\n0 1 1 0\nn 1 4 int\n4 3 2 1\nCELL_DATA 2\nFIELD FieldData 3\n\
+                name 1 2 string\n1\nab\nflag 1 2 bit\n1 0\nn 1 2 int\n7 8\n";
+    for bytes in [binary, text.into()] {
+        let (content, losses) = converted("a.vtk", bytes, Format::Vtu);
+        let expected = "data of vertices that are text: name; data of elements that are text: name";
+        assert_eq!(losses, expected);
+        assert_eq!(cell_data(&content), [("flag", &[1.0, 0.0][..]), ("n", &[7.0, 8.0])]);
+        let point_data = content.point_data().iter().map(|data| (data.name(), data.values()));
+        let expected = [("flag", &[0.0, 1.0, 1.0, 0.0][..]), ("n", &[4.0, 3.0, 2.0, 1.0])];
+        assert_eq!(point_data.collect::<Vec<_>>(), expected);
+    }
+}
+
+/// Texts in text are numbers of characters, which must not become data or regions.
+#[test]
+fn texts_of_a_vtu_are_losses_and_bits_are_numbers() {
+    let array = |kind: &str, name: &str, format: &str, content: &str| {
+        format!("<Array type=\"{kind}\" Name=\"{name}\" format=\"{format}\">{content}</Array>\n")
+    };
+    let base64 =
+        |bytes: &[u8]| STANDARD.encode([&(bytes.len() as u32).to_le_bytes()[..], bytes].concat());
+    let texts = |format: &str| match format {
+        "ascii" => "97 0 98 0".to_owned(),
+        _ => base64(b"a\0b\0"),
+    };
+    for (format, flags) in [("ascii", "1 0".to_owned()), ("binary", base64(&[0b1000_0000]))] {
+        let strings = array("String", "region", format, &texts(format));
+        let bits = array("Bit", "flag", format, &flags);
+        let data = format!(
+            "<PointData>{}</PointData><CellData>{strings}{bits}</CellData>",
+            array("String", "name", format, &texts(format))
+        );
+        let (content, losses) = converted("a.vtu", vtu(&data), Format::Vtk);
+        let expected =
+            "data of elements that are text: region; data of vertices that are text: name";
+        assert_eq!(losses, expected, "{format}");
+        assert_eq!(cell_data(&content), [("flag", &[1.0, 0.0][..])], "{format}");
+        assert!(content.point_data().is_empty());
+    }
+}
+
+/// VTK writes colors as real numbers from 0 to 1 in text, and as bytes in binary. A lookup table is no data, even if it
+/// has as many colors as there are cells.
+#[test]
+fn colors_of_a_legacy_vtk_are_real_in_text() {
+    let head = b"CELL_DATA 2\nCOLOR_SCALARS c 3\n";
+    let table = b"\nSCALARS s int 1\nLOOKUP_TABLE t\n";
+    let binary = [
+        head,
+        &[0, 51, 255, 1, 2, 3][..],
+        table,
+        &whole(&[5, 6], 4),
+        b"\nLOOKUP_TABLE t 2\n",
+        &[9; 8],
+        b"\nSCALARS end int 1\nLOOKUP_TABLE default\n",
+        &whole(&[7, 8], 4),
+    ]
+    .concat();
+    let text = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+                0 0 0 1 0 0 1 1 0 0 1 0\nCELLS 2 8\n3 0 1 2 3 0 2 3\nCELL_TYPES 2\n5 5\nCELL_DATA 2\nCOLOR_SCALARS c 3\n\
+                0 0.5 1 0.25 1 1\nSCALARS s int 1\nLOOKUP_TABLE t\n5 6\nLOOKUP_TABLE t 2\n0 0 0 1\n1 1 1 1\n\
+                SCALARS end int 1\nLOOKUP_TABLE default\n7 8\n";
+    let colors: [(Vec<u8>, bool, [f64; 6]); 2] = [
+        (legacy(b"", &binary), false, [0., 51., 255., 1., 2., 3.]),
+        (text.into(), true, [0., 0.5, 1., 0.25, 1., 1.]),
+    ];
+    for (bytes, is_real, colors) in colors {
+        let (content, losses) = converted("a.vtk", bytes, Format::Vtu);
+        let expected = [("c", &colors[..]), ("s", &[5.0, 6.0]), ("end", &[7.0, 8.0])];
+        assert_eq!(cell_data(&content), expected);
+        assert_eq!((content.cell_data()[0].is_real(), losses.as_str()), (is_real, ""));
+    }
+}
