@@ -112,6 +112,12 @@ pub enum MeshError {
         /// Names of the metrics that can judge all elements of this mesh.
         usable: Vec<&'static str>,
     },
+    /// The latitude of a vertex is not between -90 and 90 degrees.
+    #[error("vertex {vertex} is not on the sphere: its latitude is not between -90 and 90 degrees")]
+    Latitude {
+        /// The first such vertex.
+        vertex: u32,
+    },
     /// The target of a vertex is invalid; see [`Targets`](crate::Targets).
     #[error("vertex {vertex} has no target: {problem}")]
     Target {

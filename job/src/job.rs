@@ -46,7 +46,7 @@ impl<'f> Job<'f> {
     }
 
     /// Prepares the mesh of a file whose x and y are longitude and latitude in degrees. Runs move vertices on the sphere, with
-    /// lengths in kilometers on a sphere of the size of the earth. Third coordinates are data.
+    /// lengths in degrees of latitude. Third coordinates are data.
     ///
     /// # Errors
     /// [`JobError::Smooth`] if a latitude is not from -90 to 90, or if a pole is inside an element or on an edge.

@@ -41,7 +41,8 @@ pub struct Chart {
     stored: Precision,
     /// Original vertex of each copy, in the order of the copies.
     owners: Vec<u32>,
-    /// Ascending indices of the vertices on cuts of the chart, copies included. They do not move.
+    /// Ascending indices of the vertices on cuts of the chart, copies included, and opposite to a pole in a quadrilateral.
+    /// They do not move.
     held: Vec<u32>,
     across: usize,
     polar: usize,
@@ -53,7 +54,7 @@ impl Chart {
     /// that does not exist or has a coordinate that is infinite or NaN.
     ///
     /// # Errors
-    /// [`MeshError::Target`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if a pole is inside an
+    /// [`MeshError::Latitude`] if a latitude is not from -90 to 90 degrees, [`MeshError::Pole`] if a pole is inside an
     /// element or on an edge.
     pub fn new(mesh: &Mesh, stored: Precision) -> Result<Option<Self>, MeshError> {
         let points = &mesh.points;
@@ -64,8 +65,7 @@ impl Chart {
         }
         let is_off = |&&v: &&u32| points[v as usize][1].abs() > 90.0;
         if let Some(&vertex) = used().find(is_off) {
-            let problem = "its latitude is not between -90 and 90 degrees";
-            return Err(MeshError::Target { vertex: vertex as usize, problem });
+            return Err(MeshError::Latitude { vertex });
         }
         let count = |is: fn(&[[f64; 2]], &[u32]) -> bool| {
             elements(mesh).filter(|(_, vertices)| is(points, vertices)).count()
@@ -131,7 +131,7 @@ impl Chart {
                 points.push([stored.rounded(0.5 * (a + b)), given.points[pole as usize][1]]);
                 owners.push(pole);
                 element[at] = copy;
-                // The vertex opposite to the pole in a quadrilateral is on no cut.
+                // The vertex opposite to the pole in a quadrilateral is on no cut, so not on the boundary.
                 fixed.extend((count == 4).then(|| element[(at + 2) % 4]));
                 held.push(pole);
                 held.extend_from_slice(element);
@@ -152,7 +152,8 @@ impl Chart {
         &self.given
     }
 
-    /// Returns the vertices of the chart's mesh that do not move because they are on a cut, copies included, ascending.
+    /// Returns the vertices of the chart's mesh that do not move because they are on a cut, copies included, or opposite to a
+    /// pole in a quadrilateral, ascending.
     pub fn held(&self) -> &[u32] {
         &self.held
     }
@@ -402,7 +403,7 @@ mod tests {
         assert_eq!(of([[-90.0, 80.0], [90.0, 80.0], [100.0, 70.0]]), pole);
         assert!(matches!(
             of([[0.0, 0.0], [1.0, 91.0], [2.0, 0.0]]),
-            Err(MeshError::Target { vertex: 1, .. })
+            Err(MeshError::Latitude { vertex: 1 })
         ));
         assert_eq!(of([[0.0, 80.0], [10.0, 80.0], [5.0, 85.0]]), Ok(false));
         // Other defects of a mesh are reported by other checks.

@@ -52,20 +52,30 @@ pub(crate) fn prepare_like(mesh: &Mesh, like: &Problem) -> Result<Problem, MeshE
 #[cfg(feature = "gpu")]
 pub(crate) fn prepare_to_untangle(mesh: &Mesh) -> Result<(Topology<'_>, Problem), MeshError> {
     let topology = Topology::new(mesh)?;
-    let is_finite = |&v: &u32| mesh.points[v as usize].iter().all(|x| x.is_finite());
-    if let Some(&vertex) = topology.triangles().as_flattened().iter().find(|v| !is_finite(v)) {
-        return Err(MeshError::NotFinite { vertex });
-    }
-    match topology.check_smoothable(&mesh.points) {
-        Ok(()) | Err(MeshError::Infeasible { .. } | MeshError::OverlappingStar { .. }) => {}
+    topology.check_finite(&mesh.points)?;
+    let tangles = match topology.check_smoothable(&mesh.points) {
+        Ok(()) => None,
+        Err(error @ (MeshError::Infeasible { .. } | MeshError::OverlappingStar { .. })) => {
+            Some(error)
+        }
         Err(error) => return Err(error),
+    };
+    if tangles.is_some()
+        && let Some(element) = topology.closed_part()
+    {
+        return Err(MeshError::Closed { element });
     }
     // A tangled mesh is refused for its triangles before the free vertices are counted.
     if !topology.free().contains(&true) {
         return Err(MeshError::NothingFree { vertices: mesh.points.len() });
     }
     let problem = laid_out(mesh, &topology);
-    Ok((topology, problem))
+    let (_, scale) = problem.normalization();
+    match tangles {
+        // A boundary that encloses no area has no length by which untangling could measure triangles.
+        Some(tangles) if !(scale.is_finite() && scale > 0.0) => Err(tangles),
+        _ => Ok((topology, problem)),
+    }
 }
 
 /// Colors the free vertices of a mesh and lays the mesh out.

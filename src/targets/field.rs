@@ -124,7 +124,7 @@ impl TargetField {
     ///
     /// # Errors
     /// [`MeshError::NotFinite`] if a coordinate of a point is infinite or NaN. The error's `vertex` is the index of the
-    /// point in `places`.
+    /// point in `places`. [`MeshError::OutOfRange`] if a coordinate exceeds 1e100.
     pub fn at(&self, places: &[[f64; 2]]) -> Result<(Targets, OutsideReport), MeshError> {
         let spots = self.find(places)?;
         let map = |i: usize| {

@@ -6,6 +6,8 @@ mod keep;
 mod surface;
 mod tensor;
 
+use std::ops::RangeInclusive;
+
 use crate::error::MeshError;
 use crate::topology::Topology;
 pub use adaptation::Adaptation;
@@ -27,6 +29,10 @@ pub struct Targets {
     size_weight: f64,
 }
 
+/// Lengths whose squares and areas are in the range of double precision.
+const SIZES: RangeInclusive<f64> = 1e-100..=1e100;
+const OUT_OF_RANGE: &str = "its size is not from 1e-100 to 1e100";
+
 impl Targets {
     /// Makes targets for equilateral elements of equal size, for a mesh with `vertices` vertices.
     pub fn equilateral(vertices: usize) -> Self {
@@ -36,14 +42,12 @@ impl Targets {
     /// Makes targets for equilateral elements with the given edge lengths, one length per vertex, in any unit.
     ///
     /// # Errors
-    /// [`MeshError::Target`] if a length, or its inverse, is not positive and finite.
+    /// [`MeshError::Target`] if a length is not from 1e-100 to 1e100.
     pub fn sizes(lengths: &[f64]) -> Result<Self, MeshError> {
-        let map = |(v, &length): (usize, &f64)| {
-            let is_length = length > 0.0 && length.is_finite() && (1.0 / length).is_finite();
-            match is_length {
-                true => Ok(Tensor::isotropic(1.0 / length)),
-                false => Err(MeshError::Target { vertex: v, problem: "its size is not positive" }),
-            }
+        let map = |(v, &length): (usize, &f64)| match length {
+            _ if SIZES.contains(&length) => Ok(Tensor::isotropic(1.0 / length)),
+            _ if length > 0.0 => Err(MeshError::Target { vertex: v, problem: OUT_OF_RANGE }),
+            _ => Err(MeshError::Target { vertex: v, problem: "its size is not positive" }),
         };
         lengths.iter().enumerate().map(map).collect::<Result<_, _>>().map(Self::of_maps)
     }
@@ -52,12 +56,17 @@ impl Targets {
     /// tensor is the metric of anisotropic mesh adaptation, in any unit to the power -2.
     ///
     /// # Errors
-    /// [`MeshError::Target`] if a tensor is not positive definite.
+    /// [`MeshError::Target`] if a tensor is not positive definite, or if it stands for lengths that are not from 1e-100 to
+    /// 1e100.
     pub fn tensors(tensors: &[[f64; 3]]) -> Result<Self, MeshError> {
         let map = |(v, &tensor): (usize, &[f64; 3])| {
             let tensor = Tensor(tensor);
+            let [xx, _, yy] = tensor.0;
             match tensor.is_positive() {
-                true => Ok(tensor.sqrt()),
+                true if [xx, yy].iter().all(|entry| SIZES.contains(&entry.sqrt())) => {
+                    Ok(tensor.sqrt())
+                }
+                true => Err(MeshError::Target { vertex: v, problem: OUT_OF_RANGE }),
                 false => {
                     let problem = "its tensor is not positive definite";
                     Err(MeshError::Target { vertex: v, problem })
@@ -77,13 +86,16 @@ impl Targets {
     /// measured around up to 1,024 free vertices: it is 1 up to s = 2.5, and 1 + (s - 2.5) / 2 beyond.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex, [`MeshError::NotFinite`] if a vertex of an
+    /// element has a coordinate that is infinite or NaN.
     pub fn keep_size(
         topology: &Topology<'_>,
         points: &[[f64; 2]],
         surface: Surface,
         rings: u32,
     ) -> Result<Self, MeshError> {
+        topology.check_count(points)?;
+        topology.check_finite(points)?;
         let stretching = Adaptation::stretching_for_weight(topology, points, surface)?;
         let maps = keep::sizes(topology, points, surface, rings);
         Ok(Self { maps, size_weight: keep::size_weight(stretching) })
@@ -94,13 +106,15 @@ impl Targets {
     /// vertex, such as those of kept [layers](crate::layers), count only at vertices that no other triangle has.
     ///
     /// # Errors
-    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
+    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex, [`MeshError::NotFinite`] if a vertex of an
+    /// element has a coordinate that is infinite or NaN.
     pub fn keep_shape(
         topology: &Topology<'_>,
         points: &[[f64; 2]],
         rings: u32,
     ) -> Result<Self, MeshError> {
         topology.check_count(points)?;
+        topology.check_finite(points)?;
         Ok(Self::of_maps(keep::shapes(topology, points, rings)))
     }
 
@@ -110,7 +124,7 @@ impl Targets {
     ///
     /// # Errors
     /// [`MeshError::PointCount`] if `points` does not have one entry per target, [`MeshError::IndexOutOfRange`] if a
-    /// triangle names a vertex that does not exist, [`MeshError::Target`] if a vertex is not on the surface.
+    /// triangle names a vertex that does not exist, [`MeshError::Latitude`] if a vertex is not on the surface.
     pub fn seen_on(
         mut self,
         surface: Surface,
@@ -163,5 +177,47 @@ impl Targets {
     /// Returns √M at each vertex, as xx, xy, yy.
     pub(crate) fn maps(&self) -> &[Tensor] {
         &self.maps
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    /// Products of such lengths were zero or infinite, and encoded sweeps moved nothing without an error.
+    #[test]
+    fn lengths_beyond_double_precision_are_refused() {
+        let problem_of = |made: Result<Targets, MeshError>| match made {
+            Err(MeshError::Target { vertex: 1, problem }) => problem,
+            other => panic!("{other:?}"),
+        };
+        for length in [1e-300, 1e300] {
+            assert_eq!(problem_of(Targets::sizes(&[1.0, length])), OUT_OF_RANGE);
+            let tensor = [1.0 / length, 0.0, 1.0];
+            assert_eq!(problem_of(Targets::tensors(&[[1.0, 0.0, 1.0], tensor])), OUT_OF_RANGE);
+        }
+        for length in [0.0, -1.0, f64::NAN] {
+            assert_eq!(problem_of(Targets::sizes(&[1.0, length])), "its size is not positive");
+        }
+        assert!(Targets::sizes(&[1e-100, 1e100]).is_ok());
+    }
+
+    #[test]
+    fn targets_of_points_that_are_not_finite_are_refused() {
+        let mesh = Mesh {
+            points: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        };
+        let topology = Topology::new(&mesh).unwrap();
+        let points = [[0.0, 0.0], [1.0, f64::NAN], [0.0, 1.0]];
+        let made = [
+            Targets::keep_size(&topology, &points, Surface::Plane, 0),
+            Targets::keep_shape(&topology, &points, 0),
+        ];
+        for error in made.map(Result::unwrap_err) {
+            assert!(matches!(error, MeshError::NotFinite { vertex: 1 }), "{error}");
+        }
     }
 }

@@ -14,7 +14,7 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Fails with [`MeshError::Target`] if a vertex of `triangles` is not on the surface, or with
+    /// Fails with [`MeshError::Latitude`] if a vertex of `triangles` is not on the surface, or with
     /// [`MeshError::IndexOutOfRange`] if a vertex has no point.
     pub(crate) fn check(
         self,
@@ -31,8 +31,7 @@ impl Surface {
                 return Err(MeshError::IndexOutOfRange { element, vertex, vertices });
             };
             if y.is_nan() || y.abs() > 90.0 {
-                let problem = "its latitude is not between -90 and 90 degrees";
-                return Err(MeshError::Target { vertex: vertex as usize, problem });
+                return Err(MeshError::Latitude { vertex });
             }
         }
         Ok(())

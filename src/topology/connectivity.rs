@@ -251,6 +251,15 @@ impl<'m> Topology<'m> {
         if given == expected { Ok(()) } else { Err(MeshError::PointCount { expected, given }) }
     }
 
+    /// Returns [`MeshError::NotFinite`] for the first vertex of an element with an infinite coordinate or NaN.
+    pub(crate) fn check_finite(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
+        let is_finite = |&v: &u32| points[v as usize].iter().all(|x| x.is_finite());
+        match self.corners().as_flattened().iter().find(|v| !is_finite(v)) {
+            Some(&vertex) => Err(MeshError::NotFinite { vertex }),
+            None => Ok(()),
+        }
+    }
+
     /// Returns the triangles in the order of the mesh, with consistent windings: counter-clockwise unless inverted.
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.corners.triangles()
@@ -277,7 +286,7 @@ impl<'m> Topology<'m> {
     pub fn place(&self, element: Element) -> usize {
         match element {
             Element::Triangle(index) => index,
-            Element::Quadrilateral(index) => self.triangles().len() + index,
+            Element::Quadrilateral(index) => self.triangles().len().saturating_add(index),
         }
     }
 

@@ -329,7 +329,8 @@ fn sizes_and_tensors_that_are_no_targets_are_refused() {
         let targets = Targets::equilateral(points.len());
         targets.seen_on(Surface::Sphere, points, triangles)
     };
-    refused(seen(&points, &mesh.triangles), 4);
+    let north = seen(&points, &mesh.triangles).unwrap_err();
+    assert_eq!(north, MeshError::Latitude { vertex: 4 });
     let elsewhere: Vec<_> = mesh.triangles.iter().copied().filter(|t| !t.contains(&4)).collect();
     assert!(seen(&points, &elsewhere).is_ok(), "a vertex of no triangle may be anywhere");
     let missing = MeshError::IndexOutOfRange {

@@ -320,6 +320,11 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                 "Open it with --untangle if one of its vertices is free, or correct it{others}"
             ))
         }
+        MeshError::Latitude { vertex } => {
+            let place = file.vertex_place(vertex);
+            let problem = "its latitude is not between -90 and 90 degrees";
+            CliError::input(format!("{place}: vertex {}: {problem}", place.id))
+        }
         MeshError::Target { vertex, problem } => {
             let vertex = vertex as u32;
             let place = file.vertex_place(vertex);

@@ -49,7 +49,7 @@ fn remarks(chart: &Chart) -> Vec<String> {
         owners.len()
     };
     if chart.across() > 0 {
-        let triangles = count(chart.across(), "triangle that reaches", "triangles that reach");
+        let triangles = count(chart.across(), "element that reaches", "elements that reach");
         let mut text = format!(
             "longitudes are continued for {triangles} across the line where they start again, as at 180 degrees"
         );
@@ -60,8 +60,7 @@ fn remarks(chart: &Chart) -> Vec<String> {
         remarks.push(text);
     }
     if chart.polar() > 0 && poles > 0 {
-        let triangles =
-            count(chart.polar(), "triangle at a pole stays", "triangles at a pole stay");
+        let triangles = count(chart.polar(), "element at a pole stays", "elements at a pole stay");
         remarks
             .push(format!("{triangles}, with all vertices, as longitudes are no coordinate there"));
     }

@@ -49,7 +49,7 @@ fn triangles_across_the_date_line_are_smoothed_and_proved() {
     for (fields, has_pole, notes) in [
         (9, false, &[line][..]),
         (COLUMNS, false, &[line, "closes around the globe, so 6 vertices at that line stay"]),
-        (COLUMNS, true, &[line, "18 triangles at a pole stay, with all vertices"]),
+        (COLUMNS, true, &[line, "18 elements at a pole stay, with all vertices"]),
     ] {
         let folder = Folder::new(&[("in.gr3", &band(fields, has_pole))]);
         let options = "--engine cpu --surface sphere --slide --interpolate depth";
