@@ -97,9 +97,9 @@ fn sure_altitude(a: vec2<f32>, b: vec2<f32>, error: f32) -> f32 {
 // Returns whether a moved triangle has at least the least altitude, or a larger altitude than before. The triangle is given
 // by two edges from one corner, multiplied by `unit`.
 fn keeps_altitude(a: vec2<f32>, b: vec2<f32>, moved_a: vec2<f32>, moved_b: vec2<f32>, unit: f32) -> bool {
-    if params.floor <= 0.0 {
+    if params.least_altitude <= 0.0 {
         return true;
     }
     let now = sure_altitude(moved_a, moved_b, ALTITUDE_ERROR);
-    return now >= params.floor * unit || now >= sure_altitude(a, b, -ALTITUDE_ERROR);
+    return now >= params.least_altitude * unit || now >= sure_altitude(a, b, -ALTITUDE_ERROR);
 }

@@ -23,15 +23,15 @@ fn remaining(last: u32, window: u32) -> f32 {
 
 fn judge(last: u32) -> u32 {
     let sum = base_sum(last);
-    if params.has_target != 0u && pair_less(sum, params.target_sum) {
+    if params.has_goal != 0u && pair_less(sum, params.goal_sum) {
         return STOP_REACHED;
     }
-    if last >= 2u * params.window && (params.has_target != 0u || params.tolerance > 0.0) {
+    if last >= 2u * params.window && (params.has_goal != 0u || params.tolerance > 0.0) {
         let scale = max(sum.x + params.ideal_sum, MIN_SCALE * f32(params.triangles));
         let still = abs(gain(last - params.window, last)) <= NOISE * scale;
         if still || last - control.best_sweep >= 2u * params.window {
             let level = still || pair_difference(sum, control.best_sum) <= JITTER * scale;
-            if level && params.has_target == 0u {
+            if level && params.has_goal == 0u {
                 return STOP_CONVERGED;
             }
             return STOP_STALLED;

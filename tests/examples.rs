@@ -86,7 +86,7 @@ mod readme {
     ) -> Result<Outcome> {
         // 2. On your own wgpu device, awaited; your application polls the device as it draws.
         let gpu = Gpu::new(device.clone(), queue.clone())?;
-        let outcome = Smoother::new(&mesh)?.run(&options).on(&Backend::Gpu(gpu)).await?;
+        let outcome = Smoother::new(&mesh)?.run(&options).on(&Backend::Gpu(gpu.clone())).await?;
 
         Ok(outcome)
     }

@@ -79,7 +79,7 @@ impl Runner {
             let Prepared { problem, .. } = Prepared::new(mesh)?;
             let plan = Plan {
                 omega: own_omega(),
-                stop: StopRule { target: None, tolerance: 1e-7, max_sweeps: self.reference_sweeps },
+                stop: StopRule { goal: None, tolerance: 1e-7, max_sweeps: self.reference_sweeps },
                 ..plain(metric.into())
             };
             let mut engine = run_on_cpu(&problem, problem.positions(), plan);
@@ -106,7 +106,7 @@ impl Runner {
         let mut engine = self.engine(case.place, problem, plan.clone())?;
         let f = |log: &[gpu_smooth::outcome::Objectives]| log.last().and_then(|o| o.of(base));
         let initial = f(&engine.advance(0)?).ok_or("no f before the first sweep")?;
-        plan.stop.target = Some(initial - batch.fraction * (initial - desired));
+        plan.stop.goal = Some(initial - batch.fraction * (initial - desired));
         drop(engine);
 
         let mut engine = self.engine(case.place, problem, plan.clone())?;
@@ -213,7 +213,7 @@ fn plain(scheme: Scheme) -> Plan {
         newton_steps: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
         sharpness: PNormExponent::FIXED,
-        stop: StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX },
+        stop: StopRule { goal: None, tolerance: 0.0, max_sweeps: u32::MAX },
         track_all: false,
         shape_guard: f64::INFINITY,
         worst_guard: f64::INFINITY,

@@ -43,10 +43,10 @@ impl Along<'_> {
             let at = |position: DVec2| problem.coordinates().at(position);
             let [before, now] =
                 [triangle.map(|v| at(position(v))), triangle.map(|v| at(self.to(v)))];
-            keeps_altitude(problem.floor(), before, now)
+            keeps_altitude(problem.least_altitude(), before, now)
         };
         is_kept(&problem.corner_of(is_right, triangle, position), &now, guard)
-            && (problem.floor() <= 0.0 || keeps_altitude())
+            && (problem.least_altitude() <= 0.0 || keeps_altitude())
     }
 
     /// Returns the position of a vertex after the move.

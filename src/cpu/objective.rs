@@ -92,7 +92,7 @@ async fn mean(
 
 /// Returns the mean, at moved positions, of the function that `step` minimizes: q² - ideal², or its smooth model.
 /// `None` if the move breaks a corner: inverts or flattens it, or makes its inverse mean ratio both worse than before
-/// and larger than the shape guard of the step, or its altitude both lower than before and below the floor of the problem.
+/// and larger than the shape guard of the step, or its altitude both lower than before and below the least altitude of the problem.
 pub(crate) async fn mean_excess_along(
     step: &SweepParams,
     problem: &Problem,

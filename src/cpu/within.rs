@@ -18,7 +18,7 @@ pub(super) struct LaneBounds<T: Numbers> {
     center: [T; 2],
     radius: T,
     /// Lower limit of altitudes, 0 for no limit.
-    floor: f64,
+    least_altitude: f64,
 }
 
 impl<T: Numbers> LaneBounds<T> {
@@ -39,7 +39,7 @@ impl<T: Numbers> LaneBounds<T> {
             None => width.splat(f64::INFINITY),
         };
         let center = in_mesh(coordinates, center);
-        Some(Self { coordinates, center, radius, floor: problem.floor() })
+        Some(Self { coordinates, center, radius, least_altitude: problem.least_altitude() })
     }
 
     /// Does the work of [`Within::point`] for vertices that move in a projection, lane by lane.
@@ -93,14 +93,14 @@ impl<T: Numbers, O, P: LanePatch<T>> Within<'_, T, O, P> {
     /// [`keeps_altitude`](crate::patch::keeps_altitude).
     #[inline(always)]
     fn keeps_altitudes(&self, to: [T; 2], bounds: &LaneBounds<T>) -> T::Mask {
-        let &LaneBounds { coordinates, floor, .. } = bounds;
+        let &LaneBounds { coordinates, least_altitude, .. } = bounds;
         let mut kept = to[0].mask(true);
-        let floor = to[0].constant(floor * floor);
+        let least_altitude = to[0].constant(least_altitude * least_altitude);
         for i in 0..self.rings.count() {
             let now = self.rings.vertices(i, to).map(|point| in_mesh(coordinates, point));
             let (area, longest) = doubled_area_and_square(now);
             let squared = area * Numbers::abs(area);
-            let mut is_kept = (floor * longest).le(squared);
+            let mut is_kept = (least_altitude * longest).le(squared);
             if !is_kept.all() {
                 let before = self.rings.vertices(i, self.at);
                 let before = before.map(|point| in_mesh(coordinates, point));
@@ -209,7 +209,7 @@ impl<T: Numbers, O: Objective<T>, P: LanePatch<T>> Objective<T> for Within<'_, T
     fn trial(&self, to: [T; 2], max_imr: T) -> (T, T::Mask) {
         let (value, feasible) = self.objective.trial(to, max_imr);
         match &self.bounds {
-            Some(bounds) if bounds.floor > 0.0 => {
+            Some(bounds) if bounds.least_altitude > 0.0 => {
                 (value, feasible & self.keeps_altitudes(to, bounds))
             }
             _ => (value, feasible),
@@ -250,7 +250,7 @@ mod tests {
         points.push(at);
         let triangles = (0..6).map(|k| [k, (k + 1) % 6, 6]).collect();
         let (_, mut problem) = prepare(&Mesh { points, triangles, ..Mesh::default() }).unwrap();
-        problem.set_bounds(Bounds { radii: Some(vec![radius]), floor: 0.0 });
+        problem.set_bounds(Bounds { radii: Some(vec![radius]), least_altitude: 0.0 });
         problem
     }
 

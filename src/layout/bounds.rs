@@ -9,5 +9,5 @@ pub(crate) struct Bounds {
     pub(crate) radii: Option<Vec<f64>>,
     /// Lower limit of altitudes: no triangle may become lower than both the limit and its altitude before. 0 for no
     /// limit.
-    pub(crate) floor: f64,
+    pub(crate) least_altitude: f64,
 }

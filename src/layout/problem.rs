@@ -444,7 +444,8 @@ impl Problem {
 
     /// Bounds the free vertices. [`Problem::positions`] are the centers of the discs.
     pub(crate) fn set_bounds(&mut self, bounds: Bounds) {
-        self.bounds = (bounds.radii.is_some() || bounds.floor > 0.0).then(|| Arc::new(bounds));
+        self.bounds =
+            (bounds.radii.is_some() || bounds.least_altitude > 0.0).then(|| Arc::new(bounds));
     }
 
     /// Returns whether discs or a least altitude bound the free vertices.
@@ -458,8 +459,8 @@ impl Problem {
     }
 
     /// Returns the lower limit of altitudes, 0 for no limit.
-    pub(crate) fn floor(&self) -> f64 {
-        self.bounds.as_ref().map_or(0.0, |bounds| bounds.floor)
+    pub(crate) fn least_altitude(&self) -> f64 {
+        self.bounds.as_ref().map_or(0.0, |bounds| bounds.least_altitude)
     }
 
     /// Returns whether the vertices have both target maps and local maps, for which a device has no room, or bounds in the

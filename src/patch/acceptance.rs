@@ -52,14 +52,14 @@ pub(crate) const AT_DISC: f64 = 1.0 - 1e-6;
 /// Least curvature along a circle, as a share of the largest curvature, by which a step along the circle is divided.
 pub(crate) const MIN_CIRCLE_CURVATURE: f64 = 1e-3;
 
-/// Least growth of an altitude below the floor in a move. A larger factor than the rounding of altitudes, so that a
-/// triangle below the floor cannot become lower in many moves.
+/// Least growth of an altitude below the least altitude in a move. A larger factor than the rounding of altitudes, so that a
+/// triangle below the least altitude cannot become lower in many moves.
 pub(crate) const GROWTH: f64 = 1.0 + 1e-12;
 
-/// Returns whether a moved triangle has an altitude of at least `floor`, or a larger altitude than before the move.
-pub(crate) fn keeps_altitude(floor: f64, before: [DVec2; 3], now: [DVec2; 3]) -> bool {
+/// Returns whether a moved triangle has an altitude of at least `least_altitude`, or a larger altitude than before the move.
+pub(crate) fn keeps_altitude(least_altitude: f64, before: [DVec2; 3], now: [DVec2; 3]) -> bool {
     let now_high = altitude(now);
-    now_high >= floor || now_high >= altitude(before) * GROWTH || now == before
+    now_high >= least_altitude || now_high >= altitude(before) * GROWTH || now == before
 }
 
 /// A circle that limits the moves of a vertex; an infinite radius stands for no limit.

@@ -46,21 +46,21 @@ impl Plan {
         Self::with(options, None, options.edge_norm.unwrap_or(PNormExponent::FIXED))
     }
 
-    /// Returns the plan of a run with the given options. If `target` is given, the run ends when the base objective
+    /// Returns the plan of a run with the given options. If `goal` is given, the run ends when the base objective
     /// falls below it.
-    pub(crate) fn toward(options: &Options, target: Option<f64>) -> Self {
+    pub(crate) fn toward(options: &Options, goal: Option<f64>) -> Self {
         // If another metric judges sweeps by EDGE, such sweeps are few, so the exponent of the p-norm stays fixed.
         let is_corrected_edge = options.is_multilevel() && !options.scheme.base().is_smooth();
-        let usual = match (is_corrected_edge, target) {
+        let usual = match (is_corrected_edge, goal) {
             (true, Some(_)) => PNormExponent::CORRECTED,
             (true, None) => PNormExponent::corrected_to(options.stopping.tolerance()),
             (false, _) => PNormExponent::FIXED,
         };
-        let plan = Self::with(options, target, options.edge_norm.unwrap_or(usual));
+        let plan = Self::with(options, goal, options.edge_norm.unwrap_or(usual));
         Self { is_guard_penalized: is_corrected_edge, ..plan }
     }
 
-    fn with(options: &Options, target: Option<f64>, sharpness: PNormExponent) -> Self {
+    fn with(options: &Options, goal: Option<f64>, sharpness: PNormExponent) -> Self {
         let (relaxed, paper) = (options.method.relaxed(), options.method.paper());
         let own = |metric: Metric| match options.scheme.alternates() {
             true => 1.0,
@@ -79,7 +79,7 @@ impl Plan {
             newton_steps: newton_steps.max(1),
             derivatives: [derivatives; Metric::ALL.len()],
             sharpness,
-            stop: StopRule { target, tolerance, max_sweeps: options.max_sweeps },
+            stop: StopRule { goal, tolerance, max_sweeps: options.max_sweeps },
             track_all: options.track_all,
             shape_guard: f64::INFINITY,
             worst_guard: f64::INFINITY,
@@ -139,7 +139,7 @@ impl Plan {
 
     /// Returns the plan without a stop rule, for a run that the caller ends.
     pub(crate) fn endless(mut self) -> Self {
-        self.stop = StopRule { target: None, tolerance: 0.0, max_sweeps: u32::MAX };
+        self.stop = StopRule { goal: None, tolerance: 0.0, max_sweeps: u32::MAX };
         self
     }
 

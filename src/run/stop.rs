@@ -45,7 +45,7 @@ impl Stop {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StopRule {
     /// Value of the base objective below which the run ends. `None` without a goal.
-    pub target: Option<f64>,
+    pub goal: Option<f64>,
     /// Estimated distance of f to its limit, relative to f, below which the run ends. 0 turns this test off.
     pub tolerance: f64,
     /// Largest number of sweeps, after which the run ends.
@@ -78,17 +78,17 @@ impl StopRule {
     /// `shaders/finish.wgsl` implements the same rule for runs that are judged on the device.
     pub fn judge(&self, history: &[f64], best: usize, window: usize) -> Option<Stop> {
         let (last, f) = (history.len().checked_sub(1)?, *history.last()?);
-        if self.target.is_some_and(|target| f < target) {
+        if self.goal.is_some_and(|goal| f < goal) {
             return Some(Stop::Reached);
         }
-        if last >= window.saturating_mul(2) && (self.target.is_some() || self.tolerance > 0.0) {
+        if last >= window.saturating_mul(2) && (self.goal.is_some() || self.tolerance > 0.0) {
             let scale = f.max(MIN_SCALE);
             let still = (history[last - window] - f).abs() <= NOISE * scale;
             if still || last.saturating_sub(best) >= 2 * window {
                 // f no longer changes, or no longer improves. Without a goal, a constant f is convergence.
                 let level =
                     still || history.get(best).is_some_and(|&best| f - best <= JITTER * scale);
-                let done = level && self.target.is_none();
+                let done = level && self.goal.is_none();
                 return Some(if done { Stop::Converged } else { Stop::Stalled });
             }
             if self.remaining(history, window).is_some_and(|left| left <= self.tolerance) {
@@ -150,8 +150,8 @@ mod tests {
         assert_eq!(rule(None, 1e-6).judge(&[1.0], 7, usize::MAX), None);
     }
 
-    fn rule(target: Option<f64>, tolerance: f64) -> StopRule {
-        StopRule { target, tolerance, max_sweeps: 1000 }
+    fn rule(goal: Option<f64>, tolerance: f64) -> StopRule {
+        StopRule { goal, tolerance, max_sweeps: 1000 }
     }
 
     #[test]

@@ -52,7 +52,7 @@ impl OfPatch for SweepParams {
 pub(crate) struct Rule<'a> {
     pub(crate) by: &'a dyn OfPatch,
     /// Lower limit of the altitudes of triangles, in normalized units; 0 for no limit.
-    pub(crate) floor: f64,
+    pub(crate) least_altitude: f64,
 }
 
 /// Limit of the distance between a sliding vertex and its given position.
@@ -98,7 +98,7 @@ pub(crate) struct CurveStep {
     pub(crate) pressed: i8,
 }
 
-/// Takes one Newton step along the curve by [`SearchRule::CURVE`]. No altitude falls below the floor of `rule`. A step moves
+/// Takes one Newton step along the curve by [`SearchRule::CURVE`]. No altitude falls below the least altitude of `rule`. A step moves
 /// vertex `k` of a curve, or both vertices `k` of two curves with common parameters. For two curves, the objective is the
 /// sum over both patches, and both patches must allow the step.
 pub(crate) fn visit(
@@ -110,7 +110,7 @@ pub(crate) fn visit(
     let Visited { sides, k, window, reach } = vertex;
     let fans = || sides.iter().filter_map(|side| Some((side, side.fans[k].as_ref()?)));
     let patches: Vec<FanPatch> =
-        fans().map(|(_, fan)| fan.patch(problem, positions, rule.floor)).collect();
+        fans().map(|(_, fan)| fan.patch(problem, positions, rule.least_altitude)).collect();
     let on_curve = |((side, fan), patch)| {
         let here = positions[Fan::own(fan) as usize];
         OnCurve { side, here, objective: rule.by.of(patch) }

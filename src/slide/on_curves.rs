@@ -41,7 +41,7 @@ pub(crate) struct OnCurves {
     /// Largest distance of each vertex from its given position, in the unit of the mesh.
     reach: Arc<Params>,
     /// Lower limit of altitudes, normalized; 0 for no limit.
-    floor: f64,
+    least_altitude: f64,
     params: Params,
     /// For each vertex, the number of latest sweeps that pressed the vertex against a bound, at most [`FREEZES_AFTER`];
     /// negative toward smaller parameters.
@@ -102,13 +102,13 @@ impl Tangents {
 
 impl OnCurves {
     /// Returns the sliding vertices at their given positions. `reach` limits the distances of vertices from these positions,
-    /// if given. `floor` is the lower limit of altitudes, 0 for no limit.
-    pub(crate) fn new(sliding: Arc<Sliding>, reach: Option<Params>, floor: f64) -> Self {
+    /// if given. `least_altitude` is the lower limit of altitudes, 0 for no limit.
+    pub(crate) fn new(sliding: Arc<Sliding>, reach: Option<Params>, least_altitude: f64) -> Self {
         let reach = reach.unwrap_or_else(|| sliding.for_each_vertex(|_| f64::INFINITY));
         let params = sliding.start();
         let presses = params.iter().map(|of_curve| vec![0; of_curve.len()]).collect();
-        let (floor, reach) = (floor * (1.0 + ROUNDING), Arc::new(reach));
-        Self { sliding, reach, floor, params, presses, short: 0, held: None }
+        let (least_altitude, reach) = (least_altitude * (1.0 + ROUNDING), Arc::new(reach));
+        Self { sliding, reach, least_altitude, params, presses, short: 0, held: None }
     }
 
     pub(crate) fn sliding(&self) -> &Sliding {
@@ -158,8 +158,8 @@ impl OnCurves {
     /// Visits every sliding vertex once, curve by curve, with one safeguarded Newton step along the curve by `step`. Partners
     /// move together.
     pub(crate) fn sweep(&mut self, problem: &Problem, positions: &mut [DVec2], step: &SweepParams) {
-        let Self { sliding, reach, floor, params, presses, .. } = self;
-        let rule = Rule { by: step, floor: *floor };
+        let Self { sliding, reach, least_altitude, params, presses, .. } = self;
+        let rule = Rule { by: step, least_altitude: *least_altitude };
         let all = sliding.tracks.iter().zip(params).zip(reach.iter().zip(presses));
         for ((track, params), (reach, presses)) in all {
             for k in (0..params.len()).filter(|&k| track.slides(k)) {
@@ -189,8 +189,8 @@ impl OnCurves {
         positions: &mut [DVec2],
         chosen: impl Fn(u32) -> bool,
     ) -> Vec<(u32, [f64; 2])> {
-        let Self { sliding, reach, floor, params, .. } = self;
-        let rule = Rule { by, floor: *floor };
+        let Self { sliding, reach, least_altitude, params, .. } = self;
+        let rule = Rule { by, least_altitude: *least_altitude };
         let mut moved = Vec::new();
         for ((track, params), reach) in sliding.tracks.iter().zip(params).zip(reach.iter()) {
             for k in (0..params.len()).filter(|&k| track.slides(k)) {

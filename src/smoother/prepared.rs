@@ -205,7 +205,7 @@ impl<'a> Smoother<'a> {
     /// [`Options::keep_altitude`] or [`Guard::Worst`].
     ///
     /// # Errors
-    /// [`MeshError::Target`] if a vertex is not on the sphere.
+    /// [`MeshError::Latitude`] if a vertex is not on the sphere.
     pub fn project_from_sphere(&mut self) -> Result<bool, MeshError> {
         Surface::Sphere.check(&self.mesh.points, self.topology.corners())?;
         if let Some((projection, projected)) = Mercator::of(&self.mesh, &self.topology) {
@@ -417,12 +417,12 @@ impl<'a> Smoother<'a> {
     /// Returns the sliding vertices at the start of a run, within the bounds of the options. `None` if no vertex slides.
     pub(super) fn on_curves(&self, options: &Options) -> Option<OnCurves> {
         let sliding = self.sliding.clone()?;
-        let floor = if options.keep_altitude { least_of(&self.problem) } else { 0.0 };
+        let least_altitude = if options.keep_altitude { least_of(&self.problem) } else { 0.0 };
         let reach = options.max_move.map(|most| {
             let all = radii(&self.mesh, &self.topology, most, options.stored);
             sliding.for_each_vertex(|v| all[v as usize])
         });
-        Some(OnCurves::new(sliding, reach, floor))
+        Some(OnCurves::new(sliding, reach, least_altitude))
     }
 
     /// Evaluates the field of targets with the vertices at normalized `positions`. Does nothing without a field.

@@ -146,7 +146,7 @@ impl<'s> Movable<'s> {
             }
             Guard::ByMetric => f64::INFINITY,
         };
-        let floor = if options.keep_altitude { altitude::least_of(problem) } else { 0.0 };
+        let least_altitude = if options.keep_altitude { altitude::least_of(problem) } else { 0.0 };
         let mut heavy = TriangleSet::new();
         let topology = &self.smoother.topology;
         let corners = |t: u32| topology.corners()[t as usize];
@@ -170,7 +170,7 @@ impl<'s> Movable<'s> {
                 badness: Badness(WorstBy::Imr),
                 step,
                 shape,
-                floor,
+                least_altitude,
                 bounds: problem.radii(),
                 heavy: Some(&heavy).filter(|heavy| !heavy.is_empty()),
             };

@@ -59,11 +59,11 @@ pub(crate) fn restore(
     let vectors = |points: &[[f64; 2]]| points.iter().map(|&p| p.into()).collect::<Vec<DVec2>>();
     let (old, mut new) = (vectors(before), vectors(points));
     let triangles = topology.corners();
-    let floor = least(triangles, |v| old[v as usize]);
-    // An altitude of NaN counts as below the floor.
+    let least_altitude = least(triangles, |v| old[v as usize]);
+    // An altitude of NaN counts as below the least altitude.
     let is_low = |t: &[u32; 3], at: &[DVec2]| {
         let altitude = altitude(t.map(|v| at[v as usize]));
-        altitude.partial_cmp(&floor).is_none_or(|order| order == Ordering::Less)
+        altitude.partial_cmp(&least_altitude).is_none_or(|order| order == Ordering::Less)
     };
     let mut returned = bring_back(triangles, &old, &mut new, is_low);
     if !returned.is_empty() && guard.is_finite() {

@@ -30,8 +30,9 @@ pub(crate) fn bounded(
         let all = radii(mesh, topology, most, options.stored);
         free.iter().map(|&v| all[v as usize] * scale).collect()
     });
-    let floor = if options.keep_altitude { floor(&problem, mesh, options) } else { 0.0 };
-    problem.set_bounds(Bounds { radii, floor });
+    let least_altitude =
+        if options.keep_altitude { limit_of_altitudes(&problem, mesh, options) } else { 0.0 };
+    problem.set_bounds(Bounds { radii, least_altitude });
     problem
 }
 
@@ -58,7 +59,7 @@ pub(crate) fn radii(
 
 /// Returns the limit of altitudes in sweeps, normalized: the least altitude, and a reserve for positions rounded to the
 /// precision of the options, or the room for improvement.
-fn floor(problem: &Problem, mesh: &Mesh, options: &Options) -> f64 {
+fn limit_of_altitudes(problem: &Problem, mesh: &Mesh, options: &Options) -> f64 {
     let (least, (_, scale)) = (least_of(problem), problem.normalization());
     let size = mesh.points.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     // An altitude changes by the rounding of a vertex and of the edge on the other side.

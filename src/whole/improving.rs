@@ -49,7 +49,7 @@ impl Improvement {
             badness,
             step: Plan::new(options).base_step(1.0),
             shape: worst_shape.sqrt() * (1.0 + ROUNDING),
-            floor: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
+            least_altitude: if options.keep_altitude { altitude::least_of(problem) } else { 0.0 },
             bounds: problem.radii(),
             heavy: None,
         };

@@ -187,7 +187,7 @@ impl OfPatch for Penalties {
     }
 }
 
-/// An objective whose trials are accepted only if no triangle is inverted, flat or below the floor of the patch.
+/// An objective whose trials are accepted only if no triangle is inverted, flat or below the least altitude of the patch.
 struct Feasible<'a>(PenaltyObjective<'a>);
 
 impl Objective<f64> for Feasible<'_> {

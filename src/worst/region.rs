@@ -32,7 +32,7 @@ pub(crate) struct MoveConstraints<'a> {
     /// Largest inverse mean ratio of a triangle, after its target map is applied.
     pub(crate) shape: f64,
     /// Lower limit of the altitudes of triangles, in normalized units; 0 for no limit.
-    pub(crate) floor: f64,
+    pub(crate) least_altitude: f64,
     /// Upper limits of the distances between free vertices and their start positions, normalized. `None` for no limit.
     pub(crate) bounds: Option<&'a [f64]>,
     /// The triangles of the problem on which penalties are larger; `None` for none.
@@ -197,7 +197,7 @@ impl<'a> Region<'a> {
             (first, FanCorner { ends, map, role: Role::Own }.seen(at, ideal))
         };
         let opposites = self.quadrilaterals[v].iter().map(opposite).collect();
-        FanPatch { corners, opposites, ideal, coordinates, min_altitude: rules.floor }
+        FanPatch { corners, opposites, ideal, coordinates, min_altitude: rules.least_altitude }
     }
 
     /// Returns the badness of the worst triangle of the region.

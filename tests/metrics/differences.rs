@@ -25,7 +25,7 @@ fn a_sweep_by_differences_is_a_little_off() {
                 newton_steps: 1,
                 derivatives: [derivatives; Metric::ALL.len()],
                 sharpness: PNormExponent::FIXED,
-                stop: StopRule { target: None, tolerance: 0.0, max_sweeps: 1 },
+                stop: StopRule { goal: None, tolerance: 0.0, max_sweeps: 1 },
                 track_all: false,
                 shape_guard: f64::INFINITY,
                 worst_guard: f64::INFINITY,

@@ -179,7 +179,7 @@ fn runs_are_identical_whatever_the_batch() {
     let problem = problem(perturbed());
     for name_of_scheme in ["imr", "edge", "edge+imr+imr", "area+imr"] {
         for backend in backends() {
-            let stop = StopRule { target: None, tolerance: 1e-4, max_sweeps: 90 };
+            let stop = StopRule { goal: None, tolerance: 1e-4, max_sweeps: 90 };
             let plan = Plan { stop, ..plan(scheme(name_of_scheme), 0) };
             let mut runs = Vec::new();
             // The batch size 50 is tried twice, because results must be reproducible.
@@ -219,8 +219,8 @@ fn a_target_ends_a_run_at_the_first_sweep_below_it() {
             whole.advance(20).unwrap().iter().map(|o| o.of(Metric::Imr).unwrap()).collect();
         assert_eq!(whole.stop(), Some(Stop::MaxSweeps));
         for sweep in [1, 2, 7, 13] {
-            let target = Some(0.5 * (f[sweep] + f[sweep - 1]));
-            let stop = StopRule { target, tolerance: 0.0, max_sweeps: 20 };
+            let goal = Some(0.5 * (f[sweep] + f[sweep - 1]));
+            let stop = StopRule { goal, tolerance: 0.0, max_sweeps: 20 };
             let mut engine = engine(backend, &problem, Plan { stop, ..plan(scheme("imr"), 0) });
             assert_eq!(engine.advance(20).unwrap().len() - 1, sweep, "on the {}", name(backend));
             assert_eq!(engine.stop(), Some(Stop::Reached));
@@ -233,7 +233,7 @@ fn a_target_ends_a_run_at_the_first_sweep_below_it() {
 fn the_device_ends_a_run_where_the_rule_in_rust_does() {
     let problem = problem(perturbed());
     let Backend::Gpu(gpu) = &backends()[1] else { panic!("the second backend is the GPU") };
-    let rule = |target, tolerance, max_sweeps| StopRule { target, tolerance, max_sweeps };
+    let rule = |goal, tolerance, max_sweeps| StopRule { goal, tolerance, max_sweeps };
     let cases = [
         ("imr", rule(Some(1.2), 0.0, 90), Stop::Reached),
         ("imr", rule(Some(1.0), 0.0, 90), Stop::Stalled),

@@ -145,7 +145,7 @@ fn plan(scheme: Scheme, sweeps: u32) -> Plan {
         newton_steps: 1,
         derivatives: [Derivatives::Analytic; Metric::ALL.len()],
         sharpness: PNormExponent::FIXED,
-        stop: StopRule { target: None, tolerance: 0.0, max_sweeps: sweeps },
+        stop: StopRule { goal: None, tolerance: 0.0, max_sweeps: sweeps },
         track_all: false,
         worst_guard: f64::INFINITY,
         max_lengthening: 1.0,

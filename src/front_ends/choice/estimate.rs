@@ -109,21 +109,21 @@ fn gpu_updates(kind: &str) -> Option<f64> {
 struct ExpectedSweeps {
     /// The number of sweeps, steps included.
     count: f64,
-    /// Whether the run takes Newton steps of all vertices. If not, the run has sweeps alone.
-    has_steps: bool,
+    /// Whether Newton steps of all vertices or corrections follow the sweeps. If not, the run has sweeps alone.
+    is_multilevel: bool,
 }
 
 impl ExpectedSweeps {
     fn of(options: &Options) -> Self {
         // With EDGE as its base, which is not smooth, a run with corrections takes as many sweeps as one without.
-        let has_steps = options.is_multilevel() && options.scheme.base().is_smooth();
-        let usual = if has_steps { MODEL.stepped_sweeps } else { MODEL.plain_sweeps };
-        Self { count: usual.min(options.max_sweeps.into()), has_steps }
+        let is_multilevel = options.is_multilevel() && options.scheme.base().is_smooth();
+        let usual = if is_multilevel { MODEL.stepped_sweeps } else { MODEL.plain_sweeps };
+        Self { count: usual.min(options.max_sweeps.into()), is_multilevel }
     }
 
     /// Returns the time of the sweeps on the CPU, in seconds for each vertex.
     fn on_cpu(&self, cores: usize) -> f64 {
-        match self.has_steps {
+        match self.is_multilevel {
             true => MODEL.cpu.on(cores) * self.count / MODEL.stepped_sweeps,
             false => self.count / (MODEL.cpu_updates_per_core * cores as f64),
         }
@@ -131,7 +131,7 @@ impl ExpectedSweeps {
 
     /// Returns the time of the sweeps and of the work of the host in a run on a device, in seconds for each vertex.
     fn on_device(&self, cores: usize, updates: f64) -> f64 {
-        let host = if self.has_steps { MODEL.host.on(cores) } else { 0.0 };
+        let host = if self.is_multilevel { MODEL.host.on(cores) } else { 0.0 };
         host + self.count / updates
     }
 }
@@ -154,7 +154,7 @@ mod tests {
     use crate::metric::Metric;
     use crate::options::Method;
 
-    const STEPPED: ExpectedSweeps = ExpectedSweeps { count: 20.0, has_steps: true };
+    const STEPPED: ExpectedSweeps = ExpectedSweeps { count: 20.0, is_multilevel: true };
 
     #[test]
     fn a_gpu_pays_from_where_its_start_is_made_up_for() {
@@ -168,8 +168,8 @@ mod tests {
         assert_eq!(pays_from("integrated GPU", 10, &STEPPED), Some(1_900_000));
         assert_eq!(pays_from("integrated GPU", 32, &STEPPED), None);
         assert_eq!(pays_from("discrete GPU", 63, &STEPPED), None);
-        let few = ExpectedSweeps { count: 8.0, has_steps: true };
-        let plain = ExpectedSweeps { count: 130.0, has_steps: false };
+        let few = ExpectedSweeps { count: 8.0, is_multilevel: true };
+        let plain = ExpectedSweeps { count: 130.0, is_multilevel: false };
         for (cores, sweeps) in [(1, &STEPPED), (2, &STEPPED), (4, &plain), (2, &few)] {
             let least = pays_from("discrete GPU", cores, sweeps).unwrap() as f64;
             let cpu = least * sweeps.on_cpu(cores);
@@ -183,14 +183,14 @@ mod tests {
         let expected = |scheme: Metric, method, max_sweeps| {
             let scheme = scheme.into();
             let options = Options { scheme, method, max_sweeps, ..Options::default() };
-            let ExpectedSweeps { count, has_steps } = ExpectedSweeps::of(&options);
-            (count, has_steps)
+            let ExpectedSweeps { count, is_multilevel } = ExpectedSweeps::of(&options);
+            (count, is_multilevel)
         };
         assert_eq!(expected(Metric::Imr, Method::Auto, 1000), (20.0, true));
         assert_eq!(expected(Metric::Imr, Method::RELAXED, 1000), (130.0, false));
         assert_eq!(expected(Metric::Edge, Method::Auto, 1000), (130.0, false));
         assert_eq!(expected(Metric::Edge, Method::Auto, 7), (7.0, false));
-        let sweeps = |count| ExpectedSweeps { count, has_steps: false };
+        let sweeps = |count| ExpectedSweeps { count, is_multilevel: false };
         assert!(
             pays_from("discrete GPU", 2, &sweeps(130.0))
                 < pays_from("discrete GPU", 2, &sweeps(20.0))

@@ -142,9 +142,9 @@ shared_structs! {
         base: u32,
         window: u32,
         max_sweeps: u32,
-        has_target: u32,
+        has_goal: u32,
         /// A pair of floats: the sum of q² - ideal² over all triangles at which the run ends.
-        target_sum: vec2f,
+        goal_sum: vec2f,
         /// The sum of ideal² over all triangles.
         ideal_sum: f32,
         tolerance: f32,
@@ -160,7 +160,7 @@ shared_structs! {
         /// vertex's disc; NONE without discs.
         discs: u32,
         /// Lower limit of altitudes; 0 for no limit.
-        floor: f32,
+        least_altitude: f32,
         padding: u32,
         more_padding: vec2u,
     }
@@ -649,8 +649,8 @@ impl Params {
             base: 0,
             window: 0,
             max_sweeps: 0,
-            has_target: 0,
-            target_sum: [0.0; 2],
+            has_goal: 0,
+            goal_sum: [0.0; 2],
             ideal_sum: 0.0,
             tolerance: 0.0,
             mean_area: [0.0; 2],
@@ -658,7 +658,7 @@ impl Params {
             levels_in_plane: 0,
             size_weight: 1.0,
             discs: NONE,
-            floor: 0.0,
+            least_altitude: 0.0,
             padding: 0,
             more_padding: [0; 2],
         }

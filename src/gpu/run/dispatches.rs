@@ -348,7 +348,7 @@ pub(super) fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
     let elements = problem.judged_count() as f64;
     let base = plan.scheme.base();
     let ideal_sum = base.ideal_squared() * elements;
-    let target = plan.stop.target.map(|f| f * elements - ideal_sum);
+    let goal = plan.stop.goal.map(|f| f * elements - ideal_sum);
     Params {
         zero: 0,
         triangles: problem.judged_count() as u32,
@@ -357,8 +357,8 @@ pub(super) fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         base: base as u32,
         window: StopRule::window(&plan.scheme),
         max_sweeps: plan.stop.max_sweeps,
-        has_target: target.is_some().into(),
-        target_sum: pair(target.unwrap_or(0.0)),
+        has_goal: goal.is_some().into(),
+        goal_sum: pair(goal.unwrap_or(0.0)),
         ideal_sum: ideal_sum as f32,
         tolerance: plan.stop.tolerance as f32,
         mean_area: pair(problem.mean_area()),
@@ -366,7 +366,7 @@ pub(super) fn params(problem: &Problem, plan: &Plan, partials: u32) -> Params {
         levels_in_plane: problem.are_levels_in_plane().into(),
         size_weight: problem.ideal().size_weight as f32,
         discs: bounds::first_disc(problem),
-        floor: problem.floor() as f32,
+        least_altitude: problem.least_altitude() as f32,
         padding: 0,
         more_padding: [0; 2],
     }

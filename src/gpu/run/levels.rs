@@ -199,7 +199,7 @@ impl Levels {
 
 /// Returns whether corrections leave out the triangles around which they break a guard or the least altitude.
 fn leaves_out(plan: &Plan, problem: &Problem) -> bool {
-    plan.base_step(1.0).shape_guard < NO_GUARD || problem.floor() > 0.0
+    plan.base_step(1.0).shape_guard < NO_GUARD || problem.least_altitude() > 0.0
 }
 
 /// Returns the kernels of corrections in a run by a plan.

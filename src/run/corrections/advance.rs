@@ -193,7 +193,7 @@ impl Corrections {
         // If the correction of all vertices leads uphill, the levels no longer fit the stiffness of the mesh.
         let misleads = proposal.slope > 0.0 && !is_smooth;
         let proposed = if misleads { self.drop_levels(engine) } else { proposed + 1 };
-        let can_break = step.shape_guard.is_finite() || engine.problem().floor() > 0.0;
+        let can_break = step.shape_guard.is_finite() || engine.problem().least_altitude() > 0.0;
         if proposal.slope < 0.0 && proposal.there.is_none() && can_break {
             proposal = engine.exclude_broken(length, !self.accelerated).await?;
         }

@@ -54,7 +54,7 @@ impl Corrections {
             return Ok(());
         }
         let rule = StopRule {
-            target: whole.target.map(|_| f64::NEG_INFINITY),
+            goal: whole.goal.map(|_| f64::NEG_INFINITY),
             tolerance: self.tolerance_of_norm(whole.tolerance),
             max_sweeps: u32::MAX,
         };
@@ -63,14 +63,14 @@ impl Corrections {
         if is_settled {
             // Another sweep may gain as much as the last.
             remaining = Some((SWEPT * rule.tolerance).max(LEAST_SETTLED));
-            end = end.or(match (rule.target, rule.tolerance > 0.0) {
+            end = end.or(match (rule.goal, rule.tolerance > 0.0) {
                 (Some(_), _) => Some(Stop::Stalled),
                 (None, true) => Some(Stop::Converged),
                 (None, false) => None,
             });
         }
         let bound = self.bound(history);
-        let is_at_bound = bound.is_some() && rule.target.is_none();
+        let is_at_bound = bound.is_some() && rule.goal.is_none();
         let mut end = end.or(is_at_bound.then_some(Stop::Converged));
         // An extrapolation cannot show less than the tolerance: modes that fewer sweeps have not touched may remain.
         let is_extrapolated = end == Some(Stop::Converged) && !is_settled;
@@ -138,7 +138,7 @@ impl Corrections {
         let left = engine.remaining(&step, &Tail::measuring(f, tolerance), goes_on).await?;
         let left = left.map(|left| (left / f).max(NOISE));
         if left.is_some_and(|left| left <= tolerance) {
-            let has_tolerance = rule.target.is_none() && rule.tolerance > 0.0;
+            let has_tolerance = rule.goal.is_none() && rule.tolerance > 0.0;
             return Ok((left, if has_tolerance { Some(Stop::Converged) } else { end }));
         }
         if self.is_held && left.is_none_or(|left| left > FORBIDDEN * tolerance) {

@@ -62,7 +62,7 @@ impl Corrections {
         let at_most = Some(at_most).filter(|left| *left <= rule.tolerance);
         let remaining = left.into_iter().chain(at_most).reduce(f64::min);
         let is_within = |limit: f64| remaining.is_some_and(|left| left <= limit);
-        let end = match rule.target {
+        let end = match rule.goal {
             _ if rule.tolerance > 0.0 && is_within(Tail::tolerance(rule.tolerance)) => {
                 Some(Stop::Converged)
             }
