@@ -24,11 +24,13 @@ use crate::whole::{Improvement, RunEnd, altitude};
 
 use super::over_all::OverAll;
 use super::prepared::Smoother;
+use super::rounds::Present;
 
 /// Number of coordinates that one task rounds, and of triangles that one task measures.
 const CHUNK: usize = 1 << 14;
 
 /// What judges a run: its objective, and the objective before the first sweep.
+#[derive(Clone, Copy)]
 pub(super) struct JudgedBy<'r> {
     pub(super) over_all: &'r OverAll<'r>,
     /// Objective of the problem by the base metric before the first sweep.
@@ -115,7 +117,7 @@ impl Smoother<'_> {
     pub(super) async fn judged(
         &self,
         options: &Options,
-        JudgedBy { over_all, initial }: JudgedBy<'_>,
+        by: JudgedBy<'_>,
         goal: Option<GoalOutcome>,
         mut ended: RunEnd,
         observe: &mut dyn Observer,
@@ -123,7 +125,8 @@ impl Smoother<'_> {
         let base = options.scheme.base();
         let best_sweep = best_sweep(&ended, options);
         let swept = f_after(&ended, base, best_sweep);
-        let mut stored = self.stored(options, over_all, swept, &mut ended, observe).await?;
+        let mut stored = self.stored(options, by, swept, &mut ended, observe).await?;
+        let JudgedBy { over_all, initial } = by;
         let gains = self.gains(base, initial, &stored).await?;
         if !gains {
             stored.points.clone_from(&self.mesh.points);
@@ -177,7 +180,7 @@ impl Smoother<'_> {
     async fn stored(
         &self,
         options: &Options,
-        over_all: &OverAll<'_>,
+        JudgedBy { over_all, initial }: JudgedBy<'_>,
         swept: f64,
         ended: &mut RunEnd,
         observe: &mut dyn Observer,
@@ -214,7 +217,7 @@ impl Smoother<'_> {
             rounded,
             written: rounded,
         };
-        if self.finished(options, &mut stored, ended, observe).await? {
+        if self.finished(options, initial, &mut stored, ended, observe).await? {
             let f = [stored.rounded, stored.written].map(|f| over_all.f(base, f));
             stored.floored = stored.floored.map(|floored| Floored { f, ..floored });
             stored.large_angles = stored.large_angles.map(|large| LargeAngles { f, ..large });
@@ -279,11 +282,12 @@ impl Smoother<'_> {
         Ok((improving, without.0, without.1))
     }
 
-    /// Raises the result to the floor if a measure has become worse, and lessens large angles after a run by ACUTE. Returns
-    /// whether either has been done.
+    /// Raises the result to the floor if a measure has become worse, and lessens large angles after a run by ACUTE, but not
+    /// beyond `initial`, f before the run. Returns whether either has been done.
     async fn finished(
         &self,
         options: &Options,
+        initial: f64,
         stored: &mut Stored,
         ended: &mut RunEnd,
         observe: &mut dyn Observer,
@@ -308,9 +312,8 @@ impl Smoother<'_> {
             }
             None if was_canceled => return Ok(false),
             None => {
-                let curves = curves.as_mut();
-                let lessened =
-                    self.lessen_large_angles(options, problem, curves, at, points, goes_on);
+                let present = Present { problem, curves: curves.as_mut(), positions: at, points };
+                let lessened = self.lessen_large_angles(options, initial, present, goes_on);
                 stored.large_angles = lessened.await?;
             }
         }

@@ -1,14 +1,11 @@
 //! The end of a run by ACUTE: a few rounds of Newton steps around the triangles that are still nearly right or obtuse.
 
-use glam::DVec2;
-
+use crate::cpu::objective;
 use crate::error::MeshError;
-use crate::layout::Problem;
 use crate::measure::{InnerEdge, inner_edges};
 use crate::metric::Metric;
 use crate::options::{Guard, Options};
 use crate::outcome::LargeAngles;
-use crate::slide::OnCurves;
 use crate::whole::altitude;
 use crate::worst::Penalties;
 
@@ -20,10 +17,42 @@ const FIRST_WEIGHT: f64 = 1000.0;
 /// Cotangent of 36 degrees, the largest angle below which angles have a penalty.
 const LARGEST_SMALL: f64 = 1.376_381_920_471_173_5;
 
-/// [`InnerEdge::flow_link`] below which, and [`InnerEdge::orthogonality`] above which, penalties on both triangles of an
-/// edge are larger. Solvers refuse edges beyond 0.1 and 0.5.
-const SHORT_LINK: f64 = 0.12;
-const FAR_FROM_ORTHOGONAL: f64 = 0.4;
+/// [`InnerEdge::flow_link`] below which, and [`InnerEdge::orthogonality`] above which, solvers refuse an edge.
+const REFUSED: EdgeLimits = EdgeLimits { flow_link: 0.1, orthogonality: 0.5 };
+/// The limits beyond which penalties on both triangles of an edge are larger.
+const NEAR_REFUSED: EdgeLimits = EdgeLimits { flow_link: 0.12, orthogonality: 0.4 };
+
+/// Limits of the edges between two elements.
+struct EdgeLimits {
+    flow_link: f64,
+    orthogonality: f64,
+}
+
+impl EdgeLimits {
+    fn are_broken_by(&self, edge: &InnerEdge) -> bool {
+        edge.flow_link < self.flow_link || edge.orthogonality > self.orthogonality
+    }
+}
+
+/// The edges that solvers refuse, and the triangles with a large angle.
+struct Failing {
+    edges: usize,
+    triangles: usize,
+}
+
+impl Failing {
+    async fn of(movable: &Movable<'_>, aim: &ToAcute, points: &[[f64; 2]]) -> Self {
+        let edges = inner_edges(movable.surface, points, &movable.smoother.topology);
+        let edges = edges.iter().filter(|edge| REFUSED.are_broken_by(edge)).count();
+        let triangles = movable.chosen(points, |corner| aim.is_beyond(corner)).await.len();
+        Self { edges, triangles }
+    }
+
+    /// Returns whether solvers refuse fewer edges than `before`, or as many with fewer large angles.
+    fn is_better_than(&self, before: &Self) -> bool {
+        (self.edges, self.triangles) < (before.edges, before.triangles)
+    }
+}
 
 /// The rounds at the end of a run by ACUTE.
 struct ToAcute {
@@ -49,11 +78,9 @@ impl Aim for ToAcute {
     /// the vertices at these angles become less acute instead.
     fn heavy(&self, movable: &Movable<'_>, points: &[[f64; 2]]) -> Vec<[u32; 3]> {
         let topology = &movable.smoother.topology;
-        let is_bad = |edge: &InnerEdge| {
-            edge.flow_link < SHORT_LINK || edge.orthogonality > FAR_FROM_ORTHOGONAL
-        };
         let edges = inner_edges(movable.surface, points, topology);
-        let bad = edges.iter().filter(|edge| is_bad(edge)).flat_map(|edge| edge.elements);
+        let bad = edges.iter().filter(|edge| NEAR_REFUSED.are_broken_by(edge));
+        let bad = bad.flat_map(|edge| edge.elements);
         // Quadrilaterals have no penalties on large angles.
         bad.filter_map(|element| topology.triangles().get(element as usize).copied()).collect()
     }
@@ -63,14 +90,13 @@ impl Smoother<'_> {
     /// Lessens the large angles that a run by ACUTE has left at `points`, its result as stored, which are those of
     /// `positions`. Returns the record of the rounds. `None` if the run has another base metric, if its targets
     /// belong to places or are no concern of the metric, if no sweep is to be made, or if no triangle that can move has a large angle.
-    /// `None` too, and the points are unchanged, if vertices that slide would exceed the guard of the worst triangle.
+    /// `None` too, and the points are unchanged, if the rounds lessen neither the edges that solvers refuse nor the large
+    /// angles, if f would exceed `most`, or if vertices that slide would exceed the guard of the worst triangle.
     pub(super) async fn lessen_large_angles(
         &self,
         options: &Options,
-        problem: &Problem,
-        mut curves: Option<&mut OnCurves>,
-        positions: &[DVec2],
-        points: &mut Vec<[f64; 2]>,
+        most: f64,
+        Present { problem, mut curves, positions, points }: Present<'_>,
         goes_on: impl FnMut() -> bool,
     ) -> Result<Option<LargeAngles>, MeshError> {
         let has_field = self.field.is_some();
@@ -86,14 +112,11 @@ impl Smoother<'_> {
         let movable = Movable::new(self);
         let [worst] = movable.worst_shapes([points]).await;
         let aim = ToAcute { small: worst.cotangent.max(LARGEST_SMALL) };
-        let count = async |points: &[[f64; 2]]| {
-            movable.chosen(points, |corner| aim.is_beyond(corner)).await.len()
-        };
-        let before = count(points).await;
-        if before == 0 {
+        let before = Failing::of(&movable, &aim, points).await;
+        if before.triangles == 0 {
             return Ok(None);
         }
-        let (swept, swept_curves) = (points.clone(), curves.as_deref().cloned());
+        let (swept, swept_curves) = (points.to_vec(), curves.as_deref().cloned());
         let present = Present { problem, curves: curves.as_deref_mut(), positions, points };
         movable.descend(&aim, options, present, goes_on).await;
         while self.certified(points, Some(options.stored)).await? > 0
@@ -101,18 +124,24 @@ impl Smoother<'_> {
                 && altitude::restore(&self.topology, &self.mesh.points, points, f64::INFINITY) > 0
         {
         }
+        let now = Failing::of(&movable, &aim, points).await;
+        let at = self.problem.normalized(points, Vec::new()).await;
+        let f = objective(options.scheme.base(), problem, &at).await;
+        let mut is_kept = now.is_better_than(&before) && f <= most;
         // Rounds move vertices along curves without the guard.
         if options.guard == Guard::Worst {
             let lists = [&self.mesh.points[..], &swept, points];
             let [given, swept_to, now] = movable.worst_shapes(lists).await;
             // Sweeps in single precision may exceed the guard by rounding.
-            if !now.has_imr_of(given) && !now.has_imr_of(swept_to) {
-                *points = swept;
-                curves.zip(swept_curves).into_iter().for_each(|(now, swept)| *now = swept);
-                return Ok(None);
-            }
+            is_kept &= now.has_imr_of(given) || now.has_imr_of(swept_to);
+        }
+        if !is_kept {
+            points.copy_from_slice(&swept);
+            curves.zip(swept_curves).into_iter().for_each(|(now, swept)| *now = swept);
+            return Ok(None);
         }
         let moved = points.iter().zip(&swept).filter(|(to, from)| to != from).count();
-        Ok(Some(LargeAngles { moved, triangles: [before, count(points).await], f: [0.0; 2] }))
+        let triangles = [before, now].map(|failing| failing.triangles);
+        Ok(Some(LargeAngles { moved, triangles, f: [0.0; 2] }))
     }
 }
