@@ -117,17 +117,32 @@ fn at_corners(sectors: &Sectors, rows: &Rows, traced: &[bool], added: &mut [bool
 /// Marks the nodes of other walls, such as an inlet, at which kept rows end.
 pub(super) fn sides(sectors: &Sectors, rows: &Rows, kept: &[bool]) -> Vec<bool> {
     let mut sides = vec![false; kept.len()];
-    let in_rows = rows.lists.iter().skip(1).flatten().filter(|n| kept[**n as usize]);
-    for &node in in_rows {
-        let parent = rows.parent[node as usize];
-        let height = rows.height[node as usize];
-        for &side in sectors.neighbors(node) {
-            if kept[side as usize] || !sectors.is_wall(side) {
-                continue;
+    // The row that ends at each node of a side.
+    let mut ends = vec![NONE; kept.len()];
+    for (row, nodes) in (0..).zip(&rows.lists).skip(1) {
+        for &node in nodes.iter().filter(|n| kept[**n as usize]) {
+            let parent = rows.parent[node as usize];
+            let height = rows.height[node as usize];
+            for &side in sectors.neighbors(node) {
+                if kept[side as usize] || !sectors.is_wall(side) {
+                    continue;
+                }
+                // Along the side, a row follows the row below, and the first row the end of the wall below. On a curved
+                // wall, heights of nodes of the next column do not tell rows apart, as the wall bends by more than a row.
+                let follows = sectors.wall[side as usize].iter().any(|&below| {
+                    below != NONE
+                        && match row {
+                            1 => sectors.wall[parent as usize].contains(&below),
+                            _ => ends[below as usize] == row - 1,
+                        }
+                });
+                // A side of the row before has height 0, a side of the next row at least 4/3 of the height.
+                let above = Measure::new(sectors, side, parent, rows.beside(parent)).height;
+                if follows {
+                    ends[side as usize] = row;
+                }
+                sides[side as usize] |= follows || (0.5..=4.0 / 3.0).contains(&(above / height));
             }
-            // A side of the row before has height 0, a side of the next row at least 4/3 of the height.
-            let above = Measure::new(sectors, side, parent, rows.beside(parent)).height;
-            sides[side as usize] |= (0.5..=4.0 / 3.0).contains(&(above / height));
         }
     }
     sides

@@ -2,8 +2,10 @@
 
 use super::bodies::{Wall, bodies, body, c_grid, circle, mean_edge, naca, plate, sheet, square};
 use super::grown::{CUTS, Cut, Grown};
-use super::layers_of;
 use super::shapes::{Rows, channel, crossing, flat, merged, noisy, stairs};
+use super::{layers, layers_of};
+use gpu_smooth::Mesh;
+use gpu_smooth::layers::KeepLayers;
 
 /// Shares that a study of boundary layers measured for a family of meshes with a prototype of the rule.
 struct Figures {
@@ -180,4 +182,33 @@ fn wakes_of_c_grids_and_the_rows_on_both_sides_are_found() {
         let recall = found.len() as f64 / (found.len() + missed.len()) as f64;
         assert!(recall >= 0.995, "{cut:?}: {recall}");
     }
+}
+
+/// Rows at the inner side of a sector of a ring end at its two straight sides. One edge of the curved wall bends by more than the
+/// first row is high, so the ends of rows were taken for those of others, and slid.
+#[test]
+fn rows_on_a_curved_wall_end_at_both_sides() {
+    let (columns, rows) = (24, 12);
+    let mut heights = vec![0.0];
+    (0..rows).for_each(|row| heights.push(heights[row] + 1e-3 * 1.35_f64.powi(row as i32)));
+    // Above the rows are triangles of the size of wall edges.
+    heights.extend((1..6).map(|row| 0.15 + 0.3 * f64::from(row)));
+    let point = |k: usize| {
+        let (angle, radius) = (0.1 * (k % (columns + 1)) as f64, 3.0 + heights[k / (columns + 1)]);
+        [radius * angle.cos(), -radius * angle.sin()]
+    };
+    let points = (0..(columns + 1) * heights.len()).map(point).collect();
+    let of_cell = |k: usize| {
+        let a = (k / columns * (columns + 1) + k % columns) as u32;
+        let [b, c] = [a + 1, a + columns as u32 + 1];
+        [[a, c, b], [b, c, c + 1]]
+    };
+    let triangles = (0..columns * (heights.len() - 1)).flat_map(of_cell).collect();
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
+    let found = layers(&mesh, KeepLayers::Auto);
+    assert_eq!(found.rows, rows);
+    let ends: Vec<u32> = (1..=rows as u32)
+        .flat_map(|row| [0, columns as u32].map(|column| row * (columns as u32 + 1) + column))
+        .collect();
+    assert_eq!(found.sides, ends);
 }
