@@ -165,6 +165,20 @@ fn a_run_with_work_between_its_sweeps_goes_on_to_the_same_bits() {
     }
 }
 
+/// The hole of the plate is a curve, so Newton steps need the gradient at sliding vertices.
+#[test]
+fn a_run_by_newton_steps_of_sliding_vertices_goes_on_to_the_same_bits() {
+    let mesh = support::perturb_random(&plate(404), 1.0, 3);
+    let mut smoother = Smoother::new(&mesh).unwrap();
+    smoother.set_slide(Some(&Slide::default())).unwrap();
+    for backend in backends() {
+        let options = Options::default().stopping(Stopping::Tolerance(1e-9)).max_sweeps(30);
+        let steps = smoother.run(&options).on(backend).block().unwrap().newton_steps;
+        assert!(steps > 1, "{steps} steps on the {}", name(backend));
+        assert_goes_on(&smoother, &options, backend, 1);
+    }
+}
+
 /// Checkpoints contain the local maps, which a change of the targets does not replace.
 #[test]
 fn a_run_with_a_target_field_on_a_strongly_stretched_mesh_goes_on_to_the_same_bits() {

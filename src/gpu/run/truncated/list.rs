@@ -1,5 +1,6 @@
 //! The list of the dispatches of a Newton step.
 
+use bytemuck::Zeroable;
 use wgpu::BufferUsages as Usage;
 
 use super::buffers::{Bound, Buffers, PAIR};
@@ -356,8 +357,12 @@ impl<'g> List<'g> {
             let params =
                 Params { levels_in_plane: 1, ..params(problem, &dispatches.plan, partials) };
             let storage = |label, size: u64| zeroed(gpu, label, size, Usage::STORAGE);
-            let lines = nest.slides.as_ref().map_or(0, |slides| slides.vertices.len());
-            let bytes = (lines.max(1) * size_of::<StepLine>()) as u64;
+            // The gradient at the sliding vertices comes before their tangents are known.
+            let unknown = |&vertex: &u32| StepLine { vertex, next: NONE, ..StepLine::zeroed() };
+            let slides = nest.slides.iter().flat_map(|slides| &slides.vertices);
+            let mut lines: Vec<StepLine> = slides.map(unknown).collect();
+            // An empty buffer cannot be bound.
+            lines.resize(lines.len().max(1), StepLine::zeroed());
             let written = Usage::STORAGE | Usage::COPY_DST;
             let copied = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
             let buffers = Buffers {
@@ -369,7 +374,7 @@ impl<'g> List<'g> {
                 rows: storage("step rows", u64::from(nest.rows) * ROW),
                 vectors: storage("step sums", u64::from(SUMS + along_sums(partials)) * PAIR),
                 state: zeroed(gpu, "step state", size_of::<StepState>() as u64, copied),
-                lines: zeroed(gpu, "unknowns of sliding vertices", bytes, written),
+                lines: filled(gpu, "unknowns of sliding vertices", &lines, written),
                 nothing: storage("no values", PAIR),
             };
             (buffers.bind_groups(gpu, form, mesh, &step), buffers)
