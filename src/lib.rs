@@ -61,8 +61,9 @@
 //! numbered by 32 bits: fewer than 2³² - 1 vertices and (2³² - 1) / 3 triangles. A mesh in another plane of space than
 //! that of x and y is smoothed in the coordinates of its [`Plane`](front_ends::Plane).
 //!
-//! On a GPU, buffers that exceed the largest binding of a device are bound part by part, which changes no bit of the
-//! result. But every kernel needs all positions, in two bindings at most: a device with a largest binding of 128 MiB
+//! On a GPU, buffers that exceed the largest binding of a device are bound part by part, which changes no bit of sweeps and
+//! corrections. Newton steps of all vertices need their Hessian in one binding, some 100 to 150 bytes a vertex, and the
+//! acceleration of corrections 40 bytes; on a device with smaller bindings, runs do without. Every kernel needs all positions, in two bindings at most: a device with a largest binding of 128 MiB
 //! takes 16 million vertices. `Gpu::check_size` checks the size of a mesh without allocating.
 
 mod adapter;

@@ -24,8 +24,8 @@ pub struct Outcome {
     pub alternated: u32,
     /// Number of corrections from coarser levels taken; see [`Method::Multilevel`](crate::Method::Multilevel).
     pub corrections: u32,
-    /// Number of Newton steps of all vertices at once, each counted as a part of its sweep, with which a run on the CPU by a
-    /// smooth metric ends.
+    /// Number of Newton steps of all vertices at once, each counted as a part of its sweep, with which a run by a smooth
+    /// metric ends.
     pub newton_steps: u32,
     /// Number of iterations of conjugate gradients in all Newton steps.
     pub newton_iterations: u32,

@@ -81,12 +81,13 @@ async fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
         let mixed = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
         hash = mixed ^ (mixed >> 32);
     };
-    let counts = [mesh.points.len(), mesh.triangles.len(), mesh.fixed.len()];
+    let Mesh { points, triangles, quadrilaterals, fixed } = mesh;
+    let counts = [points.len(), triangles.len(), quadrilaterals.len(), fixed.len()];
     counts.into_iter().for_each(|count| add(count as u64));
-    each(mesh.points.as_flattened(), |x| add(x.to_bits())).await;
-    each(mesh.triangles.as_flattened(), |&i| add(i.into())).await;
-    each(mesh.quadrilaterals.as_flattened(), |&i| add(i.into())).await;
-    each(&mesh.fixed, |&i| add(i.into())).await;
+    each(points.as_flattened(), |x| add(x.to_bits())).await;
+    each(triangles.as_flattened(), |&i| add(i.into())).await;
+    each(quadrilaterals.as_flattened(), |&i| add(i.into())).await;
+    each(fixed, |&i| add(i.into())).await;
     each(targets.unwrap_or_default().as_flattened(), |x| add(x.to_bits().into())).await;
     more.iter().for_each(|&word| add(word));
     hash
@@ -338,13 +339,18 @@ mod tests {
         let mesh = Mesh {
             points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
+            quadrilaterals: vec![[0, 1, 2, 3]],
             fixed: vec![2],
-            ..Mesh::default()
         };
-        let changes: [fn(&mut Mesh); 5] = [
+        let changes: [fn(&mut Mesh); 7] = [
             |mesh| mesh.points[3][1] += f64::EPSILON,
             |mesh| mesh.points[0][0] = -0.0,
             |mesh| mesh.triangles[1] = [2, 3, 0],
+            |mesh| mesh.quadrilaterals[0] = [1, 2, 3, 0],
+            |mesh| {
+                mesh.quadrilaterals.clear();
+                mesh.fixed.splice(..0, [0, 1, 2, 3]);
+            },
             |mesh| mesh.fixed[0] = 1,
             |mesh| mesh.fixed.clear(),
         ];
@@ -358,6 +364,6 @@ mod tests {
         }
         hashes.sort_unstable();
         hashes.dedup();
-        assert_eq!(hashes.len(), 7);
+        assert_eq!(hashes.len(), 9);
     }
 }

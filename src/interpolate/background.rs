@@ -55,6 +55,11 @@ impl Background {
         if let Some(vertex) = places.iter().position(|place| !place.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
         }
+        // Beyond, squares of distances are infinite.
+        let sizes = places.as_flattened().iter().map(|x| x.abs());
+        if let Some(size) = sizes.into_iter().find(|&size| size > 1e100) {
+            return Err(MeshError::OutOfRange { size });
+        }
         let (topology, points) = (&self.topology, &self.points[..]);
         let locator = Locator { topology, points };
         let found = map_ranges(places.len(), 1 << 10, |range| {

@@ -108,7 +108,8 @@ impl<'b> Reader<'b> {
         mut read: impl FnMut(&mut Self) -> Option<T>,
     ) -> Option<Vec<T>> {
         let length = usize::try_from(self.number()?).ok()?;
-        if length > self.0.len() / least {
+        // A damaged log may name no metric, so that its rows take no bytes.
+        if length > self.0.len().checked_div(least)? {
             return None;
         }
         (0..length).map(|_| read(self)).collect()
@@ -212,5 +213,16 @@ mod tests {
         assert_eq!(of(Metric::Imr), [Some(1.5), Some(1.25)]);
         assert_eq!(of(Metric::Edge), [None, None]);
         assert!(Reader(&out.0[..out.0.len() - 8]).log().is_none());
+    }
+
+    /// Only a damaged file has no metrics.
+    #[test]
+    fn a_log_without_metrics_is_refused() {
+        for rows in [0, 1, u64::MAX] {
+            let mut out = Writer::default();
+            out.number(0);
+            out.number(rows);
+            assert!(Reader(&out.0).log().is_none());
+        }
     }
 }

@@ -23,7 +23,7 @@ impl Slide {
         if banks.is_empty() {
             return;
         }
-        let boundary = Boundary::of(topology, points);
+        let Some(boundary) = Boundary::of(topology, points) else { return };
         let across = |[a, b]: [u32; 2]| boundary.at(b) - boundary.at(a);
         let edge = |[a, b]: [u32; 2]| boundary.edge(a).min(boundary.edge(b));
         for pairs in banks {

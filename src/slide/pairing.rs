@@ -24,7 +24,7 @@ impl Slide {
         points: &[[f64; 2]],
         motion: Motion,
     ) -> usize {
-        let boundary = Boundary::of(topology, points);
+        let Some(boundary) = Boundary::of(topology, points) else { return 0 };
         let Some(rigid) = Rigid::of(motion) else { return 0 };
         let all: Vec<u32> = boundary.next.keys().copied().collect();
         let mut pairs = boundary.pairs(rigid, &all, &all);
@@ -40,14 +40,14 @@ impl Slide {
     /// rotation must map all vertices of the first side to vertices of the second side. Triangles at the first side
     /// must then lie outside the second side. `points` are the positions of all vertices. Each side may list its
     /// vertices in any order. Vertices inside the mesh are ignored. Returns the number of pairs found, 0 if no such
-    /// motion exists.
+    /// motion exists, or if `points` does not have one entry per vertex.
     pub fn pair_sides(
         &mut self,
         topology: &Topology<'_>,
         points: &[[f64; 2]],
         sides: [&[u32]; 2],
     ) -> usize {
-        let boundary = Boundary::of(topology, points);
+        let Some(boundary) = Boundary::of(topology, points) else { return 0 };
         let [from, to] = sides.map(|side| boundary.listed(side));
         let [mut ahead, mut back] = [boundary.runs(&from), boundary.runs(&to)];
         if from.len() != to.len() || ahead.is_empty() {
@@ -85,7 +85,9 @@ pub(super) struct Boundary<'p> {
 }
 
 impl<'p> Boundary<'p> {
-    pub(super) fn of(topology: &Topology<'_>, points: &'p [[f64; 2]]) -> Self {
+    /// Returns the boundary of a mesh with these points; `None` unless there is a point for each vertex.
+    pub(super) fn of(topology: &Topology<'_>, points: &'p [[f64; 2]]) -> Option<Self> {
+        topology.check_count(points).ok()?;
         let mut boundary = Self { points, next: BTreeMap::new() };
         let mut edges = topology.boundary_edges();
         edges.sort_unstable();
@@ -99,7 +101,7 @@ impl<'p> Boundary<'p> {
                 *edge = edge.min(length);
             }
         }
-        boundary
+        Some(boundary)
     }
 
     pub(super) fn at(&self, vertex: u32) -> DVec2 {

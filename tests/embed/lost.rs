@@ -287,6 +287,9 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
             Sweeps::until_converged(&device_mesh, &Options::default()).block().unwrap();
         let words = app.buffer(8 * mesh.points.len() as u64, usage);
         let mask = device_mesh.bind_mask(words.slice(..)).unwrap();
+        let mut readback = Readback::<f32>::new(&app.gpu, published.slice(..), 1).unwrap();
+        app.gpu.errors().block().unwrap();
+        assert_eq!(readback.latest().unwrap(), None);
         let targets = VertexBuffer::new(words.slice(..), 8);
         let drag = device_mesh.bind_move(&[7], &targets, 8.0, published.slice(56..)).unwrap();
         app.submit(|encoder| sweeps.encode_sweeps(encoder, 2));
@@ -301,6 +304,9 @@ fn encoding_for_a_lost_device_neither_panics_nor_hangs() {
             objective.encode_objective(encoder);
             bound.encode_export(encoder);
         });
+        // No copy is in flight that the loss could end.
+        assert_lost(&readback.latest().unwrap_err());
+        assert_lost(&app.gpu.errors().block().unwrap_err());
         let (device, queue) = (app.device().clone(), app.gpu.queue().clone());
         // The queue of a lost device must not be mistaken for that of another device.
         assert_lost(&Gpu::new(device, queue).err().unwrap());

@@ -153,6 +153,12 @@ fn a_mask_of_the_application_holds_vertices_beside_pins() {
     let pinned = moved[moved.len() / 2];
     held.device_mesh.pin(&[pinned]).unwrap();
     assert!(!held.moved().contains(&pinned));
+    // Masked vertices between pinned and released ones stay masked.
+    let odd: Vec<u32> = free.iter().copied().filter(|v| v % 2 == 1).collect();
+    held.device_mesh.pin(&odd).unwrap();
+    assert_eq!(held.moved(), []);
+    held.device_mesh.set_pinned(&[pinned]).unwrap();
+    assert!(held.moved().iter().all(|v| v % 2 == 1 && *v != pinned));
 
     // The application changes the mask; pinned and fixed vertices stay.
     let words = vec![0u32; held.mesh.points.len()];

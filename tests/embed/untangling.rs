@@ -1,7 +1,7 @@
 //! Untangling on the device of a mesh that the application has tangled, within some frames.
 
 use gpu_smooth::{
-    Mesh, Options, Targets,
+    Mesh, MeshError, Options, SmoothError, Targets,
     gpu::{BoundVertices, DeviceMesh, ObjectiveValues, Sweeps, UntanglingSweeps},
 };
 
@@ -102,6 +102,29 @@ fn a_mesh_that_is_tangled_from_the_start_is_untangled() {
     let mut broken = frames.mesh.clone();
     broken.points[3][0] = f64::NAN;
     assert!(DeviceMesh::tangled(&frames.app.gpu, &broken).is_err());
+}
+
+/// Positions of such meshes were NaN on the device.
+#[test]
+fn meshes_that_no_placement_in_the_plane_untangles_are_refused() {
+    let app = App::new();
+    let error = |mesh: &Mesh| match DeviceMesh::tangled(&app.gpu, mesh) {
+        Err(SmoothError::Mesh(error)) => error,
+        other => panic!("{:?}", other.err()),
+    };
+    let square = plate(200);
+    let flat = square.points.iter().map(|&[x, _]| [x, 0.5 * x]).collect();
+    let at_one_place = vec![[0.3, 0.7]; square.points.len()];
+    for points in [flat, at_one_place] {
+        let mesh = Mesh { points, ..square.clone() };
+        assert!(matches!(error(&mesh), MeshError::Infeasible { .. }), "{:?}", error(&mesh));
+    }
+    let tetrahedron = Mesh {
+        points: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.3, 0.3]],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+        ..Mesh::default()
+    };
+    assert!(matches!(error(&tetrahedron), MeshError::Closed { .. }), "{:?}", error(&tetrahedron));
 }
 
 #[test]

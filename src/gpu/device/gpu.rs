@@ -40,7 +40,7 @@ impl Gpu {
     ///
     /// Any thread may call this function. Nothing is submitted. Polls of the device, which may run callbacks of the
     /// application, check that the queue belongs to the device. The polls wait until submitted work is done, some 30 ms
-    /// at most. A queue counts as foreign only after some 30 ms of repeated polls of an idle device. A device that stays
+    /// at most, and longer on a driver that blocks in submissions, as Mesa's lavapipe does. A queue counts as foreign only after some 30 ms of repeated polls of an idle device. A device that stays
     /// busy, or a browser, cannot check the queue: wgpu reports a foreign queue later, to the error handler of the
     /// queue's own device.
     ///
@@ -163,7 +163,12 @@ impl Gpu {
     /// [`GpuError::OutOfMemory`], [`GpuError::Buffer`] or [`GpuError::Refused`] for earlier calls, and
     /// [`GpuError::Lost`] if the device is lost.
     pub fn errors(&self) -> Pending<'_, ()> {
-        Pending::new(|_| Box::pin(self.device.check_async()))
+        Pending::new(|_| {
+            Box::pin(async {
+                self.device.check_async().await?;
+                check_alive(&self.device)
+            })
+        })
     }
 }
 

@@ -73,9 +73,9 @@ pub(crate) fn required(
     let mut limits = own;
     let positions = Positions::of(size.vertices, available);
     raise(&mut limits, available, positions)?;
-    // A mesh that just fits the device needs no moves of all vertices.
-    let moved = size.largest_of_move().min(available.max_buffer_size);
-    let largest = size.largest(positions).max(moved);
+    // A mesh that just fits the device needs neither moves of all vertices nor Newton steps.
+    let more = size.largest_of_move().max(size.largest_of_step()).min(available.max_buffer_size);
+    let largest = size.largest(positions).max(more);
     let bound = &mut limits.max_storage_buffer_binding_size;
     *bound = largest.min(available.max_storage_buffer_binding_size).max(*bound);
     limits.max_buffer_size = largest.max(limits.max_buffer_size);

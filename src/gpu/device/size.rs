@@ -85,6 +85,14 @@ impl MeshSize {
         row_bytes(self.vertices.saturating_mul(2)).max(moved_triangle_bytes(self.triangles))
     }
 
+    /// Returns an upper estimate of the size of the largest buffer for Newton steps of all vertices, in bytes: the blocks of
+    /// the Hessian, one for each neighbor of a vertex, or the matrices of the levels.
+    pub(crate) fn largest_of_step(self) -> u64 {
+        // Each corner of a triangle is a neighbor of the next corner, and around a boundary there is one neighbor more.
+        let blocks = (self.triangles.saturating_mul(3)).saturating_add(self.vertices) as u64;
+        blocks.saturating_mul(16).max((self.vertices as u64).saturating_mul(160))
+    }
+
     /// Returns [`GpuError::TooLarge`] if the kernels cannot number the vertices or triangles, and [`GpuError::Limit`]
     /// if a buffer exceeds the limits even when bound in parts.
     pub(crate) fn check(self, limits: &wgpu::Limits) -> Result<(), GpuError> {

@@ -33,7 +33,7 @@ impl fmt::Display for Doubt {
         match self {
             Self::Hub(neighbors) => write!(f, "a vertex has {neighbors} neighbors"),
             Self::Stretched => {
-                write!(f, "a quarter of the triangles are stretched fivefold or more")
+                write!(f, "a quarter of the vertices have triangles stretched fivefold or more")
             }
         }
     }

@@ -61,7 +61,8 @@ impl DeviceMesh {
     /// to color the vertices on the CPU.
     ///
     /// Sweeps never move the vertices of [`Mesh::fixed`] and of the boundary. [`pin`](Self::pin) holds further vertices
-    /// for a while.
+    /// for a while. Boundary layers are not looked for: of a mesh with layers,
+    /// [`Smoother::to_device`](crate::Smoother::to_device) makes a mesh that holds them.
     ///
     /// # Errors
     /// [`SmoothError::Mesh`] if the mesh cannot be smoothed. [`SmoothError::Gpu`] with [`GpuError::Limit`] or

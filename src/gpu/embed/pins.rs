@@ -1,6 +1,7 @@
 //! Holds vertices in place, by pins of the host and by masks of the application.
 
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use wgpu::BufferUsages as Usage;
@@ -26,6 +27,8 @@ pub(crate) struct Pins {
     flags: Mutex<Vec<u8>>,
     /// On the device: one bit for each vertex, set if it is fixed or pinned.
     bits: wgpu::Buffer,
+    /// Whether a mask may hold vertices of which the host knows nothing.
+    has_mask: AtomicBool,
 }
 
 /// Flag of the vertices of [`Mesh::fixed`](crate::Mesh::fixed), which stay whatever the pins.
@@ -52,7 +55,7 @@ impl Pins {
         })?;
         let mut flags = vec![0; problem.free_count()];
         fixed.iter().for_each(|&place| flags[place as usize] = FIXED);
-        let pins = Self { flags: Mutex::default(), bits };
+        let pins = Self { flags: Mutex::default(), bits, has_mask: AtomicBool::new(false) };
         pins.send(gpu, problem, mesh, &flags, &with(&flags, FIXED))?;
         *pins.flags() = flags;
         Ok(pins)
@@ -124,10 +127,17 @@ impl Pins {
             let write = |buffer: &wgpu::Buffer, first: usize, words: &[u32]| {
                 gpu.queue.write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(words));
             };
+            // A write between changed vertices would release those that a mask holds.
+            let of_starts = match self.has_mask.load(Ordering::Acquire) {
+                true => runs(changed, 1),
+                false => ranges(changed),
+            };
+            for (first, last) in of_starts {
+                let starts: Vec<u32> = (first as usize..=last as usize).map(start).collect();
+                write(&mesh.ring_start, first as usize, &starts);
+            }
             for (first, last) in ranges(changed) {
                 let (first, last) = (first as usize, last as usize);
-                let starts: Vec<u32> = (first..=last).map(start).collect();
-                write(&mesh.ring_start, first, &starts);
                 let words: Vec<u32> = (first / 32..=last / 32).map(bits).collect();
                 write(&self.bits, first / 32, &words);
             }
@@ -186,13 +196,14 @@ fn with(flags: &[u8], flag: u8) -> Vec<u32> {
 
 /// Returns the ranges, with inclusive ends, in which these vertices are sent.
 fn ranges(places: &[u32]) -> Vec<(u32, u32)> {
-    let parts = places.chunk_by(|&a, &b| b - a <= GAP);
-    let ends = |part: &[u32]| part.first().copied().zip(part.last().copied());
-    let ranges: Vec<(u32, u32)> = parts.filter_map(ends).collect();
-    match ranges.len() <= WRITES {
-        true => ranges,
-        false => ends(places).into_iter().collect(),
-    }
+    let ranges = runs(places, GAP);
+    if ranges.len() <= WRITES { ranges } else { runs(places, u32::MAX) }
+}
+
+/// Returns ranges, with inclusive ends, of ascending vertices whose numbers differ by at most `gap` from one to the next.
+fn runs(places: &[u32], gap: u32) -> Vec<(u32, u32)> {
+    let parts = places.chunk_by(|&a, &b| b - a <= gap);
+    parts.filter_map(|part| part.first().copied().zip(part.last().copied())).collect()
 }
 
 /// A mask in an application's buffer, which holds vertices in place. Created by
@@ -214,6 +225,7 @@ impl BoundMask {
         pins: &Pins,
         window: &Window<'_>,
     ) -> Result<Self, GpuError> {
+        pins.has_mask.store(true, Ordering::Release);
         let count = problem.free_count() as u32;
         let mask = Mask { vertices: count, offset: window.offset, padding: [0; 2] };
         let bind_group = scoped_to_buffer(&gpu.device, || {

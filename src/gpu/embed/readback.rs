@@ -162,6 +162,10 @@ impl<T: Pod> Readback<T> {
     pub fn latest(&mut self) -> Result<Option<&[T]>, GpuError> {
         self.device.check()?;
         self.collect()?;
+        // Copies that are in flight on a lost device are reported as lost. Without such a copy, only a trial shows the loss.
+        if self.copies.iter().all(|copy| copy.state.load(Ordering::Acquire) == FREE) {
+            check_alive(&self.device)?;
+        }
         self.returned = self.arrived;
         Ok(self.arrived.is_some().then_some(&self.latest[..]))
     }

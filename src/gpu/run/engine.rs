@@ -568,7 +568,9 @@ impl Engine for GpuEngine<'_> {
         let saved = state.own.list_of::<[f32; 4]>(POSITIONS, self.saved_count());
         let Some(positions) = saved else { return Ok(false) };
         let Some(control) = state.own.one::<Control>(CONTROL) else { return Ok(false) };
-        if control.done != 0 || !positions.as_flattened().iter().all(|x| x.is_finite()) {
+        let is_finite =
+            |positions: &[[f32; 4]]| positions.as_flattened().iter().all(|x| x.is_finite());
+        if control.done != 0 || !is_finite(&positions) {
             return Ok(false);
         }
         if !self.restore_curves(state)? {
@@ -583,8 +585,8 @@ impl Engine for GpuEngine<'_> {
         let best = match self.dispatches.plan.is_monotone() {
             true => None,
             false => match state.own.list_of::<[f32; 4]>(BEST, free) {
-                None => return Ok(false),
-                best => best,
+                Some(best) if is_finite(&best) => Some(best),
+                _ => return Ok(false),
             },
         };
         scoped(&gpu.device, || {

@@ -158,7 +158,8 @@ fn cannot_map(device: &wgpu::Device) -> bool {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("gpu-smooth trial"),
         size: wgpu::COPY_BUFFER_ALIGNMENT,
-        usage: wgpu::BufferUsages::COPY_DST,
+        // A buffer of another usage is mapped by a copy, which stays pending until the next submission.
+        usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: true,
     });
     let is_mapped = buffer.get_mapped_range_mut(..).is_ok();
