@@ -14,7 +14,7 @@ pub(crate) fn run(args: &AdaptersArgs) -> Result<(), CliError> {
         say(&line(gpu.adapter(), Ok(())));
         return Ok(());
     }
-    driver_probe::drivers(Trial::All).map_err(engine::refusal)?;
+    let _starting = driver_probe::drivers(Trial::All).map_err(engine::refusal)?;
     let adapters = gpu_smooth::gpu::checked_adapters();
     if adapters.is_empty() {
         say(&format!("no GPU adapter was found. {INSTALL}"));

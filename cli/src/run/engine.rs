@@ -10,7 +10,7 @@ use gpu_smooth_job::EngineRequest;
 
 use crate::error::CliError;
 use crate::request::SmoothRequest;
-use crate::run::driver_probe::{self, Trial};
+use crate::run::driver_probe::{self, Starting, Trial};
 
 pub(crate) const INSTALL: &str = "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` \
                        brings one that needs no graphics card), or use --engine cpu";
@@ -48,7 +48,9 @@ pub(crate) fn open(engine: &EngineRequest) -> Result<Option<OpenEngine>, CliErro
 /// Chooses an engine for a mesh by its size, and opens the engine.
 pub(crate) fn choose(request: &SmoothRequest, size: MeshSize) -> OpenEngine {
     let options = request.options(Precision::Double);
-    let (backend, reason) = Backend::auto_tried(size, &options, try_best);
+    let mut starting = None;
+    let (backend, reason) = Backend::auto_tried(size, &options, || try_best(&mut starting));
+    drop(starting);
     OpenEngine::new(backend, Some(describe(&reason)))
 }
 
@@ -100,7 +102,9 @@ impl<'a> Engines<'a> {
             return asked.clone();
         }
         let options = self.request.options(Precision::Double);
-        let (backend, reason) = self.chooser.choose(size, &options, try_best);
+        let mut starting = None;
+        let (backend, reason) = self.chooser.choose(size, &options, || try_best(&mut starting));
+        drop(starting);
         in_turns(OpenEngine::new(backend, Some(describe(&reason))), &self.turn)
     }
 }
@@ -121,12 +125,14 @@ pub(crate) fn open_adapter(name: Option<&str>) -> Result<Gpu, CliError> {
 /// Opens an adapter after a trial in a child process. A driver that crashes would otherwise end this process without
 /// a message.
 fn tried_and_opened(name: Option<&str>) -> Result<Gpu, GpuError> {
-    driver_probe::drivers(Trial::Adapter(name)).and_then(|()| Gpu::open(name).block())
+    let _starting = driver_probe::drivers(Trial::Adapter(name))?;
+    Gpu::open(name).block()
 }
 
-/// Tries the default adapter in a child process.
-fn try_best() -> Result<(), GpuError> {
-    driver_probe::drivers(Trial::Adapter(None))
+/// Tries the default adapter in a child process. The caller drops `starting` once the driver has started.
+fn try_best(starting: &mut Option<Starting>) -> Result<(), GpuError> {
+    *starting = Some(driver_probe::drivers(Trial::Adapter(None))?);
+    Ok(())
 }
 
 /// Converts the failure to open an adapter to an error with a remedy.

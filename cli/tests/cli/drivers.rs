@@ -3,8 +3,10 @@
 use super::{Folder, Run, assert_holds, assert_smoothed, finish, small};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
+use std::path::PathBuf;
 use std::process::Command;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use tempfile::TempDir;
 
 /// Results of Vulkan: the value of a `VkResult`.
@@ -45,7 +47,16 @@ fn faulty_driver() -> &'static TempDir {
     })
 }
 
-/// Sets the environment so that the command finds only the faulty driver.
+/// Makes a new directory for the files of a session, in which no driver has started yet.
+fn session() -> PathBuf {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let path = faulty_driver().path().join(format!("session-{number}"));
+    fs::create_dir(&path).unwrap();
+    path
+}
+
+/// Sets the environment so that the command finds only the faulty driver, which has not started before.
 fn with_fault<'c>(
     command: &'c mut Command,
     function: &str,
@@ -55,7 +66,10 @@ fn with_fault<'c>(
     let icd = faulty_driver().path().join("icd.json");
     command.env("VK_DRIVER_FILES", &icd).env("VK_ICD_FILENAMES", icd);
     command.env_remove("VK_ADD_DRIVER_FILES").env("REAL_DRIVER", real_driver());
-    command.env("FAULT_FUNCTION", function).env("FAULT_FROM", from.to_string());
+    command
+        .env("XDG_RUNTIME_DIR", session())
+        .env("FAULT_FUNCTION", function)
+        .env("FAULT_FROM", from.to_string());
     command.env("FAULT_RESULT", result)
 }
 
@@ -195,6 +209,36 @@ fn a_driver_that_crashes_on_start_is_an_error_where_a_gpu_is_asked_for() {
     }
     fs::remove_dir(folder.path("d")).unwrap();
     assert!(folder.content() == before);
+}
+
+/// A driver that has started well starts once in the next commands of the session. If the driver then ends a process on
+/// start, the command after that tries the driver again.
+#[test]
+fn a_driver_that_has_started_is_tried_again_only_after_a_crash() {
+    let folder = small();
+    let (session, count) = (session(), folder.path("count"));
+    // The arguments are a function that fails, its first failing call, and how it fails.
+    let with = |function: &str, from: usize, result: &str| {
+        fs::write(&count, "").unwrap();
+        let mut command = folder.command();
+        with_fault(&mut command, function, from, result);
+        command.env("XDG_RUNTIME_DIR", &session).env("FAULT_TRIALS", &count);
+        command.args("in out --engine gpu --max-sweeps 2 -q --force".split(' '));
+        command
+    };
+    let is_tried = || {
+        finish(&mut with("vkCreateDevice", usize::MAX >> 40, LOST)).clean();
+        !fs::read(&count).unwrap().is_empty()
+    };
+    assert_eq!([is_tried(), is_tried(), is_tried()], [true, false, false]);
+    let ended = with("vkCreateDevice", 1, "crash").output().unwrap();
+    assert_eq!(ended.status.signal(), Some(6), "{ended:?}");
+    let told = "the driver of the GPU failed when it was tried: signal: 6";
+    finish(&mut with("vkCreateDevice", 1, "crash")).refused(&[told, "Use --engine cpu"]);
+    assert_eq!([is_tried(), is_tried()], [true, false]);
+    // Other variables of drivers may name another driver.
+    let mut command = with("vkCreateDevice", 1, "crash");
+    finish(command.env("VK_LOADER_DRIVERS_SELECT", "*")).refused(&[told]);
 }
 
 /// A driver that ends the process leaves no time for a message. The checkpoint remains, and the next command names the

@@ -1,7 +1,7 @@
 /* A Vulkan driver for tests. It passes every call on to a real one, the library REAL_DRIVER, except for one function,
    FAULT_FUNCTION. From its call number FAULT_FROM on, that function does what FAULT_RESULT says: it returns this VkResult (below
    0), ends the process ("crash"), or never returns ("hang"). If FAULT_COUNT names a file, each call of the function adds a byte to
-   it. Calls of a process that only tries drivers (GPU_SMOOTH_IS_TRIAL) are not counted there.
+   it. Calls of a process that only tries drivers (GPU_SMOOTH_IS_TRIAL) are counted in the file FAULT_TRIALS instead.
 
    If FAULT_KIND is a number, the driver says that its adapters are of this VkPhysicalDeviceType: 1 is an integrated GPU, 2 a
    discrete GPU, 4 the CPU.
@@ -38,7 +38,8 @@ static function of_driver(const char *name) {
 
 static int faulty(void *a, void *b, void *c, void *d, void *e, void *f) {
     int call = atomic_fetch_add(&calls, 1) + 1;
-    int count = getenv("GPU_SMOOTH_IS_TRIAL") ? -1 : open(setting("FAULT_COUNT"), O_WRONLY | O_APPEND);
+    const char *counts = getenv("GPU_SMOOTH_IS_TRIAL") ? "FAULT_TRIALS" : "FAULT_COUNT";
+    int count = open(setting(counts), O_WRONLY | O_APPEND);
     if (count >= 0) {
         if (write(count, "x", 1) < 0) abort();
         close(count);

@@ -271,8 +271,9 @@ fn head(args: &BenchArgs, places: &[Place]) -> String {
     let mut text = format!("{mark}{}\n{mark}{}\n", machine::version(), machine::machine());
     for Place { name, driver, open, .. } in places.iter().filter(|place| !place.driver.is_empty()) {
         let seconds = open.as_secs_f64();
-        text +=
-            &format!("{mark}{name} {driver}: opened in {seconds:.3} s, tried in a process first\n");
+        text += &format!(
+            "{mark}{name} {driver}: opened in {seconds:.3} s, with the trial in a process if there was one\n"
+        );
     }
     text += &format!(
         "\nWhole runs by {} to the default tolerance, in ms: the first on its engine and mesh, then the median of others. \
