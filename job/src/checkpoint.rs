@@ -42,8 +42,28 @@ impl CheckpointFile {
     }
 }
 
+/// A file that checkpoints of a run must not replace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Occupant {
+    /// A checkpoint of another run.
+    OtherRun,
+    /// A file that is no checkpoint.
+    OtherKind,
+}
+
+impl Occupant {
+    /// Returns the file at `path` that checkpoints must not replace; `None` if the path is free, or if the run continues from
+    /// this file.
+    pub fn of(path: &Path, continued: Option<&Path>) -> Option<Self> {
+        if !path.exists() || continued.is_some_and(|from| atomic::same_file(from, path)) {
+            return None;
+        }
+        Some(if is_checkpoint(path) { Self::OtherRun } else { Self::OtherKind })
+    }
+}
+
 /// Returns whether a file exists and begins as checkpoints do.
-pub fn is_checkpoint(path: &Path) -> bool {
+fn is_checkpoint(path: &Path) -> bool {
     let mut head = [0; Checkpoint::MAGIC.len()];
     fs::File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok()
         && head == *Checkpoint::MAGIC

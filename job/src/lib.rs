@@ -47,7 +47,7 @@ mod precision;
 mod run;
 mod target;
 
-pub use checkpoint::{CheckpointFile, CheckpointWriter, is_checkpoint};
+pub use checkpoint::{CheckpointFile, CheckpointWriter, Occupant};
 pub use domain::{Curves, Domain, NearBad, SlideBy};
 pub use error::{JobError, PlaneError};
 pub use facts::{

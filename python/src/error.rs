@@ -59,7 +59,15 @@ pub(crate) fn file(py: Python<'_>, text: &str) -> PyErr {
 
 /// Returns the exception of a file that cannot be read.
 pub(crate) fn of_reading(py: Python<'_>, error: &ReadError) -> PyErr {
-    file(py, &error.to_string())
+    let text = match error {
+        ReadError::Unwelded { path } => format!(
+            "{}: an STL lists corners of triangles, and has no vertices that these share. Have corners at the same place \
+             joined: MeshFile(path, weld=True)",
+            path.display()
+        ),
+        error => error.to_string(),
+    };
+    file(py, &text)
 }
 
 /// Returns the exception of a file that cannot be written.
@@ -235,6 +243,7 @@ fn indices(error: &MeshError) -> Indices {
         | MeshError::BeyondPrecision { element, .. }
         | MeshError::Pole { element } => Indices::of_elements(&[*element]),
         MeshError::Target { vertex, .. } => Indices::of_vertex(*vertex),
+        MeshError::Latitude { vertex } => Indices::of_vertex(*vertex as usize),
         _ => Indices::default(),
     }
 }
@@ -311,6 +320,9 @@ fn explained(error: &MeshError) -> String {
             };
             format!("{argument}: {error}. {usable}")
         }
+        MeshError::Latitude { vertex } => format!(
+            "points[{vertex}]: {error}. Pass longitude and latitude in degrees, or no surface"
+        ),
         MeshError::Target { vertex, problem } => {
             format!(
                 "target: vertex {vertex} has no target: {problem}. Sizes are positive, tensors (xx, xy, yy) positive definite"

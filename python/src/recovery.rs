@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use gpu_smooth::{Checkpoint, CheckpointPolicy, GpuError};
-use gpu_smooth_job::{CheckpointFile, CheckpointWriter, is_checkpoint};
+use gpu_smooth_job::{CheckpointFile, CheckpointWriter, Occupant};
 use pyo3::prelude::*;
 
 use crate::error;
@@ -31,24 +31,17 @@ pub(crate) fn check(
     plan: &CheckpointFile,
     continued: Option<&Path>,
 ) -> PyResult<()> {
-    let file = &plan.file;
-    if !file.exists() || continued.is_some_and(|from| is_same(from, file)) {
-        return Ok(());
-    }
-    let name = file.display();
-    let text = match is_checkpoint(file) {
-        true => format!(
+    let name = plan.file.display();
+    let text = match Occupant::of(&plan.file, continued) {
+        None => return Ok(()),
+        Some(Occupant::OtherRun) => format!(
             "checkpoint: {name} is the checkpoint of another run. Continue that run by resume, or remove the file"
         ),
-        false => {
+        Some(Occupant::OtherKind) => {
             format!("checkpoint: {name} exists and is no checkpoint. Choose the name of a new file")
         }
     };
     Err(error::file(py, &text))
-}
-
-fn is_same(a: &Path, b: &Path) -> bool {
-    a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Saves the checkpoints of a run, and decides whether the run leaves a device that fails.

@@ -109,7 +109,8 @@ pub(crate) struct SmoothArgs {
     /// meshes are smoothed concurrently; a failed mesh does not stop the rest
     #[arg(long, value_name = "DIR", help_heading = "Many meshes", conflicts_with = "picture")]
     pub(crate) out_dir: Option<PathBuf>,
-    /// Skip meshes whose smoothed files are all in DIR and newer than the mesh
+    /// Skip meshes whose smoothed files are all in DIR and newer than the mesh. Files that a mesh file names are not looked
+    /// at, but for an XDMF's .h5 of the same name
     #[arg(long, requires = "out_dir", help_heading = "Many meshes", conflicts_with = "keep_going")]
     pub(crate) resume: bool,
     /// Print the table of the meshes as CSV

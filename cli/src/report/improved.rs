@@ -29,8 +29,8 @@ impl From<Improved> for ImprovedReport {
 }
 
 impl ImprovedReport {
-    /// Describes the improvement and its cost in f, in one sentence.
-    pub(crate) fn sentence(&self) -> String {
+    /// Describes the improvement and its cost in f, in one sentence. `is_canceled` tells whether the run was interrupted.
+    pub(crate) fn sentence(&self, is_canceled: bool) -> String {
         let Self { measure, vertices, worst: [before, after], stuck, f } = self;
         let worst = match *measure {
             "imr" => "worst imr".to_owned(),
@@ -44,8 +44,13 @@ impl ImprovedReport {
         let vertices = if n == 1 { "vertex" } else { "vertices" };
         let mut text = match WorstEffect::of(n, self.worst) {
             WorstEffect::Nothing => format!(
-                "the {worst} of movable triangles, {}, could not be improved",
-                shown(*after)
+                "the {worst} of movable triangles, {}, {}",
+                shown(*after),
+                if is_canceled {
+                    "was not improved before the end"
+                } else {
+                    "could not be improved"
+                }
             ),
             WorstEffect::Worst => format!(
                 "the {worst} of movable triangles was improved from {} to {} by {n} {vertices}, which {cost}",
@@ -90,7 +95,15 @@ mod tests {
         for (f, expected) in
             [(1.02, "changed f by +2.00 %"), (1.0 - 1e-9, "changed f by less than 0.01 %")]
         {
-            assert!(report(f).sentence().ends_with(expected), "{}", report(f).sentence());
+            let sentence = report(f).sentence(false);
+            assert!(sentence.ends_with(expected), "{sentence}");
+        }
+        let none = ImprovedReport { vertices: 0, worst: [2.0; 2], ..report(1.0) };
+        for (is_canceled, end) in
+            [(true, ", was not improved before the end"), (false, ", could not be improved")]
+        {
+            let sentence = none.sentence(is_canceled);
+            assert!(sentence.contains(end), "{sentence}");
         }
     }
 }

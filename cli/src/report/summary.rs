@@ -68,7 +68,8 @@ impl Report {
         sentences.extend(self.slides());
         sentences.extend(self.floored.as_ref().map(|floored| floored.sentence()));
         sentences.extend(self.large_angles.as_ref().map(|angles| angles.sentence()));
-        sentences.extend(self.improved.as_ref().map(|improved| improved.sentence()));
+        let is_canceled = matches!(self.stop, "canceled" | "time-limit");
+        sentences.extend(self.improved.as_ref().map(|improved| improved.sentence(is_canceled)));
         sentences
     }
 

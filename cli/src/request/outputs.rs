@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use gpu_smooth::{Checkpoint, measure::Measure};
-use gpu_smooth_job::CheckpointFile;
+use gpu_smooth::measure::Measure;
+use gpu_smooth_job::{CheckpointFile, Occupant};
 use mesh_io::{Format, atomic};
 
 use crate::args::{PictureArgs, SmoothArgs};
@@ -144,14 +144,19 @@ impl Outputs {
     pub(crate) fn check(&self, read: &[PathBuf], written: &[PathBuf]) -> Result<(), CliError> {
         self.check_names()?;
         self.check_files(read, written, ErrorKind::Usage)?;
+        written.iter().try_for_each(|path| check_ending(path))?;
         written.iter().try_for_each(|path| check_folder(path))?;
         self.check_disk()
     }
 
-    /// Checks that no file beside the mesh has an extension of a mesh format, and that the page ends in `.html` or
-    /// `.htm`.
+    /// Checks that no file beside the mesh is a standard stream or has an extension of a mesh format, and that the page
+    /// ends in `.html` or `.htm`.
     pub(crate) fn check_names(&self) -> Result<(), CliError> {
         for (role, path) in self.beside_mesh() {
+            if path.as_os_str() == "-" {
+                let text = "-: only a mesh is written to standard output";
+                return Err(CliError::usage(text).with_remedy(role.remedy()));
+            }
             if role == Role::Page && !is_page(path) {
                 let text = format!("{}: a page is HTML", path.display());
                 return Err(CliError::usage(text).with_remedy("End its name in .html"));
@@ -255,7 +260,7 @@ impl Outputs {
         for (role, path) in self.beside_mesh() {
             let head = head(path);
             if role == Role::Checkpoint {
-                self.check_checkpoint(path, head.as_deref())?;
+                self.check_checkpoint(path)?;
             } else if let Some(format) = head.as_deref().and_then(Format::name_of_content) {
                 let text = format!("{}: the file is a mesh ({format})", path.display());
                 return Err(CliError::output(text).with_remedy(role.remedy()));
@@ -281,22 +286,19 @@ impl Outputs {
         atomic::ensure_writable(report).map_err(cannot)
     }
 
-    /// Refuses to replace another run's checkpoint, or a file of another kind. `head` contains the first bytes of the
-    /// existing file; `None` if the path is free.
-    fn check_checkpoint(&self, path: &Path, head: Option<&[u8]>) -> Result<(), CliError> {
-        let name = path.display();
-        let is_continued = self.continued.as_deref().is_some_and(|from| is_same(from, path));
-        match head.map(|head| head.starts_with(Checkpoint::MAGIC)) {
-            _ if is_continued => Ok(()),
+    /// Refuses to replace another run's checkpoint, or a file of another kind.
+    fn check_checkpoint(&self, path: &Path) -> Result<(), CliError> {
+        match Occupant::of(path, self.continued.as_deref()) {
             None => Ok(()),
-            Some(true) => {
+            Some(Occupant::OtherRun) => {
+                let name = path.display();
                 let text = format!("{name}: the file is a checkpoint of another run");
                 let remedy = format!(
                     "Go on with that run by --continue {name} (with --engine cpu as well, if the driver of a GPU ended it), or remove the file"
                 );
                 Err(CliError::output(text).with_remedy(remedy))
             }
-            Some(false) => {
+            Some(Occupant::OtherKind) => {
                 let text = Role::Checkpoint.is_other(path);
                 Err(CliError::output(text).with_remedy(Role::Checkpoint.remedy()))
             }
@@ -313,7 +315,8 @@ impl Role {
             Self::Report => first.starts_with(b"{"),
             Self::Page => first.starts_with(b"<"),
             Self::Picture => first.starts_with(b"<") || first.starts_with(b"\x89PNG"),
-            Self::Checkpoint => first.starts_with(Checkpoint::MAGIC),
+            // Checkpoints of a run replace those of this run alone.
+            Self::Checkpoint => false,
         }
     }
 
@@ -386,6 +389,28 @@ fn is_same(a: &Path, b: &Path) -> bool {
 fn is_page(path: &Path) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
     matches!(ending.as_deref(), Some("html" | "htm"))
+}
+
+/// Endings of pictures, pages, tables and of compressions that this program does not write.
+const OF_OTHERS: [&str; 11] =
+    ["png", "svg", "jpg", "pdf", "html", "htm", "json", "csv", "zip", "xz", "bz2"];
+
+/// Refuses an OUT that ends like a file of another kind. A run would write the format of IN there.
+fn check_ending(out: &Path) -> Result<(), CliError> {
+    let ending = out.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
+    let Some(ending) = ending.filter(|ending| OF_OTHERS.contains(&&**ending)) else {
+        return Ok(());
+    };
+    let text = format!("{}: a mesh is written here, and .{ending} is no mesh", out.display());
+    let remedy = match &*ending {
+        "png" | "svg" | "jpg" | "pdf" => {
+            "End OUT like IN, and draw a picture by --picture FILE.png"
+        }
+        "html" | "htm" => "End OUT like IN, and write a page by --html FILE.html",
+        "json" | "csv" => "End OUT like IN, and write a report by --report FILE.json",
+        _ => "End OUT like IN, or in .gz",
+    };
+    Err(CliError::usage(text).with_remedy(remedy))
 }
 
 /// Returns whether a path has the extension of a mesh format, or `.poly`, that of a Triangle mesh's outline.

@@ -103,13 +103,14 @@ impl Proof {
             held.extend(strays);
             held.sort_unstable();
             held.dedup();
-            bad = topology.bad_triangles(new)?;
-            if !bad.is_empty() {
-                // If more than half of the triangles were inverted before, the windings derived from `before` are
-                // reversed.
-                bad = Topology::new(after.mesh())?.bad_triangles(new)?;
+            let of = |topology: &Topology<'_>| -> Result<_, MeshError> {
+                Ok((topology.bad_triangles(new)?, topology.bad_quadrilaterals(new)?))
+            };
+            (bad, concave) = of(&topology)?;
+            if !bad.is_empty() || !concave.is_empty() {
+                // If more than half of the elements were inverted before, the windings derived from `before` are reversed.
+                (bad, concave) = of(&Topology::new(after.mesh())?)?;
             }
-            concave = topology.bad_quadrilaterals(new)?;
         }
         Ok(Self { difference, moved, held, slid, pairs, coincident, bad, concave })
     }

@@ -6,8 +6,8 @@
 
 #[cfg(unix)]
 use std::io::IsTerminal;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 #[cfg(unix)]
@@ -23,8 +23,6 @@ const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Whether a smoothed state exists that can be written.
 static HAS_RESULT: AtomicBool = AtomicBool::new(false);
-/// Lock held while any file but the mesh is written.
-static WRITING: Mutex<()> = Mutex::new(());
 
 /// Turns a write beyond the user's limit on file sizes (`ulimit -f`) into an error, like that of a full disk. Without a
 /// handler, SIGXFSZ would end the process and leave a temporary file.
@@ -84,13 +82,12 @@ fn received(signal: i32, quiet: bool) {
     if has_result && requested::request(signal) {
         return;
     }
-    let _mesh = mesh_io::atomic::discard_pending_writes();
-    let _other = uninterrupted();
+    let blocked = mesh_io::atomic::discard_pending_writes();
     progress::remove_bar();
-    let text = if has_result {
-        "interrupted again: ended at once"
-    } else {
-        "interrupted: nothing was written"
+    let text = match (has_result, blocked.has_written()) {
+        (true, _) => "interrupted again: ended at once",
+        (false, true) => "interrupted after a file was written",
+        (false, false) => "interrupted: nothing was written",
     };
     tell::note(quiet, text);
     // `std::process::exit` would run clean-up code of GPU drivers whose threads are still active.
@@ -101,9 +98,4 @@ fn received(signal: i32, quiet: bool) {
 /// signal ends the process.
 pub(crate) fn has_result() {
     HAS_RESULT.store(true, Ordering::SeqCst);
-}
-
-/// Returns a guard that delays the end of the process by signals for as long as the guard lives.
-pub(crate) fn uninterrupted() -> MutexGuard<'static, ()> {
-    WRITING.lock().unwrap_or_else(PoisonError::into_inner)
 }

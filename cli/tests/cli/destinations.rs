@@ -293,3 +293,23 @@ fn names_of_any_bytes_are_read_and_written_and_printed_on_one_line() {
     let run = run.refused(&["none\u{FFFD}\\u{1b}[31m\\u{7}"]);
     assert_eq!(run.err.lines().count(), 1, "{}", run.err);
 }
+
+/// A mesh in the format of IN was written behind any ending, and `--report -` made a file of that name.
+#[test]
+fn endings_of_other_files_and_a_stream_beside_the_mesh_are_refused() {
+    let folder = small();
+    let before = folder.content();
+    for (line, remedy) in [
+        ("in out.png", "--picture FILE.png"),
+        ("in out.HTML", "--html FILE.html"),
+        ("in out.json", "--report FILE.json"),
+        ("in out.xz", "or in .gz"),
+    ] {
+        folder.line(line).misused(&["a mesh is written here, and .", remedy]);
+    }
+    for option in ["--report", "--html", "--checkpoint"] {
+        let told = ["only a mesh is written to standard output", option];
+        folder.line(&format!("in out {option} -")).misused(&told);
+    }
+    assert!(folder.content() == before);
+}

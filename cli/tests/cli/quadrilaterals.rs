@@ -179,6 +179,24 @@ fn a_concave_quadrilateral_is_refused_with_its_place() {
     assert_holds(&compared.out, &["each of 16 quadrilaterals is convex"]);
 }
 
+/// Most quadrilaterals of the input are inverted, so their windings say nothing on those of the result.
+#[test]
+fn a_mirrored_mesh_is_untangled_and_reported() {
+    let mut text = vtk(12, |_| false, |_| 1);
+    for (v, line) in text.clone().lines().skip(5).take(13 * 13).enumerate() {
+        let (i, j) = (v % 13, v / 13);
+        if (1..12).contains(&i) && (1..12).contains(&j) {
+            text = text.replacen(&format!("\n{line}\n"), &format!("\n{} {j} 0\n", 12 - i), 1);
+        }
+    }
+    let folder = Folder::new(&[("in.vtk", &text)]);
+    let run = folder.line("in.vtk out.vtk --engine cpu --untangle --report r.json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_eq!(folder.json("r.json")["certificate"]["inverted"], 0);
+    let compared = folder.line("compare in.vtk out.vtk");
+    assert_holds(&compared.out, &["each of 144 quadrilaterals is convex"]);
+}
+
 #[test]
 fn stages_for_quadrilaterals_work_from_the_command_line() {
     let folder = Folder::new(&[("in.vtk", &vtk(12, |k| k % 4 == 0, |_| 1))]);
