@@ -1,5 +1,7 @@
 //! Check that a checkpoint belongs to the run that continues from it.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use crate::error::{ResumeError, SmoothError};
@@ -74,29 +76,36 @@ pub(crate) fn foreign() -> SmoothError {
     ResumeError::OtherMesh.into()
 }
 
-/// Returns the hash of all data of a mesh that a run depends on: FNV-1a over words of 64 bits.
+/// Returns the hash of all data of a mesh that a run depends on.
 async fn hash(mesh: &Mesh, targets: Option<&[[f32; 3]]>, more: &[u64]) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut add = |word: u64| {
-        let mixed = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
-        hash = mixed ^ (mixed >> 32);
-    };
     let Mesh { points, triangles, quadrilaterals, fixed } = mesh;
+    let targets = targets.unwrap_or_default();
     let counts = [points.len(), triangles.len(), quadrilaterals.len(), fixed.len()];
-    counts.into_iter().for_each(|count| add(count as u64));
-    each(points.as_flattened(), |x| add(x.to_bits())).await;
-    each(triangles.as_flattened(), |&i| add(i.into())).await;
-    each(quadrilaterals.as_flattened(), |&i| add(i.into())).await;
-    each(fixed, |&i| add(i.into())).await;
-    each(targets.unwrap_or_default().as_flattened(), |x| add(x.to_bits().into())).await;
-    more.iter().for_each(|&word| add(word));
-    hash
+    let lists = [
+        of_list(points.as_flattened(), |x| x.to_bits()).await,
+        of_list(triangles.as_flattened(), |&i| i.into()).await,
+        of_list(quadrilaterals.as_flattened(), |&i| i.into()).await,
+        of_list(fixed, |&i| i.into()).await,
+        of_list(targets.as_flattened(), |x| x.to_bits().into()).await,
+    ];
+    let words = counts.into_iter().map(|count| count as u64).chain(lists);
+    words.chain(more.iter().copied()).fold(SEED, mixed)
 }
 
-/// Calls `add` with every item, in order.
-async fn each<T: Sync>(items: &[T], mut add: impl FnMut(&T) + Send) {
-    const CHUNK: usize = 1 << 16;
-    paced::in_order(items.len(), CHUNK, |range| items[range].iter().for_each(&mut add)).await;
+/// Returns the hash of a list. Parts of the list are hashed in parallel.
+async fn of_list<T: Sync>(items: &[T], word: impl Fn(&T) -> u64 + Sync + Send) -> u64 {
+    const CHUNK: usize = 1 << 14;
+    let of_range = |range: Range<usize>| items[range].iter().map(&word).fold(SEED, mixed);
+    paced::map_ranges(items.len(), CHUNK, of_range).await.into_iter().fold(SEED, mixed)
+}
+
+/// Hash of an empty list: the offset basis of FNV-1a.
+const SEED: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// Returns the hash of a list with a further word: FNV-1a over words of 64 bits.
+fn mixed(hash: u64, word: u64) -> u64 {
+    let mixed = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+    mixed ^ (mixed >> 32)
 }
 
 #[cfg(test)]

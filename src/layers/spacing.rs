@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use crate::error::MeshError;
 use crate::layers::elements::Elements;
+use crate::layers::sectors::NONE;
 use crate::layers::vector::{cross, distance_to_segment, dot, length, median, minus};
 use crate::parallel::counting_sort::Groups;
 
@@ -67,46 +68,57 @@ impl Elements<'_> {
 
 /// Neighbors, inside the mesh, of the vertices of walls.
 struct InnerNeighbors {
-    /// Row of each vertex of a wall in `neighbors`.
-    row: HashMap<u32, usize>,
+    /// Row of each vertex in `neighbors`; [`NONE`] for vertices of no wall.
+    row: Vec<u32>,
     neighbors: Vec<Vec<u32>>,
 }
 
 impl InnerNeighbors {
     fn new(elements: &Elements<'_>, walls: &[u32]) -> Self {
-        let mut row = HashMap::new();
+        let mut row = vec![NONE; elements.points.len()];
+        let mut count = 0;
         for &v in walls {
-            let next = row.len();
-            row.entry(v).or_insert(next);
-        }
-        let mut is_near = vec![false; elements.points.len()];
-        walls.iter().for_each(|&v| is_near[v as usize] = true);
-        let is_boundary = boundary(elements);
-        let mut neighbors = vec![Vec::new(); row.len()];
-        let faces = elements.all_faces();
-        let triangles = elements.topology.triangles().iter().map(<[u32; 3]>::as_slice);
-        let near = triangles
-            .chain(faces.iter().map(Vec::as_slice))
-            .filter(|element| element.iter().any(|v| is_near[*v as usize]));
-        for element in near {
-            for i in 0..element.len() {
-                let ends = [element[i], element[(i + 1) % element.len()]];
-                for [from, to] in [ends, [ends[1], ends[0]]] {
-                    if let Some(&row) = row.get(&from).filter(|_| !is_boundary[to as usize]) {
-                        neighbors[row].push(to);
-                    }
-                }
+            let row = &mut row[v as usize];
+            if *row == NONE {
+                *row = count;
+                count += 1;
             }
         }
-        for list in &mut neighbors {
+        let mut inner = Self { row, neighbors: vec![Vec::new(); count as usize] };
+        let is_boundary = boundary(elements);
+        // Most triangles have no vertex on a wall.
+        for t in elements.topology.triangles() {
+            let [a, b, c] = t.map(|v| inner.row[v as usize]);
+            if a & b & c != NONE {
+                inner.add(t, &is_boundary);
+            }
+        }
+        for face in elements.all_faces().iter() {
+            inner.add(face, &is_boundary);
+        }
+        for list in &mut inner.neighbors {
             list.sort_unstable();
             list.dedup();
         }
-        Self { row, neighbors }
+        inner
+    }
+
+    /// Adds the neighbors along the edges of an element.
+    fn add(&mut self, element: &[u32], is_boundary: &[bool]) {
+        for i in 0..element.len() {
+            let ends = [element[i], element[(i + 1) % element.len()]];
+            for [from, to] in [ends, [ends[1], ends[0]]] {
+                let row = self.row[from as usize];
+                if row != NONE && !is_boundary[to as usize] {
+                    self.neighbors[row as usize].push(to);
+                }
+            }
+        }
     }
 
     fn of(&self, vertex: u32) -> &[u32] {
-        self.row.get(&vertex).map_or(&[], |&row| &self.neighbors[row])
+        let row = self.row.get(vertex as usize).copied().unwrap_or(NONE);
+        self.neighbors.get(row as usize).map_or(&[], Vec::as_slice)
     }
 }
 

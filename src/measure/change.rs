@@ -1,7 +1,7 @@
 //! Comparison of two states of a mesh: displacements of vertices, and changes of element sizes.
 
 use crate::error::MeshError;
-use crate::parallel::{collect, map_ranges, ranges};
+use crate::parallel::{collect, map_parts, map_ranges, ranges};
 use crate::precision::Precision;
 use crate::topology::Topology;
 
@@ -82,11 +82,10 @@ impl Change {
             let v = seen[i];
             (0.5 * around[v].growth / f64::from(around[v].elements)).abs().exp()
         };
-        Ok(Self {
-            moved: spread(collect(seen.len(), moved)),
-            size: spread(collect(seen.len(), size)),
-            least_altitude,
-        })
+        let numbers = [collect(seen.len(), moved), collect(seen.len(), size)];
+        let spreads = map_parts(numbers, |_, numbers| spread(numbers));
+        let [moved, size] = [0, 1].map(|i| spreads[i]);
+        Ok(Self { moved, size, least_altitude })
     }
 }
 

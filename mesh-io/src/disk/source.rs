@@ -209,7 +209,7 @@ impl Source {
 }
 
 /// Number of bytes that one task reads.
-const CHUNK: usize = 1 << 22;
+const CHUNK: usize = 1 << 19;
 
 /// Reads a file. If the file has at least two chunks, all threads read chunks, as a single thread spends most of its
 /// time waiting for the system to provide memory.

@@ -37,7 +37,8 @@ fn take_chunks<'a, T: Send>(
     read: impl Fn(&mut Cursor<'a>) -> Result<T, ReadError> + Sync,
     mut take: impl FnMut(T) -> bool,
 ) -> u64 {
-    let at_once = 4 * rayon::current_num_threads();
+    // No other thread has work while the last batch is taken, so batches are small.
+    let at_once = 2 * rayon::current_num_threads();
     let mut batch = Batch::new(cursor.parts(size, at_once), Vec::new());
     let mut spare = Vec::new();
     batch.read(count, &read);

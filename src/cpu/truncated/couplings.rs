@@ -17,6 +17,8 @@ pub(super) struct Couplings {
     group_of: Vec<u32>,
     /// Index of the first upper block of each row, and at the end the number of upper blocks.
     first: Vec<u32>,
+    /// For each block of the matrix, twice the index of the upper block of which it is a copy, plus 1 for a transposed copy.
+    sources: Vec<u32>,
 }
 
 /// The sums over the triangles of a block of vertices in upper blocks of the matrix.
@@ -82,7 +84,7 @@ impl CornerGroups {
 }
 
 impl Couplings {
-    pub(super) fn new(blocks: &Blocks, pattern: &Pattern) -> Self {
+    pub(super) async fn new(blocks: &Blocks, pattern: &Pattern) -> Self {
         let mut group_of = vec![0; blocks.order.len()];
         for (group, ends) in (0..).zip(blocks.group_start.windows(2)) {
             group_of[ends[0] as usize..ends[1] as usize].fill(group);
@@ -91,7 +93,24 @@ impl Couplings {
         for (row, diagonal) in pattern.diagonal.iter().enumerate() {
             first.push(first[row] + pattern.start[row + 1] - diagonal);
         }
-        Self { group_of, first }
+        let mut sources = vec![0; pattern.columns.len()];
+        let rows = pattern.rows();
+        let lengths = (0..rows).step_by(ROWS).map(|row| {
+            let end = pattern.start[rows.min(row + ROWS)];
+            (end - pattern.start[row]) as usize
+        });
+        let parts: Vec<_> = split(&mut sources, lengths).collect();
+        paced::for_each_part(parts, |task, sources| {
+            let rows = task * ROWS..rows.min(task * ROWS + ROWS);
+            let places =
+                rows.flat_map(|row| pattern.columns(row).iter().map(move |&to| (row as u32, to)));
+            for (source, (row, column)) in sources.iter_mut().zip(places) {
+                let index = upper_index(&first, pattern, row.min(column), row.max(column));
+                *source = 2 * index + u32::from(column < row);
+            }
+        })
+        .await;
+        Self { group_of, first, sources }
     }
 
     /// Returns the aggregate of each vertex of a block's local list, [`NONE`] for fixed vertices.
@@ -110,17 +129,6 @@ impl Couplings {
     /// Returns the upper blocks, all zero.
     pub(super) fn upper<T: Scalar>(&self) -> Vec<Square<T>> {
         vec![Square::default(); self.first.last().map_or(0, |&count| count as usize)]
-    }
-
-    /// Returns the index of the upper block of a row and a column not before it.
-    #[inline(always)]
-    fn index(&self, pattern: &Pattern, row: u32, column: u32) -> u32 {
-        let at = row as usize;
-        if row == column {
-            return self.first[at];
-        }
-        let columns = &pattern.columns[pattern.diagonal[at] as usize..pattern.row(at).end];
-        self.first[at] + columns.partition_point(|&other| other < column) as u32
     }
 
     /// Returns the sums of a block before its first triangle. `own` has the upper blocks in the rows of its aggregates.
@@ -155,33 +163,32 @@ impl Couplings {
 
     /// Sets the blocks of the matrix, given its upper blocks.
     pub(super) async fn complete<T: Scalar>(&self, upper: &[Square<T>], matrix: &mut Matrix<T>) {
-        let Matrix { pattern, blocks, .. } = matrix;
-        blocks.resize(pattern.columns.len(), Square::default());
-        let rows = pattern.rows();
-        let lengths = (0..rows).step_by(ROWS).map(|row| {
-            let end = pattern.start[rows.min(row + ROWS)];
-            (end - pattern.start[row]) as usize
-        });
-        let parts: Vec<_> = split(blocks, lengths).collect();
-        paced::for_each_part(parts, |task, blocks| {
-            let rows = (task * ROWS..rows.min(task * ROWS + ROWS)).map(|row| row as u32);
-            let places = rows.flat_map(|row| {
-                pattern.columns(row as usize).iter().map(move |&column| [row, column])
-            });
-            for (block, [row, column]) in blocks.iter_mut().zip(places) {
-                let index = self.index(pattern, row.min(column), row.max(column)) as usize;
-                *block = if column < row { transposed(&upper[index]) } else { upper[index] };
-            }
+        matrix.blocks = paced::collect(self.sources.len(), |at| {
+            let source = self.sources[at];
+            let block = &upper[(source / 2) as usize];
+            if source % 2 == 1 { transposed(block) } else { *block }
         })
         .await;
     }
+}
+
+/// Returns the index of the upper block of a row and a column not before it. `first` has the index of the first upper block
+/// of each row.
+#[inline(always)]
+fn upper_index(first: &[u32], pattern: &Pattern, row: u32, column: u32) -> u32 {
+    let at = row as usize;
+    if row == column {
+        return first[at];
+    }
+    let columns = &pattern.columns[pattern.diagonal[at] as usize..pattern.row(at).end];
+    first[at] + columns.partition_point(|&other| other < column) as u32
 }
 
 impl<T: Scalar> Entries<'_, T> {
     /// Returns the sum in the upper block of a row and a column not before it.
     #[inline(always)]
     pub(super) fn at(&mut self, row: u32, column: u32) -> &mut Square<T> {
-        let index = self.couplings.index(self.pattern, row, column);
+        let index = upper_index(&self.couplings.first, self.pattern, row, column);
         match self.own.get_mut((index as usize).wrapping_sub(self.start)) {
             Some(own) => own,
             None => self.beyond.entry(index).or_default(),

@@ -121,7 +121,9 @@ impl<T: Scalar> Lattice<T> {
     async fn sum_up(&self, next: &mut Self) {
         let Some(Coarser { members, shifts }) = &self.coarser else { return };
         let Matrix { pattern: coarse, blocks, .. } = &mut next.matrix;
-        blocks.resize(coarse.columns.len(), Square::default());
+        if blocks.is_empty() {
+            *blocks = vec![Square::default(); coarse.columns.len()];
+        }
         let rows = coarse.rows();
         let lengths = (0..rows).map(|row| coarse.row(row).len());
         let mut parts: Vec<_> = super::blocks::split(blocks, lengths).collect();

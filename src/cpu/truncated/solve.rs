@@ -60,7 +60,7 @@ impl<T: Scalar> Solver<T> {
     /// Prepares a mesh from its connectivity, with the vertices that slide.
     pub(super) async fn new(problem: &Problem, curves: Option<&OnCurves>) -> Self {
         let (blocks, pattern) = Blocks::new(problem, &Movers::new(problem, curves)).await;
-        let couplings = Couplings::new(&blocks, &pattern);
+        let couplings = Couplings::new(&blocks, &pattern).await;
         let sizes = blocks.group_start.windows(2);
         let levels = Levels::new(pattern, sizes.map(|ends| (ends[1] - ends[0]).into()).collect());
         let levels = levels.await;
