@@ -7,10 +7,10 @@ fn runtime_zero() -> u32 {
 
 // Returns a position in the application's coordinates, rounded to single precision.
 fn exported(p: vec4<f32>) -> vec2<f32> {
-    let high = p.xy * exchange.inverse_scale;
-    let low = p.zw * exchange.inverse_scale;
+    let x = pair_times(p.xz, exchange.inverse_scale);
+    let y = pair_times(p.yw, exchange.inverse_scale);
     return vec2(
-        pair_add(vec2(exchange.center.x, exchange.center.z), vec2(high.x, low.x)).x,
-        pair_add(vec2(exchange.center.y, exchange.center.w), vec2(high.y, low.y)).x,
+        pair_add(vec2(exchange.center.x, exchange.center.z), x).x,
+        pair_add(vec2(exchange.center.y, exchange.center.w), y).x,
     );
 }

@@ -1,7 +1,7 @@
 // Reads the positions from an application's vertex buffer.
 
 fn imported(x: f32, center: vec2<f32>) -> vec2<f32> {
-    return pair_add(vec2(x, 0.0), -center) * exchange.scale;
+    return pair_times(pair_add(vec2(x, 0.0), -center), exchange.scale);
 }
 
 @compute @workgroup_size(WORKGROUP)

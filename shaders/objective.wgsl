@@ -69,7 +69,9 @@ fn objective(
 #endif
         let seen = edge_is_finite(a) && edge_is_finite(b);
         for (var i = 0u; i < TRACKED; i++) {
-            sums[i] = pair_accumulate(sums[i], select(NOT_FINITE, values[i], seen));
+            // The last value counts inverted triangles, among which are those with edges that are not finite.
+            let is_value = seen || i == TRACKED - 1u;
+            sums[i] = pair_accumulate(sums[i], select(NOT_FINITE, values[i], is_value));
         }
         // An inverted triangle is the worst possible.
         let sound = seen && values[TRACKED - 1u] == 0.0;

@@ -46,6 +46,20 @@ fn pair_add(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
     return two_sum(s.x, s.y + (a.y + b.y));
 }
 
+// A pair times a float, of which 12 bits and the other 12 bits have exact products with those of the pair's high part
+// (Dekker's product).
+fn pair_times(a: vec2<f32>, y: f32) -> vec2<f32> {
+    let x = a.x;
+    let x_high = bitcast<f32>(opaque_bits(x) & 0xfffff000u);
+    let y_high = bitcast<f32>(opaque_bits(y) & 0xfffff000u);
+    let x_low = opaque(x - x_high);
+    let y_low = opaque(y - y_high);
+    let product = opaque(x * y);
+    let across = opaque(opaque(x_high * y_high) - product) + opaque(x_high * y_low);
+    let error = opaque(opaque(across) + opaque(x_low * y_high)) + opaque(x_low * y_low);
+    return two_sum(product, opaque(error) + opaque(a.y * y));
+}
+
 // Adds a float to a pair, as a term of a long sum. Cheaper than pair_add, but the low part is not renormalized.
 fn pair_accumulate(sum: vec2<f32>, term: f32) -> vec2<f32> {
     let s = two_sum(sum.x, term);

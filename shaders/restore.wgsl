@@ -21,7 +21,8 @@ fn restore_last_valid(
         return;
     }
     let then = valid_positions[index];
-    if any(then != now) {
+    // By their bits, as a comparison with NaN differs from driver to driver.
+    if any(bitcast<vec4<u32>>(then) != bitcast<vec4<u32>>(now)) {
         set_position(vertex, then);
         atomicAdd(&changes[0], 1u);
     }

@@ -6,7 +6,7 @@ fn runtime_zero() -> u32 {
 }
 
 fn normalized_target(x: f32, center: vec2<f32>) -> vec2<f32> {
-    return pair_add(vec2(x, 0.0), -center) * movement.scale;
+    return pair_times(pair_add(vec2(x, 0.0), -center), movement.scale);
 }
 
 // Returns the end of a way: the target or, if the target is not finite, the present position.

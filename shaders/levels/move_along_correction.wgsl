@@ -6,7 +6,8 @@ fn move_along_correction(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let v = invocation(id, groups);
-    if v >= op.rows {
+    // The correction of a refused trial may have no numbers, of which a multiple by 0 is none either.
+    if v >= op.rows || length_along() == 0.0 {
         return;
     }
     let d = move_of(v);

@@ -116,6 +116,31 @@ fn an_origin_and_a_scale_are_those_of_the_buffer() {
     }
 }
 
+/// The product with a scale that is no power of two lost the digits of vertices near the origin of the buffer.
+#[test]
+fn vertices_near_the_origin_of_a_scaled_buffer_keep_their_digits() {
+    let mesh = bad_plate(500);
+    let app = App::new();
+    let device_mesh = app.mesh(&mesh);
+    let vertices = Vertices::usual(&app, &mesh);
+    let scale = f64::from(0.001_f32);
+    for origin in interior(&mesh).into_iter().step_by(7) {
+        let origin = mesh.points[origin as usize];
+        let place = vertices.place().origin(origin).scale(scale);
+        let bound = device_mesh.bind_vertices(&place).unwrap();
+        app.submit(|encoder| bound.encode_export(encoder));
+        let words = app.read(&vertices.buffer);
+        for &v in mesh.triangles.as_flattened() {
+            for axis in 0..2 {
+                let found = f64::from(f32::from_bits(words[vertices.word(v) + axis]));
+                let expected = (mesh.points[v as usize][axis] - origin[axis]) * scale;
+                let error = (found - expected).abs();
+                assert!(error <= 1.2e-7 * expected.abs() + 1e-13, "{found} for {expected}");
+            }
+        }
+    }
+}
+
 #[test]
 fn vertices_that_the_application_leaves_alone_keep_their_full_precision() {
     // Far from the origin, the floats of the buffer resolve a 30th of an edge. The mesh is perturbed less than others,

@@ -164,6 +164,21 @@ fn pins_and_masks_hold_sliding_vertices_with_their_partners() {
     assert_eq!([first, second, below].map(has_moved), [false, false, true]);
 }
 
+/// A pinned vertex of no triangle held all vertices that slide without a partner.
+#[test]
+fn a_pinned_vertex_of_no_triangle_holds_no_other() {
+    let mut mesh = channel();
+    mesh.points.push([5.0, 5.0]);
+    let unused = mesh.points.len() as u32 - 1;
+    let sliding = Sliding::new(mesh, Slide::default());
+    sliding.device_mesh.set_pinned(&[unused, 5]).unwrap();
+    let before = sliding.points();
+    let after = sliding.swept(&mut sliding.sweeps(), 2);
+    let has_moved = |v: usize| before[v] != after[v];
+    assert_eq!([unused as usize, 5].map(has_moved), [false; 2]);
+    assert!((1..16).filter(|v| *v != 5).all(has_moved));
+}
+
 #[test]
 fn a_moved_vertex_slides_on_from_a_place_on_its_curve_and_stays_elsewhere() {
     let sliding = Sliding::new(channel(), Slide::default());

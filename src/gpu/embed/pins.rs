@@ -20,6 +20,7 @@ use crate::gpu::kernels::uniforms::{HELD, Mask};
 use crate::gpu::mesh::{Changes, Curves, MeshBuffers};
 use crate::gpu::scope::{check_alive, scoped, scoped_to_buffer};
 use crate::layout::Problem;
+use crate::run::multilevel::NONE;
 
 /// Vertices that the host holds in place, by device number.
 pub(crate) struct Pins {
@@ -166,7 +167,10 @@ impl SlidingPins {
             Change::Unpin(places) => places.iter().for_each(|place| _ = pinned.remove(place)),
             Change::PinThese(places) => *pinned = places.iter().copied().collect(),
         }
-        let holds = |pins: &BTreeSet<u32>, pair: &[u32; 2]| pair.iter().any(|v| pins.contains(v));
+        // A vertex without a partner has `NONE` in its place, as has a pinned vertex of no triangle.
+        let holds = |pins: &BTreeSet<u32>, pair: &[u32; 2]| {
+            pair.iter().any(|v| *v != NONE && pins.contains(v))
+        };
         let all = curves.pairs.iter().enumerate();
         let now = all.map(|(index, pair)| (index, holds(&before, pair), holds(&pinned, pair)));
         let changed: Vec<_> = now.filter(|(_, before, now)| before != now).collect();

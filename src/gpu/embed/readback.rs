@@ -162,12 +162,22 @@ impl<T: Pod> Readback<T> {
     pub fn latest(&mut self) -> Result<Option<&[T]>, GpuError> {
         self.device.check()?;
         self.collect()?;
-        // Copies that are in flight on a lost device are reported as lost. Without such a copy, only a trial shows the loss.
-        if self.copies.iter().all(|copy| copy.state.load(Ordering::Acquire) == FREE) {
+        // A device that the application destroys reports the copies in flight as lost. Other losses leave the copies under way,
+        // and without a copy, only a trial shows any loss.
+        let all_are =
+            |state| self.copies.iter().all(|own| own.state.load(Ordering::Acquire) == state);
+        if all_are(FREE) || all_are(UNDER_WAY) {
             check_alive(&self.device)?;
         }
         self.returned = self.arrived;
         Ok(self.arrived.is_some().then_some(&self.latest[..]))
+    }
+
+    /// Returns the values of the latest copy that has arrived, as [`latest`](Self::latest) does, but without a check of the device
+    /// and of earlier calls.
+    pub(crate) fn latest_unchecked(&mut self) -> Option<&[T]> {
+        self.collect().ok()?;
+        self.arrived.is_some().then_some(&self.latest[..])
     }
 
     /// Returns how many copies were requested after the copy that [`latest`](Self::latest) returned, including copies
