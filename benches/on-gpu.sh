@@ -77,7 +77,7 @@ if ! ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; then
     export LD_LIBRARY_PATH=$scratch/root/usr/lib/$(uname -m)-linux-gnu
 fi
 export g=./gpu-smooth scratch
-export on="${adapter:+--adapter $adapter}" GPU_SMOOTH_ADAPTER=$adapter
+export adapter GPU_SMOOTH_ADAPTER=$adapter
 if [ -z "$adapter" ]; then unset GPU_SMOOTH_ADAPTER; fi
 
 # Runs a step: name, seconds at most, commands. The output goes to a file of that name.
@@ -107,23 +107,23 @@ fi
 # tries the driver first.
 step start 120 'rm -rf "$scratch"/cache/*
     for how in cold warm warm; do echo "== $how"
-        time $g meshes/plate.node "$scratch/o.node" --force --engine gpu $on; done
+        time $g meshes/plate.node "$scratch/o.node" --force --engine gpu ${adapter:+--adapter "$adapter"}; done
     for how in "two processes" "two processes"; do echo "== adapters, $how"; time $g adapters; done
     for how in "one process" "one process"; do echo "== adapters, $how"; time GPU_SMOOTH_IS_TRIAL=1 $g adapters; done'
 step right 120 'for m in meshes/*.node; do for e in gpu cpu; do
-        if [ $e = gpu ]; then on_it=$on; else on_it=; fi
-        $g "$m" "$scratch/$e.node" --force --engine $e $on_it || exit 1; done
+        set --; if [ $e = gpu ] && [ -n "$adapter" ]; then set -- --adapter "$adapter"; fi
+        $g "$m" "$scratch/$e.node" --force --engine $e "$@" || exit 1; done
         $g compare "$m" "$scratch/gpu.node" || exit 1; $g compare "$scratch/cpu.node" "$scratch/gpu.node"; done'
 for n in ${sizes//,/ }; do
-    step "runs-$n" 240 "\$g bench --runs --engine gpu \$on --seconds 1 --markdown --vertices $n
+    step "runs-$n" 240 "\$g bench --runs --engine gpu \${adapter:+--adapter \"\$adapter\"} --seconds 1 --markdown --vertices $n
         \$g bench --runs --engine cpu --seconds 1 --markdown --vertices $n"
-    step "kernels-$n" 120 "\$g bench --engine gpu \$on --seconds 1 --markdown --vertices $n"
+    step "kernels-$n" 120 "\$g bench --engine gpu \${adapter:+--adapter \"\$adapter\"} --seconds 1 --markdown --vertices $n"
 done
-step runs-json 240 "\$g bench --runs --engine gpu \$on --seconds 1 --json --vertices ${sizes%,*}"
+step runs-json 240 "\$g bench --runs --engine gpu \${adapter:+--adapter \"\$adapter\"} --seconds 1 --json --vertices ${sizes%,*}"
 small=''
 for n in ${sizes//,/ }; do if [ "$n" -le 1000000 ]; then small="$small $n"; fi; done
 step frames 90 "./frames $small"
-step kernels-edge 120 "\$g bench --engine gpu \$on --seconds 1 --scheme edge --markdown --vertices 100000"
+step kernels-edge 120 "\$g bench --engine gpu \${adapter:+--adapter \"\$adapter\"} --seconds 1 --scheme edge --markdown --vertices 100000"
 export GPU_SMOOTH_MESHES=$here/meshes
 # Tests take the best adapter. Those of counts need Mesa's software driver.
 for t in metrics sweeps embed; do

@@ -187,6 +187,15 @@ mod tests {
         Quality::of(points, &Topology::new(&mesh).unwrap()).unwrap()
     }
 
+    /// Such angles were left out, so the least angle of a mesh without another triangle was 180 degrees.
+    #[test]
+    fn angles_at_vertices_of_equal_positions_are_of_any_size() {
+        for points in [[[1.0, 2.0]; 3], [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]]] {
+            let q = quality(&points);
+            assert_eq!((q.min_angle, q.max_angle), (0.0, 180.0));
+        }
+    }
+
     #[test]
     fn a_right_triangle_by_hand() {
         // Legs 1 and 1: edge ratio √2, IMR = (1 + 1 + 2) / (4√3 · ½) = 2/√3.

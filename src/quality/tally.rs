@@ -70,6 +70,7 @@ impl Shape {
         let Edges { a, b, c, unit } = Edges::of(points, corners, lengths, orientation);
         let corner = Corner { a, b, ideal: Ideal::of_area(mean_area / unit / unit) };
         let doubled = corner.doubled_area().abs();
+        // NaN at two vertices of equal positions.
         let cotangent = |u: [f64; 2], v: [f64; 2]| (u[0] * v[0] + u[1] * v[1]) / doubled;
         let cotangents = [cotangent(a, b), -cotangent(a, c), cotangent(b, c)];
         Self { corner, cotangents, is_positive }
@@ -168,6 +169,10 @@ impl Tally {
         let [a, b, c] = shape.cotangents;
         self.cotangents[0] = self.cotangents[0].min(a).min(b).min(c);
         self.cotangents[1] = self.cotangents[1].max(a).max(b).max(c);
+        if a.is_nan() || b.is_nan() || c.is_nan() {
+            // An angle at vertices of equal positions may have any size.
+            self.cotangents = [f64::NEG_INFINITY, f64::INFINITY];
+        }
         let ratio = shape.inverse_mean_ratio();
         if ratio > self.worst.0 {
             self.worst = (ratio, index);

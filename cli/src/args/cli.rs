@@ -161,7 +161,7 @@ pub(crate) enum Command {
     #[command(after_help = "Example:\n  gpu-smooth groups wing.su2")]
     Groups(GroupsArgs),
     /// Proves from two files of a mesh that only vertices which may move have moved, and that no triangle is inverted. Of
-    /// files in different formats, only positions and triangles are compared
+    /// files in different formats, only positions and elements are compared
     #[command(after_help = "Example:\n  gpu-smooth compare part.msh smooth.msh --only steel")]
     Compare(CompareArgs),
     /// Writes a mesh in another format; if that format cannot hold all of the mesh, lists the losses, and writes only

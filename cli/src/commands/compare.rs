@@ -126,7 +126,7 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
         if is_converted {
             let [mine, theirs] = formats;
             tell::say(&format!(
-                "{mine} and {theirs}: positions and triangles were compared, and neither groups nor other data"
+                "{mine} and {theirs}: positions and elements were compared, and neither groups nor other data"
             ));
         }
         tell::say(&summary(&before, &after, &proof, is_converted));
@@ -182,7 +182,7 @@ fn summary(before: &LoadedMesh, after: &LoadedMesh, proof: &Proof, is_converted:
     let mut text = format!(
         "{}: {} of {} vertices have moved\n\
          {slides}every vertex that must stay has the same {}; {elements}",
-        if is_converted { "the triangles are the same" } else { "only coordinates differ" },
+        if is_converted { "the elements are the same" } else { "only coordinates differ" },
         moved.len(),
         after.source.points().len(),
         if is_converted { "position, rounded as the second file stores it" } else { "bits" },

@@ -10,6 +10,7 @@ use crate::args::{ConvertArgs, OutputArgs};
 use crate::error::{CliError, ErrorKind};
 use crate::load::overwrite::{self, Likeness};
 use crate::load::{LoadedMesh, conversion, streams};
+use crate::report::elements;
 use crate::request::{FormRequest, MeshOutput, Outputs, ReadRequest};
 use crate::terminal::{interrupt, tell};
 
@@ -37,10 +38,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     if !show.quiet && !streams::is_standard(out) {
         let mesh = file.mesh();
         let vertices = mesh.points.len();
-        let elements = match mesh.triangles.len() {
-            0 => format!("{} quadrilaterals", mesh.quadrilaterals.len()),
-            triangles => format!("{triangles} triangles"),
-        };
+        let elements = elements(mesh.triangles.len(), mesh.quadrilaterals.len());
         tell::say(&format!(
             "{vertices} vertices and {elements}, with all else that {format} holds of {}: {}",
             file.source.format(),
@@ -59,7 +57,7 @@ fn check_overwrite(
 ) -> Result<(), CliError> {
     // Conversions write joined vertices. Other vertices at one place, such as those of a crack, stay apart.
     let reading = ReadRequest { weld: false, ..reading };
-    let found = overwrite::check(file, written, reading.options_of_output(), Likeness::Triangles);
+    let found = overwrite::check(file, written, reading.options_of_output(), Likeness::Elements);
     let Err(error) = found else { return Ok(()) };
     // A format may renumber vertices. Equal bytes then identify an earlier result of this conversion.
     let is_same = |path: &PathBuf, new: Vec<u8>| fs::read(path).is_ok_and(|old| old == new);

@@ -31,7 +31,7 @@ pub(crate) fn check(
     let (reading, likeness) = match conversion {
         None => (reading.clone(), Likeness::Mesh),
         // Conversions write joined vertices. Other vertices at one place, such as those of a crack, stay apart.
-        Some(_) => (ReadRequest { weld: false, ..reading.clone() }, Likeness::Triangles),
+        Some(_) => (ReadRequest { weld: false, ..reading.clone() }, Likeness::Elements),
     };
     overwrite::check(file, &written, reading.options_of_output(), likeness)
         .map_err(|error| error.with_remedy(remedy))

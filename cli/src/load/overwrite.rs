@@ -8,14 +8,15 @@ use mesh_io::{MeshFile, ReadError, ReadOptions, atomic};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::report::elements;
 
 /// Properties in which a written mesh must equal the existing mesh that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Likeness {
-    /// The triangles and the fixed vertices.
+    /// The elements and the fixed vertices.
     Mesh,
-    /// The triangles. A conversion may lose groups, and with them the constraints that fix vertices.
-    Triangles,
+    /// The elements. A conversion may lose groups, and with them the constraints that fix vertices.
+    Elements,
 }
 
 /// Checks that the files `written`, the main file first, are empty or hold the input mesh or an earlier state of the
@@ -78,31 +79,41 @@ fn read(path: &Path, options: ReadOptions) -> Result<MeshFile, ReadError> {
 
 /// Describes the first difference between two meshes; `None` if `new` may replace `old`.
 fn difference(new: &MeshFile, old: &MeshFile, likeness: Likeness) -> Option<String> {
-    let counts = |file: &MeshFile| [file.points().len(), file.triangles().len()];
-    if counts(new) != counts(old) {
-        let [vertices, triangles] = counts(old);
-        let [own_vertices, own_triangles] = counts(new);
+    // A mesh that was converted to another format may have lost its quadrilaterals.
+    let has_lost = likeness == Likeness::Elements
+        && !(new.holds_quadrilaterals() && old.holds_quadrilaterals());
+    let quadrilaterals = |file: &MeshFile| match has_lost {
+        true => Vec::new(),
+        false => file.proper_quadrilaterals().map(|(_, own)| *own).collect(),
+    };
+    let [of_new, of_old] = [new, old].map(quadrilaterals);
+    let [old_counts, new_counts] = [(old, &of_old), (new, &of_new)]
+        .map(|(file, own)| (file.points().len(), elements(file.triangles().len(), own.len())));
+    if new_counts != old_counts {
+        let ((vertices, elements), (own_vertices, own_elements)) = (old_counts, new_counts);
         return Some(format!(
-            "it has {vertices} vertices and {triangles} triangles, not {own_vertices} and {own_triangles}"
+            "it has {vertices} vertices and {elements}, not {own_vertices} and {own_elements}"
         ));
     }
-    if new.triangles() != old.triangles() && ascending(new) != ascending(old) {
-        return Some("the vertices of its triangles are others".to_owned());
+    let have_other_triangles = new.triangles() != old.triangles()
+        && ascending(new.triangles()) != ascending(old.triangles());
+    if have_other_triangles || ascending(&of_new) != ascending(&of_old) {
+        return Some("the vertices of its elements are others".to_owned());
     }
     (likeness == Likeness::Mesh && fixed(new) != fixed(old))
         .then(|| "its fixed vertices are others".to_owned())
 }
 
-/// Returns the triangles sorted, with sorted corners, independent of the order in the file.
-fn ascending(file: &MeshFile) -> Vec<[u32; 3]> {
-    let sorted = |corners: &[u32; 3]| {
+/// Returns elements sorted, with sorted corners, independent of the order in the file.
+fn ascending<const N: usize>(elements: &[[u32; N]]) -> Vec<[u32; N]> {
+    let sorted = |corners: &[u32; N]| {
         let mut corners = *corners;
         corners.sort_unstable();
         corners
     };
-    let mut triangles: Vec<_> = file.triangles().iter().map(sorted).collect();
-    triangles.sort_unstable();
-    triangles
+    let mut elements: Vec<_> = elements.iter().map(sorted).collect();
+    elements.sort_unstable();
+    elements
 }
 
 /// Returns the vertices fixed by the file, ascending.

@@ -177,9 +177,12 @@ impl ProfileReport {
     fn explained(&self, table: &str, is_by_acute: bool) -> String {
         let mut lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
         if self.quadrilaterals > 0 {
-            let count = self.quadrilaterals;
+            let (count, have) = match self.quadrilaterals {
+                1 => ("1 quadrilateral".to_owned(), "has"),
+                count => (format!("{count} quadrilaterals"), "have"),
+            };
             lines.push(format!(
-                "the limits of elements are of triangles: {count} quadrilaterals have no verdict"
+                "the limits of elements are of triangles: {count} {have} no verdict"
             ));
         }
         if !self.reasons.is_empty() {

@@ -144,7 +144,7 @@ impl Outputs {
     pub(crate) fn check(&self, read: &[PathBuf], written: &[PathBuf]) -> Result<(), CliError> {
         self.check_names()?;
         self.check_files(read, written, ErrorKind::Usage)?;
-        written.iter().try_for_each(|path| check_ending(path))?;
+        written.iter().try_for_each(|path| check_ending(path, self.mesh))?;
         written.iter().try_for_each(|path| check_folder(path))?;
         self.check_disk()
     }
@@ -396,19 +396,20 @@ const OF_OTHERS: [&str; 11] =
     ["png", "svg", "jpg", "pdf", "html", "htm", "json", "csv", "zip", "xz", "bz2"];
 
 /// Refuses an OUT that ends like a file of another kind. A run would write the format of IN there.
-fn check_ending(out: &Path) -> Result<(), CliError> {
+fn check_ending(out: &Path, mesh: MeshOutput) -> Result<(), CliError> {
     let ending = out.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase);
     let Some(ending) = ending.filter(|ending| OF_OTHERS.contains(&&**ending)) else {
         return Ok(());
     };
     let text = format!("{}: a mesh is written here, and .{ending} is no mesh", out.display());
     let remedy = match &*ending {
+        "zip" | "xz" | "bz2" => "End OUT like IN, or in .gz",
+        _ if mesh == MeshOutput::Converted => "End OUT like a mesh format, as .msh or .vtu",
         "png" | "svg" | "jpg" | "pdf" => {
             "End OUT like IN, and draw a picture by --picture FILE.png"
         }
         "html" | "htm" => "End OUT like IN, and write a page by --html FILE.html",
-        "json" | "csv" => "End OUT like IN, and write a report by --report FILE.json",
-        _ => "End OUT like IN, or in .gz",
+        _ => "End OUT like IN, and write a report by --report FILE.json",
     };
     Err(CliError::usage(text).with_remedy(remedy))
 }

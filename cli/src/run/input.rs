@@ -1,7 +1,8 @@
 //! Input shared by the stages of a run.
 
-use crate::load::conversion::NewForm;
-use crate::load::{LoadedMesh, MovableSelection};
+use crate::error::CliError;
+use crate::load::conversion::{self, NewForm};
+use crate::load::{InterpolatedFields, LoadedMesh, MovableSelection, streams};
 use crate::report::SmoothJob;
 use crate::request::SmoothRequest;
 use gpu_smooth::{front_ends::Plane, options::Precision};
@@ -24,6 +25,22 @@ pub(super) struct Input<'a> {
 impl<'a> Input<'a> {
     pub(super) fn request(&self) -> &'a SmoothRequest {
         self.task.request
+    }
+
+    /// Writes the mesh with its vertices at `points` to OUT, in its own or another format.
+    pub(super) fn write(
+        &self,
+        points: &[[f64; 2]],
+        fields: &InterpolatedFields,
+    ) -> Result<(), CliError> {
+        let (file, out, fields) = (self.file, self.task.out, fields.fields());
+        match &self.form {
+            None => streams::write(file, out, points, fields),
+            Some(form) => {
+                let given = file.domain.given(points);
+                conversion::write(&form.conversion(file, &given, fields, out)?, out)
+            }
+        }
     }
 
     /// Returns the precision with which OUT stores the coordinates of the mesh. Coordinates in a tilted plane are not

@@ -95,7 +95,7 @@ fn prepared<'a>(
             drop(prepared);
             follow.stage(Stage::Untangling);
             fields.check_untangled()?;
-            Ok(Prepared::UntangledInput(untangle::untangle_input(input.task, input.began, file)?))
+            Ok(Prepared::UntangledInput(untangle::untangle_input(input)?))
         }
         Err(error) => Err(refusal(request, input.choice, file, &error)),
         Ok(smoother) => Ok(Prepared::Ready(Box::new(smoother))),

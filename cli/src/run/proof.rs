@@ -55,13 +55,13 @@ impl Proof {
     }
 
     /// Compares a mesh with a file in another format or encoding, to which the mesh was converted, by positions and
-    /// triangles. Vertices that have moved by no more than the rounding of the other format stay.
+    /// elements. Vertices that have moved by no more than the rounding of the other format stay.
     pub(crate) fn of_conversion(
         before: &LoadedMesh,
         after: &LoadedMesh,
         slide: Option<&Slide>,
     ) -> Result<Self, MeshError> {
-        let difference = before.source.difference_of_triangles(&after.source);
+        let difference = before.source.difference_of_elements(&after.source);
         let precision = after.source.precision();
         let rounded = |point: &[f64; 2]| point.map(|x| precision.rounded(x));
         let old: Vec<[f64; 2]> = before.mesh().points.iter().map(rounded).collect();

@@ -31,8 +31,8 @@ pub(crate) struct Rehearsal {
     pub(crate) sliding: Option<usize>,
     /// Numbers of vertices that are not free, by the reason.
     pub(crate) fixed: Vec<(FixedBy, usize)>,
-    /// Number of inverted and flat triangles, which the run would untangle first.
-    pub(crate) bad: usize,
+    /// Numbers of inverted or flat triangles and of concave quadrilaterals, which the run would untangle first.
+    pub(crate) bad: [usize; 2],
     /// The reason why the run would do nothing; `None` if the run would smooth the mesh.
     pub(crate) nothing_to_do: Option<String>,
     /// Name of the GPU adapter; `None` for the CPU.
@@ -59,7 +59,11 @@ pub(crate) fn rehearse(
     if request.untangle.is_some() && untangle::can_mend(&smoother) {
         fields.check_untangled()?;
         let topology = Topology::new(mesh).map_err(|error| explain::mesh_error(&file, &error))?;
-        let bad = topology.bad_triangles(&mesh.points).map_err(CliError::from)?.len();
+        let triangles = topology.bad_triangles(&mesh.points).map_err(CliError::from)?.len();
+        let corners = topology.bad_quadrilaterals(&mesh.points).map_err(CliError::from)?;
+        let mut concave: Vec<usize> = corners.iter().map(|bad| bad.quadrilateral).collect();
+        concave.dedup();
+        let bad = [triangles, concave.len()];
         let rehearsal = Rehearsal { bad, ..of_topology(&input, &topology, &engine(size)?) };
         return Ok(rehearsal);
     }
@@ -81,7 +85,7 @@ fn of_topology(input: &Input<'_>, topology: &Topology<'_>, taken: &OpenEngine) -
         free: topology.free_count(),
         sliding: None,
         fixed: FixedBy::counts(file, topology, &input.choice.layers),
-        bad: 0,
+        bad: [0; 2],
         nothing_to_do: input.choice.nothing_to_do.clone(),
         adapter: match &*taken.backend {
             Backend::Cpu => None,

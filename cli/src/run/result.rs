@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use gpu_smooth::measure::{Change, Measured};
-use gpu_smooth::{Metric, Quality, Topology};
+use gpu_smooth::{MeshError, Metric, Quality, Topology};
 use mesh_io::PointField;
 
 use crate::error::CliError;
-use crate::load::{InterpolatedFields, conversion, depths, streams};
+use crate::load::{InterpolatedFields, depths, streams};
 use crate::report::{
     Certificate, FileHash, ProfileChange, ProfileReport, Quantities, SpacingReport, TargetReport,
 };
@@ -51,10 +51,16 @@ pub(super) fn measure(
 ) -> Result<Measures, CliError> {
     let (request, file, outcome) = (input.request(), input.file, &ran.outcome);
     let (topology, old) = (ready.smoother.topology(), &file.mesh().points);
-    let after = Quality::on(request.surface, &outcome.points, topology)?;
-    let change = Change::between(topology, old, &outcome.points)?;
     let is_reported = request.outputs.report.is_some() || request.outputs.page.is_some();
-    let spacing = spacing::at_walls(file, topology, &outcome.points, is_reported)?;
+    // The spacing takes one thread.
+    let (measured, spacing) = rayon::join(
+        || -> Result<_, MeshError> {
+            let after = Quality::on(request.surface, &outcome.points, topology)?;
+            Ok((after, Change::between(topology, old, &outcome.points)?))
+        },
+        || spacing::at_walls(file, topology, &outcome.points, is_reported),
+    );
+    let ((after, change), spacing) = (measured?, spacing?);
     let base = request.scheme().base();
     let start = ready.mended.map_or(file.mesh(), |mended| &mended.mesh);
     // Both in double precision, unlike the history of a run on a GPU.
@@ -109,14 +115,7 @@ pub(super) fn write(
     follow.stage(Stage::Writing { bytes: input.bytes });
     // Hashing precedes writing, which may replace the input files.
     let hashes = if request.outputs.report.is_some() { proof::hashes(file) } else { Vec::new() };
-    match &input.form {
-        None => streams::write(file, out, &ran.outcome.points, fields.fields())?,
-        Some(form) => {
-            let points = file.domain.given(&ran.outcome.points);
-            let converted = form.conversion(file, &points, fields.fields(), out)?;
-            conversion::write(&converted, out)?;
-        }
-    }
+    input.write(&ran.outcome.points, fields)?;
     let certificate = match request.outputs.report.is_some() && !streams::is_standard(out) {
         true => Some(certificate(input, ready, fields, hashes)?),
         false => None,

@@ -3,7 +3,6 @@
 use crate::error::CliError;
 use crate::load::{InterpolatedFields, LoadedMesh};
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 use gpu_smooth::{
     Element, Mesh, MeshError, Smoother, Topology,
@@ -14,6 +13,7 @@ use gpu_smooth::{
 use crate::load::explain;
 use crate::load::streams;
 use crate::report::SmoothJob;
+use crate::run::input::Input;
 use crate::terminal::interrupt;
 use crate::terminal::numbers::counted;
 
@@ -30,12 +30,9 @@ pub(crate) struct UntangledInput {
 /// Untangles a mesh that has inverted or flat triangles.
 ///
 /// If triangles stay inverted, returns an error that lists them. With `--keep-going`, the best mesh found is written
-/// before. The time limit counts from `began`.
-pub(crate) fn untangle_input(
-    task: &SmoothJob<'_>,
-    began: Instant,
-    file: &LoadedMesh,
-) -> Result<UntangledInput, CliError> {
+/// before, unless a signal ended untangling. The time limit counts from the start of the run.
+pub(super) fn untangle_input(input: &Input<'_>) -> Result<UntangledInput, CliError> {
+    let Input { task, file, began, .. } = *input;
     let SmoothJob { request, verbosity, out, .. } = *task;
     let keeps_going = request.untangle.is_some_and(|untangle| untangle.keeps_going);
     let mesh = file.mesh();
@@ -97,12 +94,15 @@ pub(crate) fn untangle_input(
     if let Some(ended) = ended {
         error = error.after(&format!("{ended}."));
     }
-    if !keeps_going {
+    if interrupt::is_requested() {
         return Err(error);
+    }
+    if !keeps_going {
+        return Err(error.with_remedy("--keep-going writes the best mesh found"));
     }
     let mut fields = InterpolatedFields::default();
     fields.add_dependents(file, &points)?;
-    Err(error.with_detail(match streams::write(file, out, &points, fields.fields()) {
+    Err(error.with_detail(match input.write(&points, &fields) {
         Ok(()) => format!("The best mesh found was written: {}", out.display()),
         Err(error) => error.to_string(),
     }))
@@ -120,7 +120,6 @@ fn misplaced_loop(file: &LoadedMesh, vertices: &[u32]) -> CliError {
     .with_remedy("Correct the positions of the loop; --keep-going writes the best mesh found")
 }
 
-const KEPT: &str = "; --keep-going writes the best mesh found";
 const PERHAPS: &str = ". Perhaps fixed vertices leave no room, or the boundary winds around itself";
 
 /// Returns the error for a mesh without inverted triangles in which the triangles around a vertex wind more than once.
@@ -129,7 +128,7 @@ fn overlaps(file: &LoadedMesh, vertex: u32, sweeps: u32) -> CliError {
     let vertex = place.id;
     CliError::run(format!(
         "{place}: after {} of untangling no triangle is inverted, but those around vertex {vertex} wind more than once around \
-         it{PERHAPS}{KEPT}",
+         it{PERHAPS}",
         counted(sweeps as usize, "sweep")
     ))
 }
@@ -150,7 +149,7 @@ fn concave(file: &LoadedMesh, untangled: &Untangled) -> Option<CliError> {
     let (name, place) = explain::named(file, Element::Quadrilateral(bad.quadrilateral));
     let vertex = file.vertex_place(bad.vertices[bad.corner]).id;
     Some(CliError::run(format!(
-        "{place}: {name} is {} at vertex {vertex}: {count} corners of quadrilaterals {why}{KEPT}",
+        "{place}: {name} is {} at vertex {vertex}: {count} corners of quadrilaterals {why}",
         bad.problem()
     )))
 }
@@ -176,8 +175,7 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
         0 => {
             let perhaps = if was_ended { "" } else { PERHAPS };
             let sweeps = counted(sweeps as usize, "sweep");
-            let why =
-                format!("stayed inverted or flat after {sweeps} of untangling{perhaps}{KEPT}");
+            let why = format!("stayed inverted or flat after {sweeps} of untangling{perhaps}");
             (left, left.len(), why)
         }
         count => {

@@ -153,7 +153,7 @@ fn files_of_two_formats_are_compared_by_positions_and_triangles() {
         let told = folder.line(&format!("compare {pair}")).clean().out;
         assert_holds(
             &told,
-            &["the triangles are the same", "of 99 vertices have moved", "farthest"],
+            &["the elements are the same", "of 99 vertices have moved", "farthest"],
         );
     }
     // A vertex of the boundary moves, and then a triangle is missing.

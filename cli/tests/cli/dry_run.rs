@@ -78,7 +78,7 @@ fn a_dry_run_fails_where_the_run_would_fail() {
     let line = "in out --dry-run --engine cpu";
     folder.line(&format!("{line} --report r.json")).refused(&["inverted", "--untangle"]);
     let text = folder.line(&format!("{line} --untangle")).clean().out;
-    assert_holds(&text, &["inverted or flat triangles would be untangled first"]);
+    assert_holds(&text, &["1 inverted or flat triangle would be untangled first"]);
     folder.line("in none/out --dry-run").refused(&["none"]);
     folder.line("in in.ele --dry-run --untangle").refused(&["in.ele"]);
     assert_eq!(folder.content(), before);

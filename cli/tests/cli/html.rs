@@ -188,10 +188,10 @@ fn histograms_and_curves_are_of_the_run() {
     assert!(places.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 0.11), "{places:?}");
 }
 
-/// Returns the sum of the numbers of triangles that follow a text in the titles of bars.
+/// Returns the sum of the numbers of elements that follow a text in the titles of bars.
 fn counted(page: &str, before: &str) -> usize {
     let titles = page.split("<title>").skip(2).map(|title| title.split('<').next().unwrap());
-    let counts = titles.filter_map(|title| title.split(before).nth(1)?.split(" triangles").next());
+    let counts = titles.filter_map(|title| title.split(before).nth(1)?.split(" element").next());
     counts.map(|count| count.parse::<usize>().unwrap()).sum()
 }
 

@@ -246,3 +246,15 @@ fn verbose_tells_each_mesh_as_it_is_done() {
     }
     assert_holds(&run.err, &["gpu-smooth: 4 of 4: ", " sweeps, f imr 4.3"]);
 }
+
+/// The error of the report hid the table and the failed meshes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_report_that_cannot_be_written_hides_no_failure() {
+    let folder = several();
+    let run = folder.line("b.msh none.msh --out-dir out --engine cpu --report /dev/full");
+    assert_eq!(run.code, Some(4), "{}", run.err);
+    assert_holds(&run.err, &["none.msh", "/dev/full"]);
+    assert_holds(&run.out, &["b.msh"]);
+    assert_eq!(names(&folder, "out"), ["b.msh"]);
+}

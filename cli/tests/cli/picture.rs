@@ -486,3 +486,20 @@ fn quadrilaterals_are_drawn_in_gray_without_a_boundary_to_triangles() {
     let dark = |x: f64, y: f64| (-4..=4).map(|i| at(x + f64::from(i) / 800.0, y)[1]).min().unwrap();
     assert!(dark(0.5, 0.3) > 140 && dark(1.0, 0.3) < 110, "{} {}", dark(0.5, 0.3), dark(1.0, 0.3));
 }
+
+/// The scale of such a picture was infinite, and the program panicked.
+#[test]
+fn a_mesh_at_one_place_is_drawn_as_a_point() {
+    let nodes = "3\n1 5 7 0\n2 5 7 0\n3 5 7 0\n";
+    let text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n"
+    );
+    let folder = Folder::new(&[("point.msh", &text)]);
+    for option in
+        ["--picture p.png", "--picture p.svg", "--html one.html", "point.msh --html two.html"]
+    {
+        let run = folder.line(&format!("quality point.msh {option}"));
+        assert_eq!(run.code, Some(0), "{option}: {}", run.err);
+    }
+    assert!(folder.text("p.svg").len() < 1 << 20);
+}

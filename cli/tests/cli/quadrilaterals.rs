@@ -335,3 +335,79 @@ fn quadrilaterals_that_cannot_be_written_or_moved_are_named() {
     let run = folder.line("in.off out.off --engine cpu");
     assert_holds(&run.err, &["1 quadrilateral lists a vertex twice: its vertices stay fixed"]);
 }
+
+/// Meshes of quadrilaterals alone were compared by their vertices, as they have equal lists of triangles: none.
+#[test]
+fn meshes_with_other_quadrilaterals_are_neither_the_same_nor_replaced() {
+    let whole = vtk(4, |_| false, |_| 1);
+    let turned = whole.replacen("\n4 0 1 6 5\n", "\n4 6 1 0 5\n", 1);
+    let other = whole.replacen("\n4 0 1 6 5\n", "\n4 0 1 6 7\n", 1);
+    let folder = Folder::new(&[("a.vtk", &whole), ("turned.vtk", &turned), ("other.vtk", &other)]);
+    for name in ["a", "turned", "other"] {
+        folder.line(&format!("convert {name}.vtk {name}.vtu --quiet --lossy")).clean();
+    }
+    let same = folder.line("compare a.vtk turned.vtu");
+    assert_eq!(same.code, Some(0), "{}", same.err);
+    assert_holds(&same.out, &["the elements are the same: 0 of 25 vertices have moved"]);
+    folder.line("compare a.vtk other.vtu").refused(&["the quadrilaterals are not the same"]);
+    let before = folder.content();
+    for line in ["a.vtk other.vtk", "convert a.vtk other.vtu --lossy", "a.vtk other.vtu --lossy"] {
+        let told = ["holds another mesh than a.vtk: the vertices of its elements are others"];
+        folder.line(line).refused(&told);
+    }
+    assert!(folder.content() == before);
+    // A format without quadrilaterals has lost them.
+    let mixed = vtk(4, |k| k < 8, |_| 1);
+    std::fs::write(folder.path("mixed.vtk"), mixed).unwrap();
+    folder.line("convert mixed.vtk mixed.slf --quiet --lossy").clean();
+    folder.line("convert mixed.vtk mixed.slf --quiet --lossy").clean();
+}
+
+#[test]
+fn measures_of_triangles_alone_have_no_value() {
+    let folder = Folder::new(&[("q.vtk", &vtk(4, |_| false, |_| 1))]);
+    let json = folder.line("quality q.vtk --json");
+    let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    let measure = &json["measures"]["schism-skewness"];
+    assert!(measure["min"].is_null() && measure["mean"].is_null(), "{measure}");
+    assert!(json["measures"]["shape"]["min"].is_number());
+    let csv = folder.line("quality q.vtk --csv").out;
+    assert_holds(&csv, &["\nq.vtk,,schism-skewness,0,,,,,,,"]);
+    folder.line("quality q.vtk q.vtk --html pages.html --quiet").clean();
+    folder.line("quality q.vtk --html page.html --quiet").clean();
+    for page in ["page.html", "pages.html"] {
+        assert!(!folder.text(page).contains(">NaN<"), "{page}");
+    }
+}
+
+/// A quadrilateral that lists a vertex twice is no element, and has no place among the elements.
+#[test]
+fn the_worst_quadrilaterals_have_their_own_corners() {
+    let text = vtk(4, |_| false, |_| 1).replacen("\n4 0 1 6 5\n", "\n4 0 1 1 5\n", 1);
+    let folder = Folder::new(&[("q.vtk", &text)]);
+    let json = folder.line("quality q.vtk --json --worst 3");
+    let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    let points: Vec<Vec<f64>> = text
+        .lines()
+        .skip(5)
+        .take(25)
+        .map(|line| line.split(' ').take(2).map(|x| x.parse().unwrap()).collect())
+        .collect();
+    let worst = json["worst"].as_array().unwrap();
+    assert_eq!(worst.len(), 3);
+    for worst in worst {
+        let vertices = worst["vertices"].as_array().unwrap().iter();
+        let expected: Vec<&Vec<f64>> =
+            vertices.map(|v| &points[v.as_u64().unwrap() as usize]).collect();
+        assert_eq!(worst["corners"], serde_json::json!(expected), "{worst}");
+    }
+}
+
+#[test]
+fn a_rehearsal_counts_concave_quadrilaterals() {
+    let text = vtk(4, |_| false, |_| 1);
+    let line = text.lines().nth(5 + 6).unwrap();
+    let folder = Folder::new(&[("in.vtk", &text.replacen(line, "1.9 1.9 0", 1))]);
+    let run = folder.line("in.vtk out.vtk --engine cpu --untangle --dry-run");
+    assert_holds(&run.out, &["2 inverted or concave quadrilaterals would be untangled first"]);
+}

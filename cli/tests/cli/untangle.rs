@@ -234,3 +234,16 @@ fn a_hole_that_is_turned_over_is_refused_at_once() {
     let run = folder.line("in out --untangle --keep-going");
     assert!(run.code == Some(1) && folder.path("out.node").exists(), "{}", run.err);
 }
+
+/// The best mesh found was written in the format of IN alone, and not at all to another format.
+#[test]
+fn the_best_mesh_found_is_written_in_the_format_of_out() {
+    let mut mesh = support::lattice(4, 4);
+    // A vertex of the boundary on the other side of the mesh leaves no room.
+    mesh.points[2] = [2.0, 9.0];
+    let folder = folder(&mesh);
+    folder.line("in.node out.vtu --untangle --lossy").refused(&["--keep-going"]);
+    let run = folder.line("in.node out.vtu --untangle --keep-going --lossy");
+    run.refused(&["The best mesh found was written: out.vtu"]);
+    assert_holds(&folder.text("out.vtu"), &["<VTKFile"]);
+}

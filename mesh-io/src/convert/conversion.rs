@@ -87,6 +87,13 @@ impl Conversion {
         TARGETS.iter().any(|target| target.format == text).then_some(text)
     }
 
+    /// Returns whether conversions write quadrilaterals in a format. True for a format that conversions do not write.
+    fn writes_quadrilaterals(format: Format) -> bool {
+        let own = Self::target_like(format);
+        let target = TARGETS.iter().find(|target| Some(target.format) == own);
+        target.is_none_or(|target| target.capabilities.quadrilaterals)
+    }
+
     /// Prepares a mesh for writing in the format `to`. The bytes of the file are parsed again for elements of all
     /// kinds, groups and data. `None` if `to` is no target of conversions.
     ///
@@ -356,6 +363,13 @@ impl Conversion {
 
 /// Sets the values of fields of the file in its content. The time steps of a result are fields with equal names, and
 /// distinct arrays of the content.
+impl MeshFile {
+    /// Returns whether the format of the file can hold quadrilaterals. A conversion to another format loses them.
+    pub fn holds_quadrilaterals(&self) -> bool {
+        Conversion::writes_quadrilaterals(self.format())
+    }
+}
+
 fn set_fields(content: &mut Content, fields: &[PointField]) {
     let mut uses: HashMap<&str, usize> = HashMap::new();
     for field in fields {

@@ -33,16 +33,23 @@ impl MeshFile {
     }
 
     /// Returns the first difference to a file of the mesh in another format, or in another encoding. `None` if both files
-    /// have equally many vertices and the same triangles. Coordinates and the order of triangles may differ.
-    pub fn difference_of_triangles(&self, other: &MeshFile) -> Option<Difference> {
+    /// have equally many vertices, the same triangles and the same quadrilaterals. Coordinates and the order of elements may
+    /// differ. Quadrilaterals of four different vertices count, and none if one of the formats
+    /// [holds](MeshFile::holds_quadrilaterals) none.
+    pub fn difference_of_elements(&self, other: &MeshFile) -> Option<Difference> {
         let [mine, theirs] = [self, other].map(MeshFile::triangles);
         let counts = [self, other].map(|file| file.points().len());
+        let holds = [self, other].into_iter().all(MeshFile::holds_quadrilaterals);
+        let have_equal_quadrilaterals =
+            || !holds || ascending_quadrilaterals(self) == ascending_quadrilaterals(other);
         let description = if counts[0] != counts[1] {
             format!("{} vertices and {}", counts[0], counts[1])
-        } else if mine == theirs || ascending(mine) == ascending(theirs) {
+        } else if mine != theirs && ascending(mine) != ascending(theirs) {
+            "the triangles are not the same".to_owned()
+        } else if have_equal_quadrilaterals() {
             return None;
         } else {
-            "the triangles are not the same".to_owned()
+            "the quadrilaterals are not the same".to_owned()
         };
         let [location, other_location] = [self, other].map(|file| SourceLocation {
             path: file.path().to_owned(),
@@ -263,6 +270,19 @@ fn in_either(bytes: [&[u8]; 2], ranges: [Vec<Range<usize>>; 2]) -> [Vec<Range<us
 fn ascending(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
     let mut all: Vec<[u32; 3]> = triangles.iter().filter_map(turned).collect();
+    all.sort_unstable();
+    all
+}
+
+/// Sorts the quadrilaterals of four different vertices, each of which starts at its smallest vertex and goes on to the smaller
+/// one of its neighbors.
+fn ascending_quadrilaterals(file: &MeshFile) -> Vec<[u32; 4]> {
+    let turned = |&[a, b, c, d]: &[u32; 4]| {
+        let turns = [[a, b, c, d], [b, c, d, a], [c, d, a, b], [d, a, b, c]];
+        turns.into_iter().flat_map(|[a, b, c, d]| [[a, b, c, d], [a, d, c, b]]).min()
+    };
+    let mut all: Vec<[u32; 4]> =
+        file.proper_quadrilaterals().filter_map(|(_, own)| turned(own)).collect();
     all.sort_unstable();
     all
 }

@@ -63,7 +63,7 @@ pub(crate) fn run(
     };
     let entries: Vec<Entry> = list.into_iter().zip(statuses).map(entry).collect();
     let seconds = start.elapsed().as_secs_f64();
-    write_report(outputs, &entries, seconds)?;
+    let reported = write_report(outputs, &entries, seconds);
     match batch.table {
         TableForm::Json => tell::say_data(&table::json(&entries)?),
         TableForm::Csv => tell::say_data(&table::csv(&entries)),
@@ -72,7 +72,12 @@ pub(crate) fn run(
             tell::say(&table::text(&entries, seconds, columns::of_terminal()));
         }
     }
-    match table::failures(&entries) {
+    let failures = table::failures(&entries);
+    if reported.is_err() {
+        failures.iter().for_each(tell::error);
+    }
+    reported?;
+    match failures {
         Some(error) if interrupt::is_requested() => {
             tell::error(&error);
             Ok(())

@@ -16,7 +16,7 @@ use crate::commands::bench::{kernels, lattice, machine, rates, runs, sweeps};
 use crate::error::CliError;
 use crate::load::streams::read;
 use crate::load::{LoadedMesh, explain, lay_out};
-use crate::request::ThirdCoordinate;
+use crate::request::{ReadRequest, ThirdCoordinate};
 use crate::run::engine;
 use crate::terminal::tell;
 
@@ -65,7 +65,7 @@ pub(crate) fn run(args: &BenchArgs, quiet: bool) -> Result<(), CliError> {
 
 /// Reads a mesh, and lays the mesh out in its plane or on the sphere, as a run does.
 fn laid_out(path: &Path, args: &BenchArgs, quiet: bool) -> Result<LoadedMesh, CliError> {
-    let mut file = read(path, &(&args.reading).into())?;
+    let mut file = read(path, &ReadRequest::from(&args.reading).taking_quadrilaterals())?;
     let z = ThirdCoordinate::of(args.options.settings(), &[]);
     for remark in lay_out(&mut file, args.options.settings().surface, z)? {
         tell::note(args.json || quiet, &remark);

@@ -66,6 +66,11 @@ fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
 fn measures(statistics: &[Statistics]) -> Value {
     let one = |s: &Statistics| {
         let [low, median, high] = s.quantiles.map(|quantile| quantile as f32);
+        if s.count == 0 {
+            let none = ["min", "p5", "p50", "mean", "p95", "max", "sd"]
+                .map(|name| (name.to_owned(), Value::Null));
+            return (s.measure.name().to_owned(), Value::from_iter(none));
+        }
         let numbers = json!({
             "min": s.min, "p5": low, "p50": median, "mean": s.mean, "p95": high, "max": s.max, "sd": s.deviation,
         });
@@ -139,12 +144,13 @@ pub(crate) fn csv(qualities: &[MeshQuality]) -> String {
             for s in statistics {
                 let (measure, count) = (s.measure, s.count);
                 let _ = write!(text, "\n{file},{region},{measure},{count}");
-                for number in [s.min, s.mean, s.max, s.deviation] {
-                    let _ = write!(text, ",{number}");
+                let quantiles = s.quantiles.map(|quantile| quantile as f32);
+                let numbers = [s.min, s.mean, s.max, s.deviation].map(|number| number.to_string());
+                for number in numbers.into_iter().chain(quantiles.map(|number| number.to_string()))
+                {
+                    // Measures of triangles have no value in a mesh of quadrilaterals.
+                    let _ = write!(text, ",{}", if count > 0 { &number } else { "" });
                 }
-                s.quantiles.iter().for_each(|&quantile| {
-                    let _ = write!(text, ",{}", quantile as f32);
-                });
                 if by_region {
                     let _ = write!(text, ",{}", quoted(groups));
                 }

@@ -211,14 +211,16 @@ fn sentences(
     sentences
 }
 
-/// Counts the vertices of the file that no triangle uses. On the sphere, triangles at a pole or at a cut of the globe
-/// use copies of vertices, so the triangles of the file are searched.
+/// Counts the vertices of the file that no element uses. On the sphere, elements at a pole or at a cut of the globe
+/// use copies of vertices, so the elements of the file are searched.
 fn unused(file: &LoadedMesh, measured: &Measured<'_>) -> usize {
     let unused = measured.unused_vertices();
     if file.chart().is_none() {
         return unused.len();
     }
-    let used: HashSet<&u32> = file.source.triangles().as_flattened().iter().collect();
+    let of_quadrilaterals = file.source.proper_quadrilaterals().flat_map(|(_, own)| own);
+    let used: HashSet<&u32> =
+        file.source.triangles().as_flattened().iter().chain(of_quadrilaterals).collect();
     unused.iter().filter(|v| !used.contains(v)).count()
 }
 

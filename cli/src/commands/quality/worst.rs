@@ -43,15 +43,14 @@ fn elements(
     args: &QualityArgs,
 ) -> Vec<WorstPart> {
     let mesh = file.mesh();
+    let proper: Vec<&[u32; 4]> = file.source.proper_quadrilaterals().map(|(_, own)| own).collect();
     let found: Vec<usize> =
         measured.worst(measure, args.worst).into_iter().map(|found| found.0).collect();
     // The vertices of an element in the mesh, and in the file, which has no copies of vertices.
     let vertices = |element: Element| -> [&[u32]; 2] {
         match element {
             Element::Triangle(t) => [&mesh.triangles[t], &file.source.triangles()[t]],
-            Element::Quadrilateral(k) => {
-                [&mesh.quadrilaterals[k], &file.source.quadrilaterals()[k]]
-            }
+            Element::Quadrilateral(k) => [&mesh.quadrilaterals[k], proper[k]],
         }
     };
     let elements: Vec<Element> = found.iter().map(|&index| measured.element(index)).collect();

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::load::streams;
 use crate::report::{SmoothJob, elements};
 use crate::run::rehearsal::Rehearsal;
+use crate::terminal::numbers::counted;
 
 /// Prints the facts of a run before its first sweep.
 pub(super) fn print(task: &SmoothJob<'_>, rehearsal: &Rehearsal) {
@@ -25,9 +26,17 @@ fn text(task: &SmoothJob<'_>, rehearsal: &Rehearsal) -> String {
         Some(reason) => lines.push(format!("no vertex would move: {reason}")),
         None => lines.push(format!("up to {free} vertices would move{slide}")),
     }
-    if *bad > 0 {
+    let [triangles, quadrilaterals] = *bad;
+    let bad = [
+        (triangles, counted(triangles, "inverted or flat triangle")),
+        (quadrilaterals, counted(quadrilaterals, "inverted or concave quadrilateral")),
+    ];
+    let bad: Vec<String> =
+        bad.into_iter().filter(|(count, _)| *count > 0).map(|(_, told)| told).collect();
+    if !bad.is_empty() {
+        let bad = bad.join(" and ");
         lines.push(format!(
-            "{bad} inverted or flat triangles would be untangled first; the run fails if they cannot be"
+            "{bad} would be untangled first; the run fails if untangling does not succeed"
         ));
     }
     let held: usize = fixed.iter().map(|(_, count)| count).sum();

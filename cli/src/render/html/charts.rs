@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::render::html::page::escape;
-use crate::terminal::numbers::{fit8, sig6};
+use crate::terminal::numbers::{counted, fit8, sig6};
 
 /// Width and height of a chart in pixels, before the page scales the chart to the window.
 const WIDTH: f64 = 420.0;
@@ -226,7 +226,7 @@ pub(crate) struct Series<'a> {
 
 /// Draws a bar for each bin of each series: the percentage of triangles. The series have equal numbers of bins and of
 /// triangles.
-pub(crate) fn bars(title: &str, edges: &[f64], series: &[Series<'_>]) -> String {
+pub(crate) fn bars(title: &str, noun: &str, edges: &[f64], series: &[Series<'_>]) -> String {
     let mut text = open(title);
     let [left, right] = x_axis(0.0, WIDTH);
     let bottom = HEIGHT - MARGIN[3];
@@ -258,7 +258,12 @@ pub(crate) fn bars(title: &str, edges: &[f64], series: &[Series<'_>]) -> String 
                 bar * width,
             );
             let name = name.map(|name| format!("{name}: ")).unwrap_or_default();
-            let _ = write!(about, "\n{name}{count} triangles ({:.1} %)", percent(count));
+            let _ = write!(
+                about,
+                "\n{name}{} ({:.1} %)",
+                counted(count as usize, noun),
+                percent(count)
+            );
         }
         hit(&mut text, [left + i as f64 * width, left + (i + 1) as f64 * width], &about);
     }

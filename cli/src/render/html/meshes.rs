@@ -15,7 +15,7 @@ use crate::load::LoadedMesh;
 use crate::profiles::Profile;
 use crate::render::html::overview::MeshNumbers;
 use crate::render::html::page::{Page, View, ViewerMesh, escape};
-use crate::render::html::tables::measure_name;
+use crate::render::html::tables::{measure_name, noun_of};
 use crate::render::html::{charts, mesh, overview, tables, worst};
 use crate::render::picture::{Extent, FixedFaces, picture_of};
 use crate::report::{Histogram, histogram};
@@ -77,7 +77,7 @@ impl MeshPart {
                 let faces = FixedFaces::of(file, topology);
                 let extent =
                     Extent::of([topology.triangles(), &faces.pieces], &[measured.points()]);
-                let is_drawn = extent.size().into_iter().any(|length| length > 0.0);
+                let is_drawn = !extent.is_point();
                 let draw = || picture_of(topology, &faces, measured, colors, extent, PIXELS);
                 let url = |png| format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png));
                 let drawn = is_drawn.then(draw).transpose()?;
@@ -87,7 +87,7 @@ impl MeshPart {
         let chart = |&measure: &Measure| {
             let Histogram { edges, counts, .. } = histogram(measured, measure);
             let series = charts::Series { class: "after", name: None, counts: &counts };
-            charts::bars(&measure_name(measure), &edges, &[series])
+            charts::bars(&measure_name(measure), noun_of(measure), &edges, &[series])
         };
         let charts: String = histograms.iter().map(chart).collect();
         Ok(Self {

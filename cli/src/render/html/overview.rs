@@ -42,7 +42,10 @@ pub(crate) fn table(meshes: &[&MeshNumbers<'_>]) -> String {
         false => ("triangles", "inverted or flat"),
     };
     let shown = DistinctMeasures::of(&all, has_quadrilaterals).shown;
-    let columns: Vec<usize> = (0..all.len()).filter(|&i| shown.contains(&all[i])).collect();
+    let has_value =
+        |i: usize| meshes.iter().any(|mesh| mesh.statistics.get(i).is_some_and(|s| s.count > 0));
+    let is_shown = |&i: &usize| shown.contains(&all[i]) && has_value(i);
+    let columns: Vec<usize> = (0..all.len()).filter(is_shown).collect();
     let mut text = format!(
         "<p>The worst value of each measure. A click on a heading sorts the table, worst first; a second click reverses the \
          order.</p>{}<table class=\"overview\" id=\"{TOP}\"><thead><tr>",
@@ -72,8 +75,12 @@ pub(crate) fn table(meshes: &[&MeshNumbers<'_>]) -> String {
             escape(name)
         );
         for statistics in columns.iter().filter_map(|&i| statistics.get(i)) {
-            let (value, key) = (worst(statistics), script_number(rank(statistics)));
-            let _ = write!(text, "<td data-key=\"{key}\">{}</td>", escape(&fit8(value)));
+            let key = script_number(rank(statistics));
+            let value = match statistics.count {
+                0 => String::new(),
+                _ => escape(&fit8(worst(statistics))),
+            };
+            let _ = write!(text, "<td data-key=\"{key}\">{value}</td>");
         }
         text += "</tr>";
     }
@@ -100,6 +107,10 @@ fn worst(statistics: &Statistics) -> f64 {
 
 /// Returns the key by which meshes are sorted, which is smaller for a worse mesh.
 fn rank(statistics: &Statistics) -> f64 {
+    // A mesh without a value comes last.
+    if statistics.count == 0 {
+        return f64::INFINITY;
+    }
     match statistics.measure.definition().better {
         Better::Higher => statistics.min,
         Better::Lower => -statistics.max,

@@ -64,7 +64,10 @@ pub(crate) fn statistics_table(
     text += "</tr></thead><tbody>";
     let measures = measures(states.first().map_or(&[][..], |(_, statistics)| statistics));
     let shown = DistinctMeasures::of(&measures, has_quadrilaterals).shown;
-    for (i, measure) in measures.iter().enumerate().filter(|(_, measure)| shown.contains(measure)) {
+    let has_value =
+        |i: usize| states.iter().any(|(_, own)| own.get(i).is_some_and(|s| s.count > 0));
+    let is_shown = |&(i, measure): &(usize, &Measure)| shown.contains(measure) && has_value(i);
+    for (i, measure) in measures.iter().enumerate().filter(is_shown) {
         let (name, source) =
             (escape(&measure_name(*measure)), escape(measure.definition().formula));
         let rows = states.len();
@@ -78,6 +81,11 @@ pub(crate) fn statistics_table(
         }
     }
     text + "</tbody></table></div>"
+}
+
+/// Returns the noun of what has a value by a measure.
+pub(crate) fn noun_of(measure: Measure) -> &'static str {
+    if measure.is_of_edges() { "edge" } else { "element" }
 }
 
 /// Returns the measures of statistics.
@@ -94,9 +102,11 @@ pub(crate) fn notes(measures: &[Measure], has_quadrilaterals: bool) -> String {
 
 /// Writes the numbers of a row of statistics, and ends the row.
 fn row(text: &mut String, statistics: &Statistics) {
-    let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
+    let Statistics { count, min, mean, max, deviation, quantiles: [low, median, high], .. } =
+        statistics;
     for number in [min, low, median, mean, high, max, deviation] {
-        let _ = write!(text, "<td>{}</td>", escape(&fit8(*number)));
+        let shown = if *count > 0 { fit8(*number) } else { String::new() };
+        let _ = write!(text, "<td>{}</td>", escape(&shown));
     }
     *text += "</tr>";
 }

@@ -8,7 +8,7 @@ use mesh_io::atomic;
 
 use crate::error::CliError;
 use crate::render::html::page::{Page, View, escape};
-use crate::render::html::tables::measure_name;
+use crate::render::html::tables::{measure_name, noun_of};
 use crate::render::html::{charts, mesh, run, tables, worst};
 use crate::report::{Done, SmoothJob};
 use crate::report::{Histogram, histogram};
@@ -70,7 +70,7 @@ fn histograms(states: [&Measured<'_>; 2]) -> String {
         let Histogram { edges, counts, .. } = before;
         let series = |name, counts| charts::Series { class: name, name: Some(name), counts };
         let series = [series("before", &counts), series("after", &after.counts)];
-        text += &charts::bars(&measure_name(measure), &edges, &series);
+        text += &charts::bars(&measure_name(measure), noun_of(measure), &edges, &series);
     }
     text + "</div>"
 }
@@ -86,7 +86,7 @@ fn convergence(done: &Done<'_>) -> String {
     let excess: Vec<[f64; 2]> = excess.filter(|point| point[1] > 0.0).collect();
     let base = escape(done.report.base());
     format!(
-        "<div class=\"charts\">{}{}{}</div><p>f is the mean of q² by {base} over all triangles. Times are known after \
+        "<div class=\"charts\">{}{}{}</div><p>f is the mean of q² by {base} over all elements. Times are known after \
          batches of sweeps.</p>",
         charts::lines("f against sweep", charts::Unit::Count("sweep"), &by_sweep),
         charts::lines("f against time", charts::Unit::Measured("s"), &by_time),

@@ -19,7 +19,7 @@ use gpu_smooth::measure::{InnerEdge, Measure, Measured};
 use gpu_smooth::{Element, MeshError, Topology, targets::Surface};
 use mesh_io::atomic;
 
-use crate::terminal::numbers::fit8;
+use crate::terminal::numbers::{counted, fit8};
 
 /// Number of the worst triangles or edges from which the marked ones, with disjoint marks, are selected.
 const CANDIDATES: usize = 1000;
@@ -199,7 +199,7 @@ fn numbers(
 ) -> String {
     let count = match drawn.len() {
         0 => return format!("no {noun} has its middle in this part"),
-        n if n == all => format!("{n} {noun}s"),
+        n if n == all => counted(n, noun),
         n => format!("{n} of {all} {noun}s"),
     };
     let unit = measure.definition().unit;

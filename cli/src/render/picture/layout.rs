@@ -38,10 +38,20 @@ impl Extent {
         [0, 1].into_iter().all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
     }
 
-    /// Returns width and height. A smaller side than a thousandth of the larger side is enlarged to a thousandth.
+    /// Returns whether all points are at one place, or no point is finite.
+    pub(crate) fn is_point(&self) -> bool {
+        // Smaller extents have no scale in double precision.
+        [0, 1].into_iter().all(|axis| self.high[axis] - self.low[axis] < 1e-290)
+    }
+
+    /// Returns width and height. A smaller side than a thousandth of the larger side is enlarged to a thousandth. An extent
+    /// that [is a point](Self::is_point) has the size 1.
     pub(crate) fn size(&self) -> [f64; 2] {
+        if self.is_point() {
+            return [1.0; 2];
+        }
         let size = [0, 1].map(|axis| self.high[axis] - self.low[axis]);
-        let least = 1e-3 * size[0].max(size[1]).max(f64::MIN_POSITIVE);
+        let least = 1e-3 * size[0].max(size[1]);
         size.map(|x| x.max(least))
     }
 }

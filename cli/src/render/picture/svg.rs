@@ -56,9 +56,10 @@ fn place(at: Point) -> String {
     format!("{x} {y}")
 }
 
-/// Escapes a text for SVG.
+/// Escapes a text for SVG, without the characters that XML excludes.
 fn escaped(text: &str) -> String {
-    let plain: String = text.chars().filter(|c| !c.is_control()).collect();
+    let is_excluded = |c: &char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    let plain: String = text.chars().filter(|c| !is_excluded(c)).collect();
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
