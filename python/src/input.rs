@@ -156,7 +156,7 @@ pub(crate) fn untangled(
     let remedy =
         "Pass the mesh to gpu_smooth.untangle with keep_going=True to get the best points found";
     let failure = |text, left| Err(Failure::Tangled { text, left });
-    if done.bad_before == 0 {
+    if done.bad_before == 0 && done.moved == 0 && done.overlapping.is_none() {
         return Ok(None);
     }
     if let Some(bad) = Bad::of(&done.hopeless, &done.hopeless_quadrilaterals) {

@@ -11,7 +11,7 @@ use crate::parallel::paced;
 use crate::patch::FourTriangles;
 use crate::patch::instructions::with_instructions;
 use crate::slide::OnCurves;
-use crate::whole::altitude;
+use crate::whole::altitude::{self, Limits};
 use crate::worst::{Penalties, WorstShapes};
 
 use super::prepared::Smoother;
@@ -209,7 +209,7 @@ impl Floor<'_> {
             }
             let mut more = smoother.certified(points, Some(options.stored)).await?;
             if options.keep_altitude {
-                more += altitude::restore(topology, before, points, f64::INFINITY);
+                more += altitude::restore(topology, before, points, Limits::ALTITUDE);
             }
             if more == 0 {
                 return Ok(());

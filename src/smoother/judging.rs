@@ -9,7 +9,7 @@ use crate::cpu::objective;
 use crate::error::{MeshError, SmoothError};
 use crate::layout::Problem;
 use crate::metric::{Corner, Ideal, Metric};
-use crate::options::Options;
+use crate::options::{Guard, Options};
 use crate::outcome::{Floored, GoalOutcome, Improved, LargeAngles, Outcome, Slid};
 use crate::parallel::paced;
 use crate::precision::Precision;
@@ -20,7 +20,8 @@ use crate::run::{
 use crate::slide::{OnCurves, Sliding};
 use crate::targets::Surface;
 use crate::topology::predicates::orientation;
-use crate::whole::{Improvement, RunEnd, altitude};
+use crate::whole::altitude::{self, Limits};
+use crate::whole::{Improvement, RunEnd};
 
 use super::over_all::OverAll;
 use super::prepared::Smoother;
@@ -59,9 +60,11 @@ fn came_to(
     over_all: &OverAll<'_>,
     [initial, best]: [f64; 2],
 ) -> GoalOutcome {
-    let gone = (initial - best) / (initial - goal.desired);
-    // 0 / 0 means that the initial objective equals the desired one.
-    let best_fraction = if gone.is_nan() { 1.0 } else { gone };
+    // The desired objective may be no lower than the initial one.
+    let best_fraction = match goal.desired < initial {
+        true => (initial - best) / (initial - goal.desired),
+        false => 1.0,
+    };
     let given = options.stopping.goal().and_then(|goal| goal.desired);
     let desired = given.unwrap_or_else(|| over_all.f(options.scheme.base(), goal.desired));
     GoalOutcome { best_fraction, desired, ..goal }
@@ -352,11 +355,13 @@ impl Smoother<'_> {
         let stored = Some(options.stored);
         let mut returned = self.certified(&mut points, stored).await?;
         // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
-        let mut low = usize::from(options.keep_altitude);
-        let guard = if low > 0 { self.final_guard(options).await } else { f64::INFINITY };
-        while low > 0 {
-            low = altitude::restore(&self.topology, &self.mesh.points, &mut points, guard);
-            returned += low + self.certified(&mut points, stored).await?;
+        let guards_all = options.guard == Guard::Worst;
+        let mut restored = usize::from(options.keep_altitude || guards_all);
+        let guard = if restored > 0 { self.final_guard(options).await } else { f64::INFINITY };
+        let limits = Limits { keeps_altitude: options.keep_altitude, guard, guards_all };
+        while restored > 0 {
+            restored = altitude::restore(&self.topology, &self.mesh.points, &mut points, limits);
+            returned += restored + self.certified(&mut points, stored).await?;
         }
         Ok((points, returned))
     }
@@ -405,30 +410,38 @@ impl Smoother<'_> {
     /// Returns an upper estimate, as a share of f, of the distance between the optimum in the projection of a sphere and
     /// the optimum on the sphere; 0 without a projection. With vertices at `points`, f by the inverse mean ratio in the
     /// projection differs from f on the sphere, where triangles are measured at their centers. At the other optimum, the
-    /// difference is about as large, and the estimate is twice the difference. Only triangles with a free vertex count.
+    /// difference is about as large, and the estimate is twice the difference. Only elements with a free vertex count.
     async fn projection_error(&self, points: &[[f64; 2]]) -> f64 {
         if !self.problem.is_projected() {
             return 0.0;
         }
         let images = self.problem.images(points);
-        let square = |points: &[[f64; 2]], t: &[u32; 3], lengths: [f64; 2]| {
+        let square = |is_right: bool, points: &[[f64; 2]], t: &[u32; 3], lengths: [f64; 2]| {
             let [p, q, r] = t.map(|v| DVec2::from(points[v as usize]) * DVec2::from(lengths));
             let corner =
                 Corner { a: (q - p).into(), b: (r - p).into(), ideal: Ideal::of_area(1.0) };
-            corner.inverse_mean_ratio().powi(2)
+            match is_right {
+                true => 0.25 * corner.of_right_angle().inverse_mean_ratio().powi(2),
+                false => corner.inverse_mean_ratio().powi(2),
+            }
         };
-        let squares = |_, triangles: &[[u32; 3]]| {
+        let squares = |is_right: bool, corners: &[[u32; 3]]| {
             let movable =
-                triangles.iter().filter(|t| t.iter().any(|&v| self.topology.free()[v as usize]));
+                corners.iter().filter(|t| t.iter().any(|&v| self.topology.free()[v as usize]));
             movable.fold([0.0; 2], |[on_sphere, projected], t| {
                 let lengths = Surface::Sphere.lengths_in(points, t);
-                let [s, p] = [square(points, t, lengths), square(&images, t, [1.0; 2])];
+                let s = square(is_right, points, t, lengths);
+                let p = square(is_right, &images, t, [1.0; 2]);
                 [on_sphere + s, projected + p]
             })
         };
-        let parts = paced::map_parts(self.topology.triangles().chunks(CHUNK), squares).await;
+        let corners = self.topology.corner_list();
+        let triangles = corners.triangles().chunks(CHUNK).map(|part| (false, part));
+        let right = corners.of_quadrilaterals().chunks(CHUNK).map(|part| (true, part));
+        let parts: Vec<_> = triangles.chain(right).collect();
+        let sums = paced::map_parts(parts, |_, (is_right, part)| squares(is_right, part)).await;
         let [on_sphere, projected] =
-            [0, 1].map(|k| parts.iter().map(|part: &[f64; 2]| part[k]).sum::<f64>());
+            [0, 1].map(|k| sums.iter().map(|part: &[f64; 2]| part[k]).sum::<f64>());
         let share = 2.0 * (on_sphere - projected).abs() / on_sphere;
         if share.is_finite() { share } else { 0.0 }
     }
@@ -441,6 +454,11 @@ impl Smoother<'_> {
         }
         let mut plan = Plan::new(options);
         set_guards(&mut plan, options.guard, &self.problem, self.problem.positions()).await;
-        plan.base_step(1.0).shape_guard
+        // The reserve of sweeps is for positions that are rounded afterwards.
+        if options.guard == Guard::Worst {
+            plan.worst_guard
+        } else {
+            plan.base_step(1.0).shape_guard
+        }
     }
 }

@@ -6,7 +6,7 @@ use crate::measure::{InnerEdge, inner_edges};
 use crate::metric::Metric;
 use crate::options::{Guard, Options};
 use crate::outcome::LargeAngles;
-use crate::whole::altitude;
+use crate::whole::altitude::{self, Limits};
 use crate::worst::Penalties;
 
 use super::prepared::Smoother;
@@ -121,9 +121,9 @@ impl Smoother<'_> {
         movable.descend(&aim, options, present, goes_on).await;
         while self.certified(points, Some(options.stored)).await? > 0
             || options.keep_altitude
-                && altitude::restore(&self.topology, &self.mesh.points, points, f64::INFINITY) > 0
-        {
-        }
+                && altitude::restore(&self.topology, &self.mesh.points, points, Limits::ALTITUDE)
+                    > 0
+        {}
         let now = Failing::of(&movable, &aim, points).await;
         let at = self.problem.normalized(points, Vec::new()).await;
         let f = objective(options.scheme.base(), problem, &at).await;

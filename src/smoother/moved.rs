@@ -60,9 +60,10 @@ impl Smoother<'_> {
         }
         match &mut self.mesh {
             Cow::Owned(mesh) => mesh.points = points,
-            Cow::Borrowed(Mesh { triangles, fixed, .. }) => {
+            Cow::Borrowed(Mesh { triangles, quadrilaterals, fixed, .. }) => {
                 let (triangles, fixed) = (triangles.clone(), fixed.clone());
-                self.mesh = Cow::Owned(Mesh { points, triangles, fixed, ..Mesh::default() });
+                let quadrilaterals = quadrilaterals.clone();
+                self.mesh = Cow::Owned(Mesh { points, triangles, quadrilaterals, fixed });
             }
         }
         self.problem = self.problem.at_points(&self.mesh, &self.topology);
@@ -75,6 +76,22 @@ impl Smoother<'_> {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn quadrilaterals_stay_when_points_move() {
+        let points: Vec<[f64; 2]> = (0..9).map(|v| [f64::from(v % 3), f64::from(v / 3)]).collect();
+        let cell = |k: u32| {
+            let a = k / 2 * 3 + k % 2;
+            [a, a + 1, a + 4, a + 3]
+        };
+        let quadrilaterals = (0..4).map(cell).collect();
+        let mesh = Mesh { points, quadrilaterals, ..Mesh::default() };
+        let mut smoother = Smoother::new(&mesh).unwrap();
+        let mut points = mesh.points.clone();
+        points[4] = [1.2, 0.9];
+        smoother.set_points(points.clone()).unwrap();
+        assert_eq!(*smoother.mesh(), Mesh { points, ..mesh.clone() });
+    }
+
     use crate::layout::{Coloring, Problem, along_curve};
     use crate::slide::Slide;
     use crate::targets::Targets;

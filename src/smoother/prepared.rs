@@ -216,6 +216,8 @@ impl<'a> Smoother<'a> {
         }
         let Some(opened) = slivers::opened(&self.mesh, &self.topology) else { return Ok(false) };
         let mut opened = Smoother::keeping(Cow::Owned(opened), Layers::default())?;
+        // The vertices of the layers are fixed in the mesh, but on curves they would slide.
+        (opened.layers, opened.is_all_kept) = (self.layers.clone(), self.is_all_kept);
         opened.project_from_sphere()?;
         self.problem = laid_out(&self.mesh, &self.topology);
         self.stop_sliding();
@@ -334,10 +336,13 @@ impl<'a> Smoother<'a> {
     /// that needs a target has an infinite or NaN coordinate.
     pub fn f(&self, metric: Metric, points: &[[f64; 2]]) -> Result<f64, MeshError> {
         self.topology.check_count(points)?;
-        if let Some(opened) = &self.opened
-            && opened.topology.bad_triangles(&opened.problem.images(points))?.is_empty()
-        {
-            return opened.f(metric, points);
+        if let Some(opened) = &self.opened {
+            let (images, topology) = (opened.problem.images(points), &opened.topology);
+            let are_feasible = topology.bad_triangles(&images)?.is_empty()
+                && topology.bad_quadrilaterals(&images)?.is_empty();
+            if are_feasible {
+                return opened.f(metric, points);
+            }
         }
         let positions = now(self.problem.normalized(points, Vec::new()));
         let Some(field) = &self.field else {

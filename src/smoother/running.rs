@@ -69,7 +69,7 @@ impl Smoother<'_> {
         options.check_with(&self.features())?;
         self.check_movable()?;
         let is_for_device = self.problem.free_count() > 0 && !self.stays_on_cpu();
-        let place = Place::given(device, is_for_device, self.size(), policy).await?;
+        let place = Place::given(device, is_for_device, self.size(), from, policy).await?;
         let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
         let about = self.about(problem, options).await;
         let resumed =

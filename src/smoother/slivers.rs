@@ -35,7 +35,8 @@ pub(super) fn opened(mesh: &Mesh, topology: &Topology<'_>) -> Option<Mesh> {
         }
         let opened = Mesh { points, ..mesh.clone() };
         // Images of straight edges in the projection are curved too.
-        let is_valid = topology.bad_triangles(&opened.points).is_ok_and(|bad| bad.is_empty());
+        let is_valid = topology.bad_triangles(&opened.points).is_ok_and(|bad| bad.is_empty())
+            && topology.bad_quadrilaterals(&opened.points).is_ok_and(|bad| bad.is_empty());
         (is_valid && Mercator::of(&opened, topology).is_some()).then_some(opened)
     };
     near_slivers().and_then(in_degrees).or_else(|| near_means().and_then(in_degrees))

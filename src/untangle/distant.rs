@@ -21,8 +21,12 @@ pub(super) fn distant_vertices(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32>
     let free = topology.free();
     let point = |v: u32| DVec2::from(mesh.points[v as usize]);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for &v in topology.triangles().as_flattened().iter().filter(|&&v| !free[v as usize]) {
+    for &v in topology.corners().as_flattened().iter().filter(|&&v| !free[v as usize]) {
         (low, high) = (low.min(point(v)), high.max(point(v)));
+    }
+    if low.x > high.x {
+        // Without fixed vertices, no position is far outside.
+        return Vec::new();
     }
     let reach = DISTANT * (high - low).max_element();
     let is_distant = |v: &u32| {

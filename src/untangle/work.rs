@@ -18,8 +18,8 @@ use crate::parallel::pace::now;
 use crate::precision::Precision;
 use crate::run::multilevel::Hierarchy;
 use crate::run::regularization::epsilon;
-use crate::topology::Topology;
 use crate::topology::predicates::{is_positive, not_positive};
+use crate::topology::{Topology, overlapping_star};
 
 /// Share of bad triangles (0 to 1) above which all vertices move from the start.
 const MANY: f64 = 0.05;
@@ -80,7 +80,12 @@ pub(super) fn untangled(
         sweeps: 0,
         moved: 0,
     };
-    if result.left.len() == result.hopeless.len() {
+    if result.left.is_empty() {
+        let (corners, free) = (topology.corner_list(), topology.free());
+        result.overlapping =
+            overlapping_star(&mesh.points, corners, free).map(|(vertex, _)| vertex);
+    }
+    if result.left.len() == result.hopeless.len() && result.overlapping.is_none() {
         return Ok(result.separated(&topology, &mesh.points));
     }
     let mut work = Work::new(judge, &distant, exactly_bad == 0);

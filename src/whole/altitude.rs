@@ -22,18 +22,18 @@ pub(crate) fn least_of(problem: &Problem) -> f64 {
     least(problem.corners().all(), |v| coordinates.at(positions[v as usize]))
 }
 
-/// Undoes moves until no triangle for which `is_bad` is true has a moved vertex. Returns every vertex whose move was
+/// Undoes moves until no triangle for whose index `is_bad` is true has a moved vertex. Returns every vertex whose move was
 /// undone.
 fn bring_back(
     triangles: &[[u32; 3]],
     before: &[DVec2],
     points: &mut [DVec2],
-    is_bad: impl Fn(&[u32; 3], &[DVec2]) -> bool,
+    is_bad: impl Fn(usize, &[DVec2]) -> bool,
 ) -> Vec<u32> {
     let mut returned = Vec::new();
     loop {
-        let is_now_bad = |t: &&[u32; 3]| is_bad(t, points);
-        let mut low: Vec<u32> = triangles.iter().filter(is_now_bad).flatten().copied().collect();
+        let now_bad = (0..triangles.len()).filter(|&t| is_bad(t, points));
+        let mut low: Vec<u32> = now_bad.flat_map(|t| triangles[t]).collect();
         low.sort_unstable();
         low.dedup();
         low.retain(|&v| points[v as usize] != before[v as usize]);
@@ -47,35 +47,56 @@ fn bring_back(
     }
 }
 
-/// Moves vertices of a result back until no altitude is below the smallest altitude of the given mesh, for points as
-/// they are written. If a vertex goes back, so do the vertices of each triangle whose inverse mean ratio is above
-/// `guard` and larger than before. Returns the number of vertices moved back.
+/// Limits of a result in coordinates as they are written.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits {
+    /// Whether no altitude may be below the smallest altitude of the given mesh.
+    pub(crate) keeps_altitude: bool,
+    /// Largest inverse mean ratio of a triangle that has become worse; infinite for no limit.
+    pub(crate) guard: f64,
+    /// Whether the guard holds for all triangles. Otherwise the guard holds if a vertex goes back.
+    pub(crate) guards_all: bool,
+}
+
+impl Limits {
+    /// The limit of altitudes alone.
+    pub(crate) const ALTITUDE: Self =
+        Self { keeps_altitude: true, guard: f64::INFINITY, guards_all: false };
+}
+
+/// Moves vertices of a result back until no triangle breaks the limits, for points as they are written. Returns the number
+/// of vertices moved back.
 pub(crate) fn restore(
     topology: &Topology<'_>,
     before: &[[f64; 2]],
     points: &mut [[f64; 2]],
-    guard: f64,
+    limits: Limits,
 ) -> usize {
+    let Limits { keeps_altitude, guard, guards_all } = limits;
     let vectors = |points: &[[f64; 2]]| points.iter().map(|&p| p.into()).collect::<Vec<DVec2>>();
     let (old, mut new) = (vectors(before), vectors(points));
-    let triangles = topology.corners();
-    let least_altitude = least(triangles, |v| old[v as usize]);
+    let corners = topology.corners();
+    let least_altitude = least(corners, |v| old[v as usize]);
     // An altitude of NaN counts as below the least altitude.
-    let is_low = |t: &[u32; 3], at: &[DVec2]| {
-        let altitude = altitude(t.map(|v| at[v as usize]));
-        altitude.partial_cmp(&least_altitude).is_none_or(|order| order == Ordering::Less)
+    let is_low = |t: usize, at: &[DVec2]| {
+        let altitude = altitude(corners[t].map(|v| at[v as usize]));
+        keeps_altitude
+            && altitude.partial_cmp(&least_altitude).is_none_or(|order| order == Ordering::Less)
     };
-    let mut returned = bring_back(triangles, &old, &mut new, is_low);
-    if !returned.is_empty() && guard.is_finite() {
-        let corner = |t: &[u32; 3], at: &[DVec2]| {
-            let [p, q, r] = t.map(|v| at[v as usize]);
-            Corner { a: (q - p).into(), b: (r - p).into(), ideal: Ideal::of_area(1.0) }
+    let mut returned = bring_back(corners, &old, &mut new, is_low);
+    if (guards_all || !returned.is_empty()) && guard.is_finite() {
+        let triangles = topology.triangles().len();
+        let corner = |t: usize, at: &[DVec2]| {
+            let [p, q, r] = corners[t].map(|v| at[v as usize]);
+            let corner =
+                Corner { a: (q - p).into(), b: (r - p).into(), ideal: Ideal::of_area(1.0) };
+            if t < triangles { corner } else { corner.of_right_angle() }
         };
         // Sweeps keep the guard with all vertices moved, so vertices that have gone back may break it.
-        let is_bad = |t: &[u32; 3], at: &[DVec2]| {
+        let is_bad = |t: usize, at: &[DVec2]| {
             is_low(t, at) || !is_kept(&corner(t, &old), &corner(t, at), guard)
         };
-        returned.extend(bring_back(triangles, &old, &mut new, is_bad));
+        returned.extend(bring_back(corners, &old, &mut new, is_bad));
         returned.sort_unstable();
         returned.dedup();
     }

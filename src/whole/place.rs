@@ -41,14 +41,18 @@ pub(crate) enum OnCpu {
 impl<'s> Place<'s> {
     /// Returns the place of a run, and of the search runs for its goal, before the mesh is examined: the device, if one is given and `is_useful`, after checks that the mesh fits
     /// the device and that its arithmetic keeps all digits. If the device drops digits, `policy` may let runs begin on the
-    /// CPU.
+    /// CPU. A run that continues from a checkpoint of the CPU needs no checks.
     pub(crate) async fn given(
         device: Option<Device<'s>>,
         is_useful: bool,
         size: MeshSize,
+        resumed: Option<&Checkpoint>,
         policy: &mut dyn CheckpointPolicy,
     ) -> Result<Self, SmoothError> {
         let Some(device) = device.filter(|_| is_useful) else { return Ok(Self::Cpu(OnCpu::Begun)) };
+        if resumed.is_some_and(|checkpoint| checkpoint.saved.engine.engine == CPU) {
+            return Ok(Self::Device(device));
+        }
         device.check_size(size)?;
         match device.check_arithmetic().await {
             Ok(()) => Ok(Self::Device(device)),

@@ -27,9 +27,12 @@ impl Badness {
         match self.0 {
             // A quadrilateral has the angle between the two sides, and none at its diagonals.
             WorstBy::MinAngle if corner.ideal.is_right => {
-                let corner = corner.before_shear();
-                let ([a, b, _], area) = (corner.squared_lengths(), corner.doubled_area());
-                ([a * b / (area * area); 3], 1)
+                let Corner { a, b, .. } = corner.before_shear();
+                let area = a[0] * b[1] - a[1] * b[0];
+                let cotangent = (a[0] * b[0] + a[1] * b[1]) / area;
+                // An obtuse angle is as good as a right one, though its sine is small.
+                let cotangent = cotangent.max(area.constant(0.0));
+                ([cotangent * cotangent + 1.0; 3], 1)
             }
             WorstBy::Imr => {
                 let sum = (a + b + c) * IDEAL;
@@ -174,6 +177,21 @@ mod tests {
         assert!((altitude - heron / a.max(b).max(c)).abs() < 1e-15);
         let inverted = Corner { a: corner.b, b: corner.a, ..corner };
         assert!(WorstBy::ALL.iter().all(|&by| Badness(by).of(&inverted) == f64::INFINITY));
+    }
+
+    /// The sine of an obtuse angle counted as that of a small one.
+    #[test]
+    fn an_obtuse_corner_of_a_quadrilateral_is_as_good_as_a_right_one() {
+        let ideal = Ideal { is_right: true, ..Ideal::of_area(1.0) };
+        let of = |angle: f64| {
+            let (sine, cosine) = angle.to_radians().sin_cos();
+            let corner = Corner { a: [1.0, 0.0], b: [2.0 * cosine, 2.0 * sine], ideal };
+            Badness(WorstBy::MinAngle).of(&corner.of_right_angle())
+        };
+        for angle in [90.0, 120.0, 175.0] {
+            assert!((of(angle) - 1.0).abs() < 1e-12, "{angle}: {}", of(angle));
+        }
+        assert!((of(30.0) - 4.0).abs() < 1e-12);
     }
 
     #[test]

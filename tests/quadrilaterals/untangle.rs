@@ -27,6 +27,18 @@ fn tangled_quadrilaterals_are_untangled() {
     }
 }
 
+/// All free vertices of a mesh without triangles counted as far outside of the mesh, and were moved to means of their neighbors.
+#[test]
+fn vertices_far_from_a_concave_corner_stay() {
+    let mut mesh = squares(20);
+    let vertex = 5 * 21 + 5;
+    mesh.points[vertex] = [6.4, 6.3];
+    let untangled = Untangle::new(&mesh).run().unwrap();
+    assert!(untangled.is_feasible());
+    let moved = (0..mesh.points.len()).filter(|&v| untangled.points[v] != mesh.points[v]);
+    assert!(moved.clone().count() < 60, "{} vertices moved", moved.count());
+}
+
 #[test]
 fn corners_of_fixed_vertices_that_are_not_convex_are_hopeless() {
     let mut mesh = squares(4);

@@ -1,7 +1,8 @@
 //! The guard of the worst element, `--guard worst`, on both engines.
 
+use crate::worst::FIVE_DIGITS;
 use crate::{backends, history, name, plate, run, with_points};
-use gpu_smooth::{Guard, Metric, Options, Slide, Smoother, Stop};
+use gpu_smooth::{Backend, Guard, Metric, Options, Slide, Smoother, Stop};
 use support::check;
 
 /// On a mesh graded to a point and slightly perturbed, metrics of size would trade bad shapes for even
@@ -39,6 +40,30 @@ fn the_worst_element_does_not_get_worse_by_any_metric() {
     }
     // Without the guard, the worst element becomes worse.
     assert!(risen >= 2, "{risen}");
+}
+
+/// Rounding to the digits of the file made triangles at the guard worse.
+#[test]
+fn the_guard_holds_for_points_as_they_are_stored() {
+    let mut judged = 0;
+    for seed in 0..40 {
+        let mut mesh = support::perturb_random(&support::graded(12, 0.1), 0.2, seed);
+        for x in mesh.points.as_flattened_mut() {
+            *x = FIVE_DIGITS.rounded(*x + 20.0);
+        }
+        if !check::is_ccw(&mesh) {
+            continue;
+        }
+        judged += 1;
+        let smoother = Smoother::new(&mesh).unwrap();
+        let options = Options::default().scheme(Metric::ShapeSize.into());
+        let options = options.stored(FIVE_DIGITS).guard(Guard::Worst);
+        let points = run(&smoother, &options, &Backend::Cpu).points;
+        let [before, after] =
+            [&mesh.points, &points].map(|points| support::worst_imr(&with_points(&mesh, points)));
+        assert!(after <= before * (1.0 + 1e-9), "seed {seed}: {before} {after}");
+    }
+    assert!(judged > 5, "{judged}");
 }
 
 /// The first sweeps of a run with sliding leave a better worst triangle than the given mesh has. By equal areas, later sweeps

@@ -423,3 +423,19 @@ fn with_vertices_on_edges(seed: u64) -> Mesh {
     }
     mesh
 }
+
+/// The triangles are counter-clockwise around a vertex that they surround twice. No position of the vertex mends the mesh, whose
+/// star was not looked at.
+#[test]
+fn a_given_star_that_winds_twice_is_told() {
+    let on_circle = |k: u32| {
+        let (y, x) = (std::f64::consts::TAU * f64::from(2 * k) / 5.0).sin_cos();
+        [x, y]
+    };
+    let points = (0..5).map(on_circle).chain([[0.01, 0.02]]).collect();
+    let triangles = (0..5).map(|k| [k, (k + 1) % 5, 5]).collect();
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
+    let untangled = Untangle::new(&mesh).run().unwrap();
+    assert_eq!((untangled.bad_before, untangled.overlapping), (0, Some(5)));
+    assert!(!untangled.is_feasible());
+}
