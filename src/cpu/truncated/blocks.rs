@@ -9,10 +9,12 @@
 use std::ops::Range;
 
 use crate::layout::Problem;
+use crate::parallel::counting_sort::Groups;
 use crate::parallel::paced;
 use crate::run::multilevel::NONE;
 use crate::run::truncated::aggregation::{Members, Pattern};
 use crate::slide::Movers;
+use crate::topology::Corners;
 
 /// Number of vertices from which on a block ends. The vectors of a block then fit the first cache of a processor.
 const VERTICES: u32 = 2048;
@@ -94,8 +96,9 @@ impl Blocks {
             block_of.extend(own.clone().map(|_| block));
         }
         let lists = corners_of_blocks(problem, &ranks, &block_of, ranges.len()).await;
-        let made = paced::map_parts(ranges.into_iter().zip(lists), |_, ((own, groups), list)| {
-            Block::new(own, groups, &order, &ranks, list)
+        let corners = problem.corners();
+        let made = paced::map_parts(ranges, |at, (own, groups)| {
+            Block::new(own, groups, &order, &ranks, corners, lists.of(at))
         });
         let mut blocks = made.await;
         share(&mut blocks, &block_of);
@@ -156,43 +159,21 @@ fn ranges(group_start: &[u32]) -> Vec<(Range<usize>, Range<usize>)> {
     ranges
 }
 
-/// Corners of a block, by their vertices in the problem: triangles, then corners of quadrilaterals.
-struct CornerList {
-    corners: Vec<[u32; 3]>,
-    /// Number of triangles.
-    triangles: usize,
-}
-
-/// Returns the corners of each block with a vertex that moves.
+/// Returns the corners of each block with a vertex that moves, and behind these corners those without such a vertex: triangles,
+/// then corners of quadrilaterals.
 async fn corners_of_blocks(
     problem: &Problem,
     ranks: &Ranks<'_>,
     block_of: &[u32],
     count: usize,
-) -> Vec<CornerList> {
+) -> Groups {
     let all = problem.corners().all();
-    // The block of each corner; `NONE` for corners without a vertex that moves.
     let blocks = paced::collect(all.len(), |corner| {
         let [a, b, c] = all[corner].map(|v| ranks.of(v));
-        block_of.get(a.min(b).min(c) as usize).copied().unwrap_or(NONE)
+        block_of.get(a.min(b).min(c) as usize).copied().unwrap_or(count as u32)
     })
     .await;
-    let mut counts = vec![0; count];
-    let found = blocks.iter().filter(|block| **block != NONE);
-    found.for_each(|&block| counts[block as usize] += 1);
-    let list = |count| CornerList { corners: Vec::with_capacity(count), triangles: 0 };
-    let mut lists: Vec<CornerList> = counts.into_iter().map(list).collect();
-    let mut blocks = blocks.into_iter();
-    for part in problem.corner_parts() {
-        for (corner, block) in part.corners.iter().zip(&mut blocks) {
-            if block != NONE {
-                let list = &mut lists[block as usize];
-                list.corners.push(*corner);
-                list.triangles += usize::from(!part.is_right);
-            }
-        }
-    }
-    lists
+    Groups::new(all.len(), count + 1, |corner| [blocks[corner]])
 }
 
 impl Block {
@@ -201,9 +182,12 @@ impl Block {
         groups: Range<usize>,
         order: &[u32],
         ranks: &Ranks<'_>,
-        list: CornerList,
+        all: &Corners<'_>,
+        list: &[u32],
     ) -> Self {
-        let CornerList { mut corners, triangles } = list;
+        let triangles = list.partition_point(|&corner| all.is_triangle(corner));
+        let mut corners: Vec<[u32; 3]> =
+            list.iter().map(|&corner| all.all()[corner as usize]).collect();
         // A vertex that moves has its rank as its key, and a fixed vertex a number above all ranks.
         let (free, sliding) = (ranks.rank.len() as u32, ranks.movers.sliding() as u32);
         let key = |v: u32| match ranks.of(v) {
