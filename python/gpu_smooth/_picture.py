@@ -71,7 +71,6 @@ def plot(
         figure, all_axes = ax.figure, [ax]
         names = names[-1:]
     values = {name: _judged_values(states[name], subject, measure) for name in names}
-    row = next(row for row in _native.measures() if row["name"] == measure.lower().replace("_", "-"))
     colors = plt.get_cmap(options.get("cmap", LinearSegmentedColormap.from_list("quality", scale["colors"])))
     chosen: dict[str, Any] = {"edgecolors": "white", "linewidth": 0.2}
     # matplotlib refuses limits beside a norm, which has its own.
@@ -91,7 +90,7 @@ def plot(
         if subject.axes != ("x", "y"):
             axis.set(xlabel=subject.axes[0], ylabel=subject.axes[1])
     every = np.concatenate(list(values.values()))
-    label = f"{measure} ({row['unit']})" if row["unit"] else measure
+    label = f"{measure.strip()} ({scale['unit']})" if scale["unit"] else measure.strip()
     if np.isnan(every).any():
         label += ", red: inverted or flat" + (" or concave" if len(quadrilaterals) else "")
     # The ends of the bar are pointed where values lie beyond.

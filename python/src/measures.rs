@@ -32,8 +32,8 @@ fn measure_of(name: &Bound<'_, PyAny>) -> PyResult<Measure> {
 }
 
 /// Returns the colors that pictures show by a measure, as a dict: the values `low` and `high` between which colors change,
-/// `colors` at equal steps from `low` to `high`, the color of `inverted` and flat triangles, and a `legend`. The default
-/// values are those of the command line.
+/// `colors` at equal steps from `low` to `high`, the color of `inverted` and flat triangles, the `unit` of the measure, and a
+/// `legend`. The default values are those of the command line.
 #[pyfunction]
 pub(crate) fn color_scale<'py>(
     measure: &Bound<'py, PyAny>,
@@ -61,6 +61,7 @@ pub(crate) fn color_scale<'py>(
     row.set_item("high", bad.max(good))?;
     row.set_item("colors", colors.to_vec())?;
     row.set_item("inverted", hex(BAD))?;
+    row.set_item("unit", measure.definition().unit)?;
     row.set_item("legend", scale.legend())?;
     Ok(row)
 }

@@ -10,6 +10,7 @@ import pytest
 from conftest import Points, Triangles, across_date_line
 
 import gpu_smooth
+from gpu_smooth import _native
 
 Mesh = tuple[Points, Triangles]
 
@@ -47,6 +48,12 @@ def test_tables_have_a_row_for_each_metric_and_measure() -> None:
         values = gpu_smooth.quality([[0, 0], [1, 0], [0.5, 0.75**0.5]], [[0, 1, 2]], measure.name)
         assert abs(values[0] - measure.ideal) < 1e-6, measure
     assert all(metric.formula and metric.source and metric.purpose for metric in metrics)
+
+
+def test_the_scale_of_colors_has_the_unit_of_a_measure_in_any_spelling_of_its_name() -> None:
+    for spelling in "min-angle", "Min_Angle", " min_angle\n":
+        assert _native.color_scale(spelling, None)["unit"] == "°"
+    assert _native.color_scale("shape", None)["unit"] == ""
 
 
 def test_interpolation_keeps_linear_data(mesh: Mesh) -> None:
