@@ -12,7 +12,7 @@ from gpu_smooth._errors import OptionError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from gpu_smooth._options import Doubles, Integers
+    from gpu_smooth._options import Doubles, Integers, Surface
 
 # Largest number of elements of which a notebook gets a picture. A picture of more takes megabytes.
 MOST_ELEMENTS = 20_000
@@ -24,11 +24,16 @@ class Subject(NamedTuple):
     """Mesh of a picture, before and after a run."""
 
     states: dict[str, Doubles]
-    """Points `"before"` and `"after"` the run, of shape (n, 2), in the plane in which they were moved."""
+    """Points `"before"` and `"after"` the run, of shape (n, 2), in the plane in which they were moved.
+
+    Longitudes are continued across the line where they jump, and vertices on cuts and at poles have copies.
+    """
     triangles: Integers
     quadrilaterals: Integers
     axes: tuple[str, str]
     """Names of the two coordinates."""
+    surface: Surface
+    """Surface on which elements are measured."""
 
 
 def plot(
@@ -142,10 +147,10 @@ def _judged_values(flat: Doubles, subject: Subject, measure: str) -> Doubles:
     A finite number, or NaN for an element that is inverted, flat or concave.
     """
     cells = (subject.triangles, subject.quadrilaterals)
-    values: Doubles = np.minimum(_native.quality(flat, cells, measure, "plane", "data"), 1e300)
+    values: Doubles = np.minimum(_native.quality(flat, cells, measure, subject.surface, "data"), 1e300)
     if np.isnan(values[len(subject.triangles) :]).any():
         raise OptionError(f"measure: quadrilaterals have no {measure}. Choose another measure")
-    values[_native.quality(flat, cells, "shape", "plane", "data") <= 0.0] = np.nan
+    values[_native.quality(flat, cells, "shape", subject.surface, "data") <= 0.0] = np.nan
     return values
 
 

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 # Methods and properties of an outcome whose values a pickled result has.
 _METHODS = (
-    "triangles", "quadrilaterals", "points", "points_before", "flat_points", "flat_points_before", "history", "quality_before",
-    "quality_after",
+    "triangles", "quadrilaterals", "points", "points_before", "flat_points", "flat_points_before", "chart_cells", "history",
+    "quality_before", "quality_after",
 )
 _PROPERTIES = (
-    "axes", "metric", "has_target", "engine", "stop", "fault", "remarks", "sweeps", "corrections", "newton_steps",
+    "surface", "axes", "metric", "has_target", "engine", "stop", "fault", "remarks", "sweeps", "corrections", "newton_steps",
     "newton_iterations", "best_sweep", "movable_f", "remaining", "held_back", "slides", "frees_lines", "slid",
     "floored", "prepare_seconds", "seconds",
 )
@@ -288,7 +288,8 @@ class Result:
     def _subject(self) -> _picture.Subject:
         outcome = self._outcome
         states = {"before": outcome.flat_points_before(), "after": outcome.flat_points()}
-        return _picture.Subject(states, self.triangles, self.quadrilaterals, self.axes)
+        cells = outcome.chart_cells() or (self.triangles, self.quadrilaterals)
+        return _picture.Subject(states, *cells, self.axes, outcome.surface)
 
     def _judged(self) -> tuple[str, float, float]:
         """Return the name of the objective that judges the run, and its values before and after the run."""

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use gpu_smooth::front_ends::Plane;
+use gpu_smooth::targets::Surface;
 use gpu_smooth::{
     Backend, MeshError, Metric, Options, Outcome as RunOutcome, Quality as MeshQuality,
 };
@@ -14,7 +15,7 @@ use pyo3::types::PyDict;
 use crate::arrays;
 use crate::error;
 use crate::measures::Quality;
-use crate::prepared::Prepared;
+use crate::prepared::{ArrayPair, Prepared};
 use crate::remarks;
 use crate::threads;
 
@@ -83,14 +84,29 @@ impl Outcome {
         self.prepared.form.array(py, self.prepared.given(points))
     }
 
-    /// Returns the points after the run by their two coordinates in the plane in which they were moved, for pictures.
+    /// Returns the points after the run by their two coordinates in the plane in which they were moved, for pictures. On the
+    /// sphere, longitudes are continued across the line where they jump, and copies of vertices follow.
     fn flat_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        flat(py, self.prepared.given(self.outcome.points.clone()))
+        flat(py, self.outcome.points.clone())
     }
 
-    /// Returns the points before the run by their two coordinates in the plane, for pictures.
+    /// Returns the points before the run as `flat_points` returns those after it.
     fn flat_points_before<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        flat(py, self.prepared.given(self.prepared.points_before().to_vec()))
+        flat(py, self.prepared.points_before().to_vec())
+    }
+
+    /// Returns the triangles and the quadrilaterals by the rows of `flat_points`; None if the points have no copies of vertices.
+    fn chart_cells<'py>(&self, py: Python<'py>) -> PyResult<Option<ArrayPair<'py>>> {
+        self.prepared.chart_cells(py)
+    }
+
+    /// The surface of the coordinates, `"plane"` or `"sphere"`.
+    #[getter]
+    fn surface(&self) -> &'static str {
+        match self.prepared.options.surface() {
+            Surface::Plane => "plane",
+            Surface::Sphere => "sphere",
+        }
     }
 
     /// The names of the two coordinates in the plane in which the points were moved.

@@ -11,6 +11,9 @@ use crate::mesh_options::MeshOptions;
 use crate::observer::RunObserver;
 use crate::remarks::Remarks;
 
+/// Two arrays.
+pub(crate) type ArrayPair<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
 /// A mesh that is prepared for runs, with all that results need.
 pub(crate) struct Prepared {
     pub(crate) smoother: PreparedMesh<'static>,
@@ -63,18 +66,44 @@ impl Prepared {
         self.layout.tangled.as_ref().unwrap_or(&self.smoother.mesh().points)
     }
 
-    /// Returns the triangles with consistent windings, counter-clockwise, as an array of shape (m, 3).
+    /// Returns the triangles with consistent windings, counter-clockwise, as an array of shape (m, 3). Their vertices are those
+    /// of the call.
     pub(crate) fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.triangles_by(py, |vertex| self.owner(vertex))
+    }
+
+    /// Returns the quadrilaterals with consistent windings, counter-clockwise, as an array of shape (k, 4). Their vertices are
+    /// those of the call.
+    pub(crate) fn quadrilaterals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.quadrilaterals_by(py, |vertex| self.owner(vertex))
+    }
+
+    /// Returns the triangles and the quadrilaterals whose vertices may be copies that a chart has made; `None` if no vertex was
+    /// copied.
+    pub(crate) fn chart_cells<'py>(&self, py: Python<'py>) -> PyResult<Option<ArrayPair<'py>>> {
+        let chart = self.layout.domain.chart().filter(|chart| !chart.owners().is_empty());
+        let cells = || Ok((self.triangles_by(py, |v| v)?, self.quadrilaterals_by(py, |v| v)?));
+        chart.map(|_| cells()).transpose()
+    }
+
+    fn triangles_by<'py>(
+        &self,
+        py: Python<'py>,
+        number: impl Fn(u32) -> u32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let triangles = self.smoother.topology().triangles();
-        let numbers = triangles.as_flattened().iter().map(|&v| i64::from(v)).collect();
+        let numbers = triangles.as_flattened().iter().map(|&v| i64::from(number(v))).collect();
         arrays::matrix(py, numbers, [triangles.len(), 3])
     }
 
-    /// Returns the quadrilaterals with consistent windings, counter-clockwise, as an array of shape (k, 4).
-    pub(crate) fn quadrilaterals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn quadrilaterals_by<'py>(
+        &self,
+        py: Python<'py>,
+        number: impl Fn(u32) -> u32,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let quadrilaterals = self.smoother.topology().quadrilaterals();
         let rows = quadrilaterals.len();
-        let numbers = quadrilaterals.flatten().map(i64::from).collect();
+        let numbers = quadrilaterals.flatten().map(|v| i64::from(number(v))).collect();
         arrays::matrix(py, numbers, [rows, 4])
     }
 

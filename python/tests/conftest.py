@@ -52,6 +52,20 @@ def across_date_line(points: Points) -> tuple[Points, Points]:
     return continued, wrapped
 
 
+def polar_cap() -> tuple[Points, Triangles]:
+    """Return a mesh in degrees around the North Pole, which is vertex 0, with some vertices moved; it closes around the globe."""
+    longitudes, latitudes = np.meshgrid(np.arange(-180.0, 180.0, 30.0), [80.0, 70.0, 60.0, 50.0])
+    rings = np.stack([longitudes, latitudes], axis=-1).reshape(-1, 2)
+    rings[12:36] += np.random.default_rng(2).uniform(-4.0, 4.0, (24, 2))
+    # A longitude may also be that of the date line on its other side.
+    rings[:, 0] = (rings[:, 0] + 180.0) % 360.0 - 180.0
+    own = 1 + np.arange(36)
+    beside = np.where(own % 12 == 0, own - 11, own + 1)
+    around = [np.stack([np.zeros(12, int), own[:12], beside[:12]], axis=1)]
+    around += [np.stack([own, own + 12, beside + 12], axis=1), np.stack([own, beside + 12, beside], axis=1)]
+    return np.concatenate([[[0.0, 90.0]], rings]), np.concatenate(around)
+
+
 def alternating(side: int) -> tuple[Points, Triangles]:
     """Return a square of right triangles whose diagonals alternate from row to row; sweeps by imr would make them sharper."""
     points, triangles = lattice(side, by=0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -12,7 +13,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from conftest import Points, Triangles
+from conftest import Points, Triangles, across_date_line, mixed, polar_cap
 
 import gpu_smooth
 from gpu_smooth import _native, _picture
@@ -181,10 +182,72 @@ def test_a_notebook_shows_the_mesh_before_and_after(mesh: Mesh) -> None:
     assert "#fde725" in colors and colors <= {*_native.color_scale("shape", None)["colors"]}
 
 
+def test_pictures_of_a_mesh_on_the_sphere_have_the_values_on_the_sphere(mesh: Mesh) -> None:
+    points, _ = mesh
+    triangles, quadrilaterals = mixed(12)
+    for given in (*across_date_line(points), across_date_line(points)[1].astype(np.float32)):
+        result = gpu_smooth.run(given, triangles, quadrilaterals=quadrilaterals, surface="sphere", max_sweeps=2)
+        subject = result._subject()
+        for state, own in ("before", result.points_before), ("after", result.points):
+            expected = gpu_smooth.quality(own, triangles, "shape", quadrilaterals=quadrilaterals, surface="sphere")
+            np.testing.assert_allclose(_picture._judged_values(subject.states[state], subject, "shape"), expected, rtol=1e-9)
+            in_plane = gpu_smooth.quality(own, triangles, "shape", quadrilaterals=quadrilaterals, surface="plane")
+            assert np.abs(in_plane[:9] - expected[:9]).max() > 0.1
+            # No element is drawn across the whole map.
+            corners = subject.states[state][subject.triangles]
+            assert np.ptp(corners[:, :, 0], axis=1).max() < 1.0
+
+
+def test_elements_at_a_pole_list_the_vertices_of_the_points_and_are_drawn_beside_each_other() -> None:
+    points, triangles = polar_cap()
+    result = gpu_smooth.run(points, triangles, surface="sphere")
+    assert result.sweeps > 0 and not np.array_equal(result.points, points)
+    smoother = gpu_smooth.Smoother(points, triangles, surface="sphere")
+    for listed in result.triangles, smoother.triangles:
+        assert np.array_equal(np.sort(listed, axis=1), np.sort(triangles, axis=1))
+    assert result.points[result.triangles].shape == (len(triangles), 3, 2)
+    subject = result._subject()
+    for state, own in ("before", points), ("after", result.points):
+        corners = subject.states[state][subject.triangles]
+        assert np.ptp(corners[:, :, 0], axis=1).max() < 60.0
+        expected = gpu_smooth.quality(own, triangles, "min-angle", surface="sphere")
+        found = _picture._judged_values(subject.states[state], subject, "min-angle")
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+    html = result._repr_html_()
+    assert html.count("M") == 2 * len(triangles) + html.count("Min")
+    again = pickle.loads(pickle.dumps(result))
+    assert again._repr_html_() == html and np.array_equal(again.triangles, result.triangles)
+
+    # Pairs of triangles as quadrilaterals.
+    cells = np.stack([triangles[12:24, 0], *triangles[12:24, 1:].T, triangles[48:60, 2]], axis=1)
+    left = np.delete(triangles, np.r_[12:24, 48:60], axis=0)
+    result = gpu_smooth.run(points, left, quadrilaterals=cells, surface="sphere")
+    assert np.array_equal(np.sort(result.quadrilaterals, axis=1), np.sort(cells, axis=1))
+    assert "svg" in result._repr_html_()
+
+
+@pytest.mark.heavy
+def test_a_mesh_at_a_pole_is_plotted() -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    points, triangles = polar_cap()
+    result = gpu_smooth.run(points, triangles, surface="sphere")
+    mesh_axes, bar = result.plot("after", " Min_Angle ").axes
+    assert bar.get_ylabel() == "Min_Angle (°)"
+    expected = gpu_smooth.quality(result.points, triangles, "min-angle", surface="sphere")
+    np.testing.assert_allclose(mesh_axes.collections[0].get_array(), expected, rtol=1e-9)
+    west, east = mesh_axes.get_xlim()
+    assert 360.0 <= east - west < 480.0
+    pyplot.close("all")
+
+
 def test_inverted_triangles_of_a_picture_are_red() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.5, 0.5]])
     triangles = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    subject = _picture.Subject({}, triangles, np.empty((0, 4), np.int64), ("x", "y"))
+    subject = _picture.Subject({}, triangles, np.empty((0, 4), np.int64), ("x", "y"), "plane")
     assert _picture.svg(points, subject).count('fill="#e6194b"') == 1
     points[4] = [0.5, 0.5]
     assert "#e6194b" not in _picture.svg(points, subject)
