@@ -69,8 +69,13 @@ class Result:
 
     @property
     def displacement(self) -> Floats:
-        """Vectors from the points before the run to `points`, in the shape of `points`."""
+        """Vectors from the points before the run to `points`, in the shape of `points`.
+
+        The shorter way around, for a vertex on the sphere that has crossed the line where longitudes jump.
+        """
         moved: Floats = self.points - self.points_before
+        if self._outcome.surface == "sphere":
+            moved[:, 0] -= 360.0 * np.round(moved[:, 0] / 360.0)
         return moved
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,21 @@ def test_meshes_across_the_date_line_are_measured_interpolated_and_compared_as_e
     assert there.moved == pytest.approx(here.moved) and there.least_altitude == pytest.approx(here.least_altitude)
     assert there.quality_after.min_angle == pytest.approx(here.quality_after.min_angle)
     assert there.vertices_moved == here.vertices_moved and there.moved.most < 0.6
+
+
+def test_a_displacement_across_the_date_line_is_the_shorter_way(mesh: Mesh) -> None:
+    points, triangles = mesh
+    points[:, 0] += 0.5
+    kinds: list[Any] = [np.float64, np.float32]
+    for kind in kinds:
+        wrapped = across_date_line(points)[1].astype(kind)
+        result = gpu_smooth.run(wrapped, triangles, surface="sphere")
+        crossed = np.abs(result.points[:, 0] - wrapped[:, 0]) > 180.0
+        assert crossed.any() and result.displacement.dtype == kind
+        assert np.abs(result.displacement).max() < 0.1
+        kept = ~crossed
+        assert np.array_equal(result.displacement[kept], (result.points - wrapped)[kept])
+        assert pickle.loads(pickle.dumps(result)).displacement.tolist() == result.displacement.tolist()
 
 
 def test_two_states_are_compared(mesh: Mesh) -> None:
