@@ -306,18 +306,29 @@ def smooth_file(source: Path, destination: Path, **options: Any) -> dict[str, An
         report = pathlib.Path(os.fsdecode(own) if own else pathlib.Path(folder, "report.json"))
         # A name may begin with a hyphen.
         words += [f"--report={report}", "--", os.fsdecode(source), os.fsdecode(destination)]
+        earlier = _state(report)
         done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False)
         if done.returncode != 0:
             text = _message(done.stderr.decode(errors="replace"))
             text = text or f"gpu-smooth ended with code {done.returncode}"
             raise ERRORS.get(done.returncode, GpuSmoothError)(text)
-        if not report.exists():
+        # The report of an earlier run may be there.
+        if _state(report) in (None, earlier):
             raise OptionError(
                 "the command line has written no report, and no mesh, as with dry_run=True. Drop the option, or run the "
                 "command line"
             )
         found: dict[str, Any] = json.loads(report.read_text(encoding="utf-8"))
         return found
+
+
+def _state(file: pathlib.Path) -> tuple[int, ...] | None:
+    """Return numbers that change when a file is replaced or written; None without the file."""
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
 
 
 def _message(text: str) -> str:

@@ -219,6 +219,14 @@ def test_options_of_smooth_file_are_those_of_python(plate: Path, tmp_path: Path)
     for name in ("dry_run", "help", "version"):
         with pytest.raises(gpu_smooth.OptionError, match="written no report"):
             gpu_smooth.smooth_file(plate, destination, **{name: True})
+    # The report of an earlier run is not that of a run that was not done.
+    report = tmp_path / "report.json"
+    for _ in range(2):
+        assert gpu_smooth.smooth_file(plate, destination, report=report)["sweeps"]
+    written = report.read_bytes()
+    with pytest.raises(gpu_smooth.OptionError, match="written no report"):
+        gpu_smooth.smooth_file(plate, destination, report=report, dry_run=True)
+    assert report.read_bytes() == written
     with pytest.raises(gpu_smooth.OptionError) as refused:
         gpu_smooth.smooth_file(plate, destination, schem="imr")
     assert "'--scheme'" in str(refused.value) and "Usage" not in str(refused.value)
