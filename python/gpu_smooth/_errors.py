@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from types import FrameType
+
 
 class GpuSmoothError(Exception):
     """Base of all exceptions of this package."""
@@ -39,3 +46,19 @@ class FileError(GpuSmoothError, OSError):
 
 class MeshWarning(UserWarning):
     """A run will not do what the caller may expect of the mesh, or a checkpoint was not saved."""
+
+
+def warn(text: str) -> None:
+    """Issue a `MeshWarning` that names the line by which the package was called.
+
+    Python shows a warning once for each line, so that a line of the package would hide the warnings of later calls.
+    """
+    level, frame = 1, sys._getframe().f_back
+    while frame is not None and _is_of_package(frame):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, MeshWarning, stacklevel=level + 1)
+
+
+def _is_of_package(frame: FrameType) -> bool:
+    name = str(frame.f_globals.get("__name__"))
+    return name.partition(".")[0] == "gpu_smooth"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from gpu_smooth import _native
 from gpu_smooth._cells import Cells, of_faces
-from gpu_smooth._errors import MeshError, MeshWarning
+from gpu_smooth._errors import MeshError, warn
 
 
 def _grid_of(mesh: Any) -> Any:
@@ -91,9 +90,9 @@ def _positions(data: Any, grid: Any, moved: Any) -> dict[str, Any]:
             near = max(1e-9, 4 * np.finfo(old.dtype).eps) if old.dtype.kind == "f" else 1e-9
             kind = next((kind for kind in kinds if np.allclose(getattr(grid, kind)[:, axis], old.values, rtol=near)), None)
             if kind is None:
-                warnings.warn(
+                warn(
                     f"mesh: the coordinate {name} is not updated, as it has neither centers of mass nor circumcenters of the "
-                    f"{place}s", MeshWarning, stacklevel=2,
+                    f"{place}s"
                 )
                 found[name] = old
                 continue

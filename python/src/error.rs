@@ -14,27 +14,25 @@ use pyo3::types::{PyTuple, PyType};
 /// The module that defines the exceptions.
 static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
 
-/// Returns a class of `gpu_smooth._errors`.
-fn class_named<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyType>> {
+/// Returns a class or a function of `gpu_smooth._errors`.
+fn item_named<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let module = MODULE
         .get_or_try_init(py, || py.import(intern!(py, "gpu_smooth._errors")).map(Bound::unbind))?;
-    Ok(module.bind(py).getattr(name)?.cast_into::<PyType>()?)
+    module.bind(py).getattr(name)
 }
 
 /// Returns an exception of the class `class` of `gpu_smooth._errors`.
 fn raised(py: Python<'_>, class: &str, text: &str) -> PyErr {
-    match class_named(py, class) {
+    match item_named(py, class).and_then(|class| Ok(class.cast_into::<PyType>()?)) {
         Ok(class) => PyErr::from_type(class, (text.to_owned(),)),
         Err(error) => error,
     }
 }
 
-/// Issues a `MeshWarning`. A filter of warnings may make the warning an exception.
+/// Issues a `MeshWarning` that names the line by which the package was called. A filter of warnings may make the warning an
+/// exception.
 pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
-    /// Number of frames from the line that a warning names up to the native function.
-    const LEVEL: i32 = 2;
-    let text = std::ffi::CString::new(text.replace('\0', " ")).unwrap_or_default();
-    PyErr::warn(py, class_named(py, "MeshWarning")?.as_any(), &text, LEVEL)
+    item_named(py, "warn")?.call1((text,)).map(drop)
 }
 
 /// Returns the exception for arrays that are no mesh, or do not fit the mesh.

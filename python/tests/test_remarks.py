@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pickle
 import re
+import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 from conftest import MESHES, Points, Triangles, alternating, command_line, lattice, written
@@ -36,6 +39,26 @@ def test_a_warning_is_a_user_warning_and_may_be_made_an_exception(mesh: Mesh) ->
     # The settings of the tests make all warnings exceptions.
     with pytest.raises(MeshWarning, match="adapted"):
         gpu_smooth.smooth(points * [6.0, 1.0], triangles)
+
+
+def test_a_warning_names_the_line_that_called_the_package(mesh: Mesh) -> None:
+    points, triangles = mesh
+    points = points * [6.0, 1.0]
+    in_space = np.column_stack([points, np.zeros(len(points))])
+    given = meshio.Mesh(in_space, [("triangle", triangles)])
+    calls: list[Callable[[], Any]] = [
+        lambda: gpu_smooth.smooth(points, triangles),
+        lambda: gpu_smooth.run(points, triangles),
+        lambda: gpu_smooth.Smoother(points, triangles).run(),
+        lambda: gpu_smooth.smooth(given),
+        lambda: gpu_smooth.run(given),
+    ]
+    for call in calls:
+        with warnings.catch_warnings(record=True) as caught:
+            # Python's usual filter shows a warning once for each line.
+            warnings.simplefilter("default")
+            call()
+        assert [(Path(own.filename).name, own.lineno) for own in caught] == [(Path(__file__).name, call.__code__.co_firstlineno)]
 
 
 @pytest.mark.parametrize("kind", ["stretched", "graded"])
