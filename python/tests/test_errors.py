@@ -150,6 +150,8 @@ def test_wrong_options_are_refused(options: dict[str, Any], message: str) -> Non
         ({"lines": [[0, 99]]}, r"lines\[0, 1\] is 99"),
         ({"lines": [0, 1]}, "lines: "),
         ({"regions": [1, 2]}, r"regions: integers of shape \(18,\)"),
+        ({"regions": []}, r"regions: integers of shape \(18,\)"),
+        ({"target": []}, r"target: numbers of shape \(16,\)"),
         ({"periodic": [[0, 99]], "slide": True}, r"periodic\[0, 1\] is 99"),
         ({"target": [1.0] * 15}, "target: "),
         ({"target": [0.0] * 16}, "vertex 0 has no target"),
