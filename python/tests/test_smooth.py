@@ -143,6 +143,11 @@ def test_the_form_of_points_is_kept(mesh: Mesh) -> None:
     of_single = gpu_smooth.smooth(single, triangles, z="data")
     assert of_single.dtype == np.float32 and np.array_equal(of_single[:, 2], single[:, 2])
     assert np.abs(of_single[:, :2] - smoothed).max() < 1e-3
+    swapped = single.astype(single.dtype.newbyteorder())
+    of_swapped = gpu_smooth.smooth(swapped, triangles, z="data")
+    assert of_swapped.dtype == np.float32 and np.array_equal(of_swapped, of_single)
+    for other in points.astype(np.float16), (100.0 * points).astype(np.int32):
+        assert gpu_smooth.smooth(other, triangles).dtype == np.float64
 
 
 def test_points_and_triangles_may_have_any_layout_and_integer_type(mesh: Mesh) -> None:

@@ -6,7 +6,7 @@ use numpy::{Element, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArr
 use pyo3::intern;
 use pyo3::prelude::*;
 
-use crate::arrays::conversion::{converted, laid_out, matrix, of_shape, rows, typed};
+use crate::arrays::conversion::{converted, kind, laid_out, matrix, of_shape, rows, typed};
 use crate::error;
 
 /// Points of a mesh, and the form of their array.
@@ -106,7 +106,8 @@ pub(crate) fn points(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Points> {
     }
     let py = value.py();
     let array = converted(name, value, POINTS, &["f", "i", "u"])?;
-    let is_single = array.dtype().is_equiv_to(&numpy::dtype::<f32>(py));
+    // In any byte order.
+    let is_single = kind(&array)? == "f" && array.dtype().itemsize() == size_of::<f32>();
     let form = if is_single { intern!(py, "float32") } else { intern!(py, "float64") };
     let array = laid_out(&array, form.as_any())?;
     points_of_array(name, &array)?.ok_or_else(|| of_shape(name, &array, POINTS))
