@@ -59,6 +59,31 @@ def test_tasks_of_a_job_array_share_the_meshes(tmp_path: Path, plate: Path) -> N
         assert sorted(path.name for path in (tmp_path / "out").iterdir()) == expected
 
 
+def test_a_mesh_of_several_files_is_smoothed_by_one_task(tmp_path: Path, plate: Path) -> None:
+    source = tmp_path / "in"
+    source.mkdir()
+    for name in "a", "b.1":
+        for ending in "node", "ele":
+            (source / f"{name}.{ending}").write_bytes(plate.with_suffix(f".{ending}").read_bytes())
+    (source / "a.poly").write_text("0 2 0 0\n0 0\n0\n")
+    gpu_smooth.convert(plate, source / "c.vtk")
+    printed = [
+        output(
+            "slurm_array.py", source, tmp_path / "out",
+            SLURM_ARRAY_TASK_ID=task, SLURM_ARRAY_TASK_MIN="0", SLURM_ARRAY_TASK_MAX="2", SLURM_ARRAY_TASK_COUNT="2",
+            SLURM_ARRAY_TASK_STEP="2",
+        )
+        for task in ("0", "2")
+    ]
+    assert [re.findall(r"^(\S+): ", text, re.MULTILINE) for text in printed] == [["a.node", "c.vtk"], ["b.1.node"]]
+    command = [sys.executable, str(EXAMPLES / "slurm_array.py"), str(source), str(tmp_path / "none")]
+    # --array=0,1,5
+    irregular = {"ID": "1", "MIN": "0", "MAX": "5", "COUNT": "3", "STEP": "1"}
+    names = {f"SLURM_ARRAY_TASK_{name}": value for name, value in irregular.items()}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ, **names})
+    assert done.returncode == 1 and "equal steps" in done.stderr
+
+
 @pytest.mark.heavy
 def test_a_thousand_meshes_are_smoothed_through_dask() -> None:
     assert re.match(r"1000 meshes, least angle (\d+)", output("many_meshes_dask.py", "--side", "12"))
