@@ -145,7 +145,6 @@ class Smoother:
         return self._native.quadrilaterals
 
 
-MESH_OPTIONS = frozenset(_native.mesh_options())
 RUN_OPTIONS = frozenset(_native.run_options())
 
 
@@ -252,7 +251,9 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         The desired f by the first metric; auto finds the optimum before the run, in tries of up to 5000 sweeps. The
         default is auto with `fraction`.
     time_limit : float, optional
-        Stop after this many seconds, with the best mesh so far.
+        Stop after this many seconds, with the best mesh so far. The time counts from the call, also while the mesh is
+        prepared and untangled; with a `Smoother`, from the call of its `run`. A mesh that is still being untangled then
+        is a `MeshError`.
     method : {"auto", "multilevel", "relaxed", "paper"}, default "auto"
         Sweeps with Newton steps of all vertices or corrections from coarser levels of the mesh, by all metrics but area
         (multilevel), over-relaxed sweeps (relaxed), or the plain sweeps of Park & Shontz (paper). auto takes relaxed
@@ -371,5 +372,9 @@ def run(points: Array | Any, triangles: Array | None = None, **options: Unpack[S
     """
     all_options: dict[str, Any] = dict(options)
     _native.check_option_names(list(all_options))
-    of_mesh = {name: all_options.pop(name) for name in list(all_options) if name in MESH_OPTIONS}
-    return Smoother(points, triangles, **of_mesh).run(**all_options)
+    with_points = None
+    if triangles is None:
+        from gpu_smooth import _meshes
+
+        points, triangles, all_options, with_points = _meshes.arrays_of(points, all_options)
+    return Result(_native.run(points, triangles, **all_options), with_points)

@@ -45,7 +45,7 @@ mod _native {
     #[pymodule_export]
     use crate::outcome::Outcome;
     #[pymodule_export]
-    use crate::smoother::{Smoother, smooth};
+    use crate::smoother::{Smoother, run, smooth};
     #[pymodule_export]
     use crate::tables::{
         adapters, check_option_names, measures, mesh_options, metrics, options, run_options,

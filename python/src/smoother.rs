@@ -41,16 +41,7 @@ impl Smoother {
         let cells = Cells(triangles, quadrilaterals);
         let Call { mesh, form, options } = Call::read(points, &cells, options)?;
         let CallOptions { mesh: options, run } = options;
-        let observer = RunObserver::new(&run);
-        let prepared = threads::watched(py, &observer, || {
-            let mut remarks = Remarks::new(&observer);
-            let input = Input::new(mesh, &options, form.precision(), &observer, &mut remarks)?;
-            let lasting = remarks.count();
-            let (smoother, layout) = input.into_smoother(&options, &mut remarks)?;
-            let (options, remarks) = (Arc::new(options), remarks.into_texts());
-            Ok(Prepared { smoother, layout, options, form, remarks, lasting })
-        })?;
-        let prepared = finished(py, &observer, prepared)?;
+        let prepared = prepare(py, mesh, form, options, &RunObserver::new(&run))?;
         Ok(Self(Arc::new(prepared)))
     }
 
@@ -72,19 +63,8 @@ impl Smoother {
             None => Arc::clone(&self.0),
             Some(points) => Arc::new(self.at(py, points, &run, &observer)?),
         };
-        let Prepared { smoother, layout, options, form, .. } = &*prepared;
-        options.check(py, &run)?;
-        let plan = RunPlan::new(py, &run, options, form, smoother)?;
-        let done = threads::watched(py, &observer, || {
-            let mut remarks = Remarks::new(&observer);
-            let adapted = plan.adapted(smoother, layout, options)?;
-            adapted.into_iter().for_each(|adapted| remarks.adapted(adapted));
-            let outcome = plan.run(smoother, &observer)?;
-            remarks.outcome(&outcome, smoother.mesh());
-            Ok((outcome, remarks.into_texts()))
-        })?;
-        let (outcome, remarks) = finished(py, &observer, done)?;
-        Ok(Outcome::new(outcome, Arc::clone(&prepared), &plan.options, &plan.backend, remarks))
+        prepared.options.check(py, &run)?;
+        run_prepared(py, &prepared, &run, &observer)
     }
 
     /// The flags of the vertices that are free: inside of the mesh and not fixed.
@@ -256,6 +236,65 @@ fn finished<T>(
 ) -> PyResult<T> {
     observer.take_raised().map_or(Ok(()), Err)?;
     done.map_err(|failure| failure.raised(py))
+}
+
+/// Prepares a mesh, whose points were passed in a form, for runs.
+fn prepare(
+    py: Python<'_>,
+    mesh: Mesh,
+    form: PointsForm,
+    options: MeshOptions,
+    observer: &RunObserver<'_>,
+) -> PyResult<Prepared> {
+    let prepared = threads::watched(py, observer, || {
+        let mut remarks = Remarks::new(observer);
+        let input = Input::new(mesh, &options, form.precision(), observer, &mut remarks)?;
+        let lasting = remarks.count();
+        let (smoother, layout) = input.into_smoother(&options, &mut remarks)?;
+        let (options, remarks) = (Arc::new(options), remarks.into_texts());
+        Ok(Prepared { smoother, layout, options, form, remarks, lasting })
+    })?;
+    finished(py, observer, prepared)
+}
+
+/// Smooths a prepared mesh.
+fn run_prepared(
+    py: Python<'_>,
+    prepared: &Arc<Prepared>,
+    run: &RunOptions,
+    observer: &RunObserver<'_>,
+) -> PyResult<Outcome> {
+    let Prepared { smoother, layout, options, form, .. } = &**prepared;
+    let plan = RunPlan::new(py, run, options, form, smoother)?;
+    let done = threads::watched(py, observer, || {
+        let mut remarks = Remarks::new(observer);
+        let adapted = plan.adapted(smoother, layout, options)?;
+        adapted.into_iter().for_each(|adapted| remarks.adapted(adapted));
+        let outcome = plan.run(smoother, observer)?;
+        remarks.outcome(&outcome, smoother.mesh());
+        Ok((outcome, remarks.into_texts()))
+    })?;
+    let (outcome, remarks) = finished(py, observer, done)?;
+    Ok(Outcome::new(outcome, Arc::clone(prepared), &plan.options, &plan.backend, remarks))
+}
+
+/// Smooths a mesh that is given as arrays, and returns the new points with a report. The time limit and the function of the
+/// user include the preparation of the mesh, as in [`smooth`].
+#[pyfunction]
+#[pyo3(signature = (points, triangles, *, quadrilaterals = None, **options))]
+pub(crate) fn run(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    triangles: Bound<'_, PyAny>,
+    quadrilaterals: Option<Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Outcome> {
+    let cells = Cells(triangles, quadrilaterals);
+    let Call { mesh, form, options } = Call::read(points, &cells, options)?;
+    let CallOptions { mesh: options, run } = options;
+    let observer = RunObserver::new(&run);
+    let prepared = Arc::new(prepare(py, mesh, form, options, &observer)?);
+    run_prepared(py, &prepared, &run, &observer)
 }
 
 /// Smooths a mesh that is given as arrays, and returns the new points.

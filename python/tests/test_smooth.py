@@ -344,6 +344,22 @@ def test_a_time_limit_ends_a_run() -> None:
     assert result.stop == "canceled" and 0.1 < time.perf_counter() - start < 10
 
 
+@pytest.mark.parametrize("function", [gpu_smooth.run, gpu_smooth.smooth])
+def test_the_time_limit_and_the_function_of_a_run_include_untangling(function: Any, mesh: Mesh) -> None:
+    points, triangles = mesh
+    points[[40, 80]] += [2.5, 2.5]
+    seen: list[gpu_smooth.Progress] = []
+    function(points, triangles, untangle=True, on_sweep=seen.append)
+    assert {"untangling", "smoothing"} <= {progress.phase for progress in seen}
+    for options in {"time_limit": 0.0}, {"on_sweep": lambda progress: True}:
+        with pytest.raises(MeshError, match="triangles stay inverted or flat after"):
+            function(points, triangles, untangle=True, **options)
+    smoother = gpu_smooth.Smoother(points, triangles, untangle=True)
+    assert smoother.run(time_limit=0.0).stop == "canceled"
+    with pytest.raises(MeshError, match="triangles stay inverted or flat after"):
+        smoother.run(points, time_limit=0.0)
+
+
 def test_a_tangled_mesh_is_refused_or_untangled(mesh: Mesh) -> None:
     points, triangles = mesh
     tangled = points.copy()

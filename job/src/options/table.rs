@@ -103,7 +103,8 @@ pub const OPTIONS: &[OptionRow] = &[
     .and(
         "The time counts from when the mesh begins to be read. A mesh that is still being untangled then is written only \
          with {keep-going}",
-        "",
+        "The time counts from the call, also while the mesh is prepared and untangled; with a `Smoother`, from the call of its \
+         `run`. A mesh that is still being untangled then is a `MeshError`",
     ),
     row(
         "checkpoint-every",
