@@ -152,7 +152,7 @@ impl Capabilities {
     pub(crate) fn losses(&self, content: &Content, coded: &[u32]) -> Vec<String> {
         let mut lost = Vec::new();
         self.element_losses(content, &mut lost);
-        if !self.z && !content.z_values.is_empty() {
+        if !self.z && (!content.z_values.is_empty() || content.common_z != 0.0) {
             lost.push("third coordinates".into());
         }
         if !self.keeps_origin && content.origin != [0; 2] {

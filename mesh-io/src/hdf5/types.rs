@@ -90,7 +90,8 @@ impl Dataspace {
             2 => bytes.byte()? == 2,
             _ => return Err(bytes.unread(format!("a dataspace of version {version}"))),
         };
-        if rank > 32 {
+        // A null dataspace has no dimensions.
+        if rank > 32 || (is_null && rank > 0) {
             return Err(bytes.damaged());
         }
         let lengths = |bytes: &mut ByteReader<'_>| -> Result<Vec<u64>, Hdf5Error> {

@@ -213,3 +213,25 @@ fn colors_of_a_legacy_vtk_are_real_in_text() {
         assert_eq!((content.cell_data()[0].is_real(), losses.as_str()), (is_real, ""));
     }
 }
+
+/// Points of a pixel are in rows. DOLFINx writes linear cells as Lagrange cells of order 1.
+#[test]
+fn pixels_and_linear_lagrange_cells_are_read() {
+    let vtk = |cells: &str, types: &str| {
+        format!(
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n\
+             0 0 5 1 0 5 0 1 5 1 1 5 2 0 5 2 1 5\nCELLS 3 {}\n{cells}\nCELL_TYPES 3\n{types}\n",
+            cells.split_whitespace().count()
+        )
+    };
+    let folder = Folder::new(&[]);
+    folder.put("pixel.vtk", vtk("4 0 1 2 3\n3 1 4 5\n3 1 5 3", "8 5 5"));
+    let file = folder.read("pixel.vtk");
+    assert_eq!(file.quadrilaterals(), [[0, 1, 3, 2]]);
+    folder.put("lagrange.vtk", vtk("4 0 1 3 2\n3 1 4 5\n3 1 5 3", "70 69 76"));
+    let file = folder.read("lagrange.vtk");
+    assert_eq!((file.quadrilaterals(), file.triangles().len()), (&[[0, 1, 3, 2]][..], 2));
+    // The third coordinate that all points have is a loss too.
+    let (_, losses) = converted("c.vtk", vtk("3 0 1 3\n3 1 4 5\n3 1 5 3", "5 5 5"), Format::Su2);
+    assert_eq!(losses, "third coordinates");
+}

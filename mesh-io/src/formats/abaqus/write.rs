@@ -13,7 +13,7 @@ const ROW: usize = 16;
 pub(crate) fn write_inp(input: &WriterInput<'_>) -> String {
     let content = input.content;
     // Plane types (CPS3) have no third coordinate, shell types (S3) have one.
-    let is_flat = content.z_values.is_empty();
+    let is_flat = content.z_values.is_empty() && content.common_z == 0.0;
     let mut out = "*HEADING\nmesh\n*NODE\n".to_owned();
     for (vertex, [x, y]) in content.points.iter().enumerate() {
         put!(out, "{}, {}, {}", input.vertex_id(vertex), short_text(*x), short_text(*y));

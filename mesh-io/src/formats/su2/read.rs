@@ -82,7 +82,7 @@ impl FormatReader for Su2 {
                     end_of_list(cursor, count, "points", point)?;
                     points += count;
                 }
-                b"MARKER_TAG" => marker = Some(value),
+                b"MARKER_TAG" => marker = Some(all),
                 b"NELEM" | b"MARKER_ELEMS" => {
                     let name = if key == b"NELEM" { "NELEM" } else { "MARKER_ELEMS" };
                     let count = number(cursor, name, value)?;

@@ -41,6 +41,10 @@ impl Cell<'_> {
         if kind.nodes() == points.len() {
             let mut nodes = [0; 4];
             nodes[..points.len()].copy_from_slice(points);
+            if cell_type == types::PIXEL {
+                // The points of a pixel are in rows, not around the cell.
+                nodes.swap(2, 3);
+            }
             return visitor.element(cursor, &Element { id, kind, region, nodes });
         }
         match (kind, cell_type) {
@@ -139,6 +143,10 @@ fn kind_of(
             return Ok(CellKind::of_polygon(points as u64).unwrap_or(CellKind::Polygon));
         }
         types::PIXEL => CellKind::Quadrilateral,
+        // DOLFINx gives these types to linear cells too.
+        types::LAGRANGE_CURVE | types::BEZIER_CURVE if points == 2 => CellKind::Line,
+        types::LAGRANGE_TRIANGLE | types::BEZIER_TRIANGLE if points == 3 => CellKind::Triangle,
+        types::LAGRANGE_QUAD | types::BEZIER_QUAD if points == 4 => CellKind::Quadrilateral,
         types::TRIANGLE_STRIP => {
             let problem = format!("cell {id} is a strip of triangles");
             return Err(cursor.error(problem, "Save strips as triangles"));

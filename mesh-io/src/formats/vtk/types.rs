@@ -17,6 +17,12 @@ pub(crate) const TETRA: u64 = 10;
 pub(crate) const HEXAHEDRON: u64 = 12;
 pub(crate) const WEDGE: u64 = 13;
 pub(crate) const PYRAMID: u64 = 14;
+pub(crate) const LAGRANGE_CURVE: u64 = 68;
+pub(crate) const LAGRANGE_TRIANGLE: u64 = 69;
+pub(crate) const LAGRANGE_QUAD: u64 = 70;
+pub(crate) const BEZIER_CURVE: u64 = 75;
+pub(crate) const BEZIER_TRIANGLE: u64 = 76;
+pub(crate) const BEZIER_QUAD: u64 = 77;
 
 /// Returns whether cells of the type are first-order volume cells: tetrahedra (10) to hexagonal prisms (16), convex
 /// point sets (41) and polyhedra (42).

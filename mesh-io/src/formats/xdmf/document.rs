@@ -219,6 +219,9 @@ fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Resul
             return Err(xml.error(problem, SAVE));
         }
     };
+    if of.name == "Topology" && optional(of, &["BaseOffset"])?.is_some_and(|base: u64| base != 0) {
+        return Err(xml.error("a Topology with another BaseOffset than 0 is not read", SAVE));
+    }
     let dimensions = tag.value(&["Dimensions"]).unwrap_or_default();
     let dimensions = dimensions.split_whitespace().map(number).collect::<Result<_, _>>()?;
     Ok(Item {
@@ -226,7 +229,10 @@ fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Resul
         section: of.name.clone(),
         kind: small(of, &["TopologyType", "GeometryType", "Type"]),
         name: of.value(&["Name"]).unwrap_or_default().to_owned(),
-        center: small(of, &["Center"]),
+        // Node is the default.
+        center: Some(small(of, &["Center"]))
+            .filter(|center| !center.is_empty())
+            .unwrap_or("node".into()),
         elements: optional(of, &["NumberOfElements"])?,
         corners: optional(of, &["NodesPerElement"])?,
         dimensions,

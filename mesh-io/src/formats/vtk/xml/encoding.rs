@@ -69,7 +69,11 @@ impl EncodedArrays for XmlArrays {
     /// Corrects the offsets of appended arrays that lie after an edited array whose length changes.
     fn dependent_edits(&self, _: &[u8], edits: &[ByteEdit], _: usize) -> Vec<ByteEdit> {
         let corrected = self.offsets.iter().filter_map(|offset| {
-            let before = edits.iter().filter(|edit| edit.range.end <= offset.array_start);
+            // Arrays within their tags precede all appended arrays.
+            let appended = offset.array_start.saturating_sub(offset.value);
+            let before = edits.iter().filter(|edit| {
+                appended <= edit.range.start && edit.range.end <= offset.array_start
+            });
             let (removed, added) = before.fold((0, 0), |(removed, added), edit| {
                 (removed + edit.range.len(), added + edit.bytes.len())
             });
