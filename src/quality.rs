@@ -194,6 +194,13 @@ mod tests {
             let q = quality(&points);
             assert_eq!((q.min_angle, q.max_angle), (0.0, 180.0));
         }
+        // AREA has no barrier, so a triangle at one place among others has a finite value.
+        let points = [[0.0, 0.0], [3.0, 0.0], [1.5, 3.0], [1.5, 1.0], [1.5, 1.0], [1.5, 1.0]];
+        let triangles =
+            vec![[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4], [2, 0, 5], [0, 3, 5], [3, 4, 5]];
+        let mesh = Mesh { points: points.to_vec(), triangles, ..Mesh::default() };
+        let topology = Topology::by_area(&mesh).unwrap();
+        assert!(Quality::of(&mesh.points, &topology).unwrap().f(Metric::Area).is_finite());
     }
 
     #[test]

@@ -8,6 +8,8 @@ use crate::mesh::Mesh;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
 
+/// Number of steps that every walk may take.
+const LEAST_STEPS: usize = 200;
 /// Largest number of nearby vertices from which a walk to a point is tried.
 const TRIED: usize = 9;
 
@@ -78,7 +80,11 @@ impl Background {
     /// nearest.
     fn found(&self, locator: &Locator<'_>, place: [f64; 2]) -> Option<LocatedPoint> {
         let starts = self.seeds.around(place).filter_map(|v| self.topology.star(v).first());
-        if let Some(element) = starts.take(TRIED).find_map(|&corner| locator.walk(corner, place)) {
+        // Seeds are equally spaced, and elements may be many times smaller.
+        let elements = self.topology.element_count();
+        let most = LEAST_STEPS.max(4 * elements.isqrt());
+        let mut starts = starts.take(TRIED);
+        if let Some(element) = starts.find_map(|&corner| locator.walk(corner, place, most)) {
             return Some(locator.within(element, place));
         }
         let mut best: Option<(f64, u32, [f64; 2])> = None;

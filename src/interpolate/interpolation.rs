@@ -59,6 +59,8 @@ impl Interpolation {
         if let Some(vertex) = new.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite { vertex: vertex as u32 });
         }
+        // If stars have been dropped, this line computes them again before several threads need them.
+        topology.star(0);
         let locator = Locator { topology, points: old };
         let moved = map_ranges(new.len(), 1 << 10, |range| {
             let moved = range.filter(|&vertex| old[vertex] != new[vertex]);

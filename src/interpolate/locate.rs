@@ -10,6 +10,8 @@ use crate::topology::predicates::orientation;
 /// Largest number of steps of a straight walk; after more steps, the search spreads in all directions. Vertices move by
 /// a few elements.
 const STEPS: usize = 200;
+/// Number of elements without a nearer one after which a spreading search ends.
+const IN_VAIN: usize = 2_000;
 /// Largest number of elements that a spreading search visits before it settles for the nearest.
 const SPREAD: usize = 20_000;
 
@@ -26,17 +28,17 @@ impl Locator<'_> {
     pub(super) fn find(&self, vertex: u32, place: [f64; 2]) -> Option<LocatedPoint> {
         let star = self.topology.star(vertex);
         let first = *star.first()?;
-        Some(match self.walk(first, place) {
+        Some(match self.walk(first, place, STEPS) {
             Some(element) => self.within(element, place),
             None => self.spread(star, place),
         })
     }
 
     /// Walks toward a point across edges that separate the element from the point. Returns the element that contains
-    /// the point, `None` if the boundary blocks the walk or the walk exceeds [`STEPS`].
-    pub(super) fn walk(&self, first: u32, place: [f64; 2]) -> Option<u32> {
+    /// the point, `None` if the boundary blocks the walk or the walk takes more than `most` steps.
+    pub(super) fn walk(&self, first: u32, place: [f64; 2], most: usize) -> Option<u32> {
         let mut element = self.topology.corner_list().first(first);
-        for step in 0..STEPS {
+        for step in 0..most {
             let cell = self.cell(element);
             let mut beyond = false;
             let mut next = None;
@@ -69,8 +71,10 @@ impl Locator<'_> {
         let mut seen: HashSet<u32> = star.iter().map(|&corner| corners.first(corner)).collect();
         let mut open: BinaryHeap<Candidate> = seen.iter().map(candidate).collect();
         let mut best: Option<Candidate> = None;
+        let mut in_vain = 0;
         for _ in 0..SPREAD {
-            let Some(met) = open.pop() else { break };
+            let Some(met) = open.pop().filter(|_| in_vain < IN_VAIN) else { break };
+            in_vain += 1;
             let cell = self.cell(met.element);
             if !cell.sides().any(|edge| self.is_beyond(edge, place)) {
                 return self.within(met.element, place);
@@ -82,6 +86,7 @@ impl Locator<'_> {
             }
             if best.as_ref().is_none_or(|best| met.distance < best.distance) {
                 best = Some(met);
+                in_vain = 0;
             }
         }
         match best {

@@ -24,8 +24,8 @@ pub enum KeepLayers {
 impl KeepLayers {
     /// Finds the layers whose vertices a run must keep in place: a caller lists the vertices in
     /// [`Mesh::fixed`](crate::Mesh::fixed). `walls` are the vertices of the walls above which layers are searched; with
-    /// `None`, layers are searched above all walls at which layers may begin. Vertices of inverted and flat triangles are
-    /// left out, so that the triangles can be untangled.
+    /// `None`, layers are searched above all walls at which layers may begin. Vertices of inverted and flat triangles and of
+    /// quadrilaterals that are not convex are left out, so that the elements can be untangled.
     ///
     /// # Errors
     /// Those of [`Elements::layers`].
@@ -39,9 +39,12 @@ impl KeepLayers {
         if layers.vertices.is_empty() && layers.sides.is_empty() {
             return Ok(layers);
         }
-        let bad = elements.topology.bad_triangles(elements.points)?;
-        if !bad.is_empty() {
-            let bad: HashSet<u32> = bad.iter().flat_map(|bad| bad.vertices).collect();
+        let triangles = elements.topology.bad_triangles(elements.points)?;
+        let quadrilaterals = elements.topology.bad_quadrilaterals(elements.points)?;
+        if !triangles.is_empty() || !quadrilaterals.is_empty() {
+            let of_triangles = triangles.iter().flat_map(|bad| bad.vertices);
+            let bad: HashSet<u32> =
+                of_triangles.chain(quadrilaterals.iter().flat_map(|bad| bad.vertices)).collect();
             layers.vertices.retain(|v| !bad.contains(v));
             layers.sides.retain(|v| !bad.contains(v));
         }

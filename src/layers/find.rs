@@ -44,6 +44,8 @@ impl Elements<'_> {
     pub fn rows(&self, count: usize, walls: Option<&[u32]>) -> Result<Layers, MeshError> {
         self.check(walls)?;
         let (sectors, seeds, front) = self.front(walls);
+        // No more rows have a node.
+        let count = count.min(sectors.len());
         let rows = Rows::new(&sectors, &front, count);
         let mut level = rows.row.clone();
         let mut lists = rows.lists.clone();

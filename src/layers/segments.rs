@@ -31,15 +31,33 @@ impl Segments {
         while let Some(node) = open.pop() {
             let [low, high] = self.boxes[node];
             let outside = [0, 1].map(|k| (low[k] - point[k]).max(point[k] - high[k]).max(0.0));
-            if length(outside) > distance {
-                continue;
-            }
-            if node < self.leaves {
+            let is_near = length(outside) <= distance;
+            if is_near && node < self.leaves {
                 open.extend([2 * node + 1, 2 * node]);
-            } else if distance_to_segment(point, self.segments[node - self.leaves]) <= distance {
+            }
+            // Leaves behind the last segment have no segment.
+            let segment = node.checked_sub(self.leaves).and_then(|leaf| self.segments.get(leaf));
+            if is_near && segment.is_some_and(|&own| distance_to_segment(point, own) <= distance) {
                 return true;
             }
         }
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tree without segments has a leaf without a segment, whose box is infinitely far away.
+    #[test]
+    fn no_segment_is_within_any_distance() {
+        let trees = [Vec::new(), vec![[[0.0; 2], [1.0, 0.0]]; 3]].map(Segments::new);
+        for (distance, expected) in
+            [(f64::INFINITY, [false, true]), (f64::NAN, [false; 2]), (1.0, [false; 2])]
+        {
+            let found = [0, 1].map(|tree| trees[tree].are_within([9.0, 9.0], distance));
+            assert_eq!(found, expected, "{distance}");
+        }
     }
 }

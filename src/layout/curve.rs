@@ -19,6 +19,8 @@ const CROWD: usize = 1 << 14;
 
 /// Returns the vertices that some triangle uses, in the order of their positions along a Z-order curve.
 pub(crate) fn along_curve(mesh: &Mesh, topology: &Topology<'_>) -> Vec<u32> {
+    // If stars have been dropped, this line computes them again before several threads need them.
+    topology.star(0);
     let (low, high) = bounds(mesh, topology);
     let scale = f64::from(u32::MAX) / (high - low).max_element();
     let key = |v: u32| {

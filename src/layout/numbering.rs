@@ -58,6 +58,10 @@ pub(super) fn rings(
 /// least. Vertices of equal elements in another order then have equal patterns.
 fn turned(topology: &Topology<'_>, vertex: u32) -> Vec<(u32, bool)> {
     let mut around: Vec<(u32, bool)> = topology.around(vertex).collect();
+    // All turns of a pattern without marks are equal.
+    if around.iter().all(|&(_, is_opposite)| !is_opposite) {
+        return around;
+    }
     let marks = |turn: usize| {
         let (before, after) = around.split_at(turn);
         after.iter().chain(before).map(|&(_, is_opposite)| is_opposite)

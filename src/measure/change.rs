@@ -131,7 +131,7 @@ fn around(
             vertices: *corners,
             lengths: [a + b, a + c, b + c],
             growth: growth(doubled, doubled_after),
-            altitudes: [doubled.abs() / a.max(b).max(c), doubled_after.abs() / after],
+            altitudes: [altitude(doubled, a.max(b).max(c)), altitude(doubled_after, after)],
         }
     });
     let quadrilaterals = topology.corner_list().of_quadrilaterals().as_chunks::<4>().0;
@@ -142,8 +142,8 @@ fn around(
         // Each point of a convex quadrilateral is in two of its corner triangles.
         let doubled = 0.5 * was.iter().map(|(_, doubled)| doubled).sum::<f64>();
         let doubled_after = 0.5 * is.iter().map(|(_, doubled)| doubled).sum::<f64>();
-        let altitudes = was.iter().map(|([a, b, c], own)| own.abs() / a.max(*b).max(*c));
-        let altitudes_after = is.iter().map(|(longest, own)| own.abs() / longest);
+        let altitudes = was.iter().map(|([a, b, c], own)| altitude(*own, a.max(*b).max(*c)));
+        let altitudes_after = is.iter().map(|(longest, own)| altitude(*own, *longest));
         Changed {
             vertices: corners.map(|corner| corner[0]),
             lengths: was.map(|([a, b, _], _)| a + b),
@@ -186,8 +186,17 @@ impl Sums {
     }
 }
 
-/// Returns the natural logarithm of an area divided by another, given twice the signed areas.
+/// Returns the least altitude of a triangle, given twice its signed area and its longest edge: 0 for a triangle at one place.
+fn altitude(doubled: f64, longest: f64) -> f64 {
+    if longest == 0.0 { 0.0 } else { doubled.abs() / longest }
+}
+
+/// Returns the natural logarithm of an area divided by another, given twice the signed areas; 0 if an area is 0, which no factor
+/// changes.
 fn growth(before: f64, after: f64) -> f64 {
+    if before == 0.0 || after == 0.0 {
+        return 0.0;
+    }
     let area = |doubled: f64| (0.5 * doubled.abs()).max(f64::MIN_POSITIVE);
     (area(after) / area(before)).ln()
 }

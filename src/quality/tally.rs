@@ -214,7 +214,9 @@ impl Edges {
         let orientation = orientation * lengths[0] * lengths[1];
         let edges = [to(p, q), to(p, r), to(q, r)];
         let size = edges.as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
-        let unit = f64::from_bits(size.to_bits() & EXPONENT);
+        // Edges without a length have no unit.
+        let has_length = size > f64::MIN_POSITIVE;
+        let unit = if has_length { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 };
         // The unit is a power of two, so multiplication by its inverse rounds nothing. Divisions would take several
         // times as long.
         let inverse = 1.0 / unit;

@@ -79,7 +79,11 @@ impl Adaptation {
         let wider = Stars::of(&neighbors, triangles, points.len());
         let shapes = map_ranges(samples.len(), 32, |range| {
             let shape = |&v: &u32| {
-                let mut near: Vec<u32> = ring(v).flat_map(|w| wider.at(w)).collect();
+                // A vertex is listed once for each of its triangles, and a hub has many.
+                let mut around: Vec<u32> = ring(v).collect();
+                around.sort_unstable();
+                around.dedup();
+                let mut near: Vec<u32> = around.into_iter().flat_map(|w| wider.at(w)).collect();
                 near.sort_unstable();
                 near.dedup();
                 let logarithm = |&t: &u32| {

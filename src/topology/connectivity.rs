@@ -352,7 +352,13 @@ impl<'m> Topology<'m> {
 
     /// Returns the corners at each vertex, computed if [`Self::forget_stars`] has freed them.
     pub(crate) fn stars(&self) -> &Groups {
-        self.stars.get_or_init(|| self.find_stars())
+        if let Some(known) = self.stars.get() {
+            return known;
+        }
+        // While this thread waits for the loops of `find_stars`, it may run tasks of a loop that asks for the stars too. So no
+        // lock is held here: a thread would wait for itself.
+        let found = self.find_stars();
+        self.stars.get_or_init(|| found)
     }
 
     /// Frees the memory of the stars. The next access computes them again.
@@ -496,6 +502,30 @@ mod tests {
             points: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.9]],
             triangles: vec![[0, 1, 4], [1, 2, 4], [2, 4, 3], [3, 0, 4]],
             ..Mesh::default()
+        }
+    }
+
+    /// A thread that found the stars, and ran a task of the loop that needs them meanwhile, waited for itself.
+    #[test]
+    fn loops_may_be_the_first_to_need_the_stars() {
+        let n = 60;
+        let points = (0..n * n).map(|v| [f64::from(v % n), f64::from(v / n)]).collect();
+        let cell = |k: u32| {
+            let a = k / (n - 1) * n + k % (n - 1);
+            [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]
+        };
+        let triangles = (0..(n - 1) * (n - 1)).flat_map(cell).collect();
+        let mesh = Mesh { points, triangles, ..Mesh::default() };
+        let mut topology = Topology::new(&mesh).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(6).build().unwrap();
+        for _ in 0..100 {
+            topology.forget_stars();
+            let of_vertices = pool.install(|| {
+                crate::parallel::map_ranges(mesh.points.len(), 64, |range| {
+                    range.map(|v| topology.star(v as u32).len()).sum::<usize>()
+                })
+            });
+            assert_eq!(of_vertices.iter().sum::<usize>(), 3 * mesh.triangles.len());
         }
     }
 

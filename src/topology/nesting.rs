@@ -28,7 +28,13 @@ impl Topology<'_> {
         for vertices in self.boundary_loops() {
             let Some(triangle) = self.beside(&vertices) else { continue };
             let area = EnclosedArea::of_edges(points, edges(&vertices));
-            loops.entry(parts[triangle as usize]).or_default().push(Loop { vertices, area });
+            let heights = vertices.iter().map(|&v| points[v as usize][1]);
+            let [low, high] = [
+                heights.clone().fold(f64::INFINITY, f64::min),
+                heights.fold(f64::NEG_INFINITY, f64::max),
+            ];
+            let one = Loop { vertices, area, low, high };
+            loops.entry(parts[triangle as usize]).or_default().push(one);
         }
         Ok(loops.into_values().find_map(|mut loops| {
             // A slit has no area, and its side is not known.
@@ -59,6 +65,9 @@ struct Loop {
     vertices: Vec<u32>,
     /// Twice the enclosed area, negative for holes.
     area: f64,
+    /// Least and greatest y of the vertices.
+    low: f64,
+    high: f64,
 }
 
 /// Returns the edges of a loop of vertices.
@@ -82,6 +91,10 @@ fn winding_of_others(points: &[[f64; 2]], loops: &[Loop], k: usize) -> Option<i3
 /// Returns how often a loop winds counter-clockwise around a vertex; `None` if the vertex is on the loop.
 fn winding(points: &[[f64; 2]], around: &Loop, vertex: u32) -> Option<i32> {
     let [x, y] = points[vertex as usize];
+    // Most holes are not beside the vertex.
+    if !(around.low..=around.high).contains(&y) {
+        return Some(0);
+    }
     let mut winding = 0;
     for [a, b] in edges(&around.vertices) {
         let ([ax, ay], [bx, by]) = (points[a as usize], points[b as usize]);

@@ -10,8 +10,8 @@ use crate::args::{ConvertArgs, OutputArgs};
 use crate::error::{CliError, ErrorKind};
 use crate::load::overwrite::{self, Likeness};
 use crate::load::{LoadedMesh, conversion, streams};
-use crate::report::elements;
 use crate::request::{FormRequest, MeshOutput, Outputs, ReadRequest};
+use crate::terminal::numbers::elements;
 use crate::terminal::{interrupt, tell};
 
 /// Writes a mesh in another format. Without `--lossy`, returns an error if that format cannot hold all of the mesh.

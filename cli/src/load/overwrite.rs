@@ -8,7 +8,7 @@ use mesh_io::{MeshFile, ReadError, ReadOptions, atomic};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use crate::report::elements;
+use crate::terminal::numbers::elements;
 
 /// Properties in which a written mesh must equal the existing mesh that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

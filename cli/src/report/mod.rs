@@ -29,7 +29,7 @@ pub(crate) use run::{
     Report, Seconds, SlideReport, UntangleReport, history,
 };
 pub(crate) use spacing::{SpacingReport, spacing_change, spacing_sentences};
-pub(crate) use summary::{change_of, elements};
+pub(crate) use summary::change_of;
 pub(crate) use target::TargetReport;
 pub(crate) use task::{Done, Failure, SmoothJob};
 pub(crate) use versioned::versioned_json;

@@ -10,7 +10,7 @@ use crate::report::{
     ChangeReport, FaultReport, MeshReport, QualityReport, Report, Seconds, SlideReport,
     TargetReport, UntangleReport, spacing_sentences,
 };
-use crate::terminal::numbers::{counted, percent, rough, sig6};
+use crate::terminal::numbers::{elements, percent, rough, sig6};
 
 /// The message of a run ended by a sweep whose objective was infinite or NaN.
 const NOT_FINITE: &str = "undone: a sweep made f infinite or NaN, which is a defect of this program or of the GPU driver; the mesh has the positions of the last finite state";
@@ -406,17 +406,6 @@ pub(crate) fn change_of(factor: f64) -> String {
         _ if factor < 1e5 => format!("{factor:.1} times"),
         // A mesh with a nearly flat triangle has factors of many digits.
         _ => format!("{factor:.0e} times"),
-    }
-}
-
-/// Returns the numbers of triangles and of quadrilaterals that may move, each only if the mesh has some.
-pub(crate) fn elements(triangles: usize, quadrilaterals: usize) -> String {
-    match (triangles, quadrilaterals) {
-        (triangles, 0) => counted(triangles, "triangle"),
-        (0, count) => counted(count, "quadrilateral"),
-        (triangles, count) => {
-            format!("{}, {}", counted(triangles, "triangle"), counted(count, "quadrilateral"))
-        }
     }
 }
 

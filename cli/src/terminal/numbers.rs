@@ -18,6 +18,17 @@ pub(crate) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Formats the numbers of triangles and of quadrilaterals, each only if the mesh has some.
+pub(crate) fn elements(triangles: usize, quadrilaterals: usize) -> String {
+    match (triangles, quadrilaterals) {
+        (triangles, 0) => counted(triangles, "triangle"),
+        (0, count) => counted(count, "quadrilateral"),
+        (triangles, count) => {
+            format!("{}, {}", counted(triangles, "triangle"), counted(count, "quadrilateral"))
+        }
+    }
+}
+
 /// Formats a number with the digits of single precision, which hides rounding errors of double precision.
 pub(crate) fn short(number: f64) -> String {
     (number as f32).to_string()

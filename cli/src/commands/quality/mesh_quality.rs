@@ -22,10 +22,9 @@ use crate::load::{Place, depths, lay_out};
 use crate::profiles::Profile;
 use crate::render::html::{MeshDescription, MeshPart};
 use crate::render::picture::{self, MeshState, PictureSubject};
-use crate::report::{
-    Finding, Histogram, ProfileReport, QualityReport, Quantities, elements, histogram,
-};
+use crate::report::{Finding, Histogram, ProfileReport, QualityReport, Quantities, histogram};
 use crate::request::{Outputs, ReadRequest, ThirdCoordinate};
+use crate::terminal::numbers::elements;
 use crate::terminal::progress::{Display, Stage};
 
 /// Measurements of one mesh. The mesh is not stored, so that many meshes can be shown side by side.

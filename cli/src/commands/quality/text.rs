@@ -13,7 +13,8 @@ use crate::commands::quality::worst::WorstPart;
 use crate::load::Place;
 use crate::load::explain;
 use crate::render::columns::{left, right, shortened};
-use crate::report::{DistinctMeasures, elements};
+use crate::report::DistinctMeasures;
+use crate::terminal::numbers::elements;
 use crate::terminal::numbers::{coordinate, fit8, sig6};
 
 /// Width of a table's first column, in characters.

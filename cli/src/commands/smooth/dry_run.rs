@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use crate::load::streams;
-use crate::report::{SmoothJob, elements};
+use crate::report::SmoothJob;
 use crate::run::rehearsal::Rehearsal;
-use crate::terminal::numbers::counted;
+use crate::terminal::numbers::{counted, elements};
 
 /// Prints the facts of a run before its first sweep.
 pub(super) fn print(task: &SmoothJob<'_>, rehearsal: &Rehearsal) {
