@@ -258,12 +258,7 @@ pub(crate) fn bars(title: &str, noun: &str, edges: &[f64], series: &[Series<'_>]
                 bar * width,
             );
             let name = name.map(|name| format!("{name}: ")).unwrap_or_default();
-            let _ = write!(
-                about,
-                "\n{name}{} ({:.1} %)",
-                counted(count as usize, noun),
-                percent(count)
-            );
+            let _ = write!(about, "\n{name}{} ({:.1} %)", counted(count, noun), percent(count));
         }
         hit(&mut text, [left + i as f64 * width, left + (i + 1) as f64 * width], &about);
     }

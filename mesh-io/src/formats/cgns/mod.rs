@@ -117,6 +117,9 @@ impl<'a> File<'a> {
             for (name, node) in labeled(self.hdf5, solution, b"DataArray_t") {
                 let dataset = self.data(node).and_then(|data| self.hdf5.dataset(data).ok()?);
                 let Some(Datatype::Real(precision, order)) = dataset.map(|own| own.datatype) else {
+                    if visitor.asks_for_data() {
+                        visitor.unsupported("data of vertices that are no real numbers");
+                    }
                     continue;
                 };
                 if !visitor.point_array(name, 1, true) {

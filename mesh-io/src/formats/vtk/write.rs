@@ -226,13 +226,13 @@ fn legacy(input: &WriterInput<'_>, order: Option<ByteOrder>) -> Rows {
     out
 }
 
-/// Encodes a name as a single word: bytes outside of `!` to `~`, quotes and percent signs become `%` and two
-/// hexadecimal digits, as in VTK.
+/// Encodes a name as a single word: bytes outside of `!` to `~`, quotes, percent signs and number signs, at which some readers begin
+/// a comment, become `%` and two hexadecimal digits, as in VTK.
 fn encoded(name: &str) -> String {
     let mut encoded = String::new();
     for byte in name.bytes() {
         match byte {
-            b'!'..=b'~' if !matches!(byte, b'"' | b'%') => encoded.push(char::from(byte)),
+            b'!'..=b'~' if !matches!(byte, b'"' | b'%' | b'#') => encoded.push(char::from(byte)),
             _ => put!(encoded, "%{byte:02X}"),
         }
     }

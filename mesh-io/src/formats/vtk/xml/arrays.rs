@@ -83,11 +83,10 @@ impl<'a> File<'a> {
         name: Option<&str>,
     ) -> Result<&Array, ReadError> {
         let fits = |array: &&Array| {
-            array.piece == piece
-                && array.section == section
+            array.section == section
                 && name.is_none_or(|name| array.name.eq_ignore_ascii_case(name))
         };
-        self.document.arrays.iter().find(fits).ok_or_else(|| {
+        self.document.arrays_of(piece).iter().find(fits).ok_or_else(|| {
             let name = name.unwrap_or(section);
             self.source.error(format!("it has no array of {name}"), CUT_OFF)
         })

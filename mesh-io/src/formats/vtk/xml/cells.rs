@@ -176,8 +176,8 @@ impl File<'_> {
     /// Reads the region numbers of a piece's cells from the array called `name`. A missing or damaged array yields an
     /// empty list.
     fn regions(&self, piece: usize, name: &str) -> Vec<i64> {
-        let mut arrays = self.document.arrays.iter().filter(|array| is_region_array(array));
-        let array = arrays.find(|array| array.piece == piece && array.name == name);
+        let mut arrays = self.document.arrays_of(piece).iter();
+        let array = arrays.find(|array| is_region_array(array) && array.name == name);
         array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
     }
 
@@ -189,7 +189,7 @@ impl File<'_> {
         for (piece, announced) in pieces.iter().enumerate() {
             let points = first..first + announced.points;
             first = points.end;
-            for array in self.document.arrays.iter().filter(|array| array.piece == piece) {
+            for array in self.document.arrays_of(piece) {
                 let of_points = array.section == "PointData" && announced.points > 0;
                 let is_real = precision_of(array).is_some();
                 if of_points && array.is_text() {
@@ -220,17 +220,16 @@ impl File<'_> {
         cells: std::ops::Range<u64>,
         visitor: &mut dyn MeshVisitor,
     ) {
-        for array in &self.document.arrays {
+        for array in self.document.arrays_of(piece) {
             let is_region = is_region_array(array) && regions.contains(&array.name);
             let is_real = precision_of(array).is_some();
             match array.section.as_str() {
                 "FieldData" => visitor.unsupported("field data"),
-                "CellData" if array.piece == piece && array.is_text() => {
+                "CellData" if array.is_text() => {
                     visitor.unsupported(&lost_text("elements", array.name.as_bytes()));
                 }
                 "CellData"
-                    if array.piece == piece
-                        && !is_region
+                    if !is_region
                         && visitor.cell_array(array.name.as_bytes(), array.components, is_real) =>
                 {
                     match self.numbers(array) {

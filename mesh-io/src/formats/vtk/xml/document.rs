@@ -124,6 +124,14 @@ impl Document {
         Ok(document)
     }
 
+    /// Returns the arrays of a piece; see [`Array::piece`].
+    pub(super) fn arrays_of(&self, piece: usize) -> &[Array] {
+        // Arrays are in the order of their pieces. A search through all arrays for each piece would take quadratic time.
+        let [start, end] =
+            [piece, piece + 1].map(|end| self.arrays.partition_point(|own| own.piece < end));
+        &self.arrays[start..end]
+    }
+
     /// Returns the offset of each appended array, with the range of the file that states the offset.
     pub(super) fn offsets(&self) -> Vec<AppendedOffset> {
         let Some(appended) = self.appended else { return Vec::new() };

@@ -17,7 +17,7 @@ impl File<'_> {
         let (mut first_cell, mut first_point) = (0, 0);
         let mut first_points = Vec::new();
         for (piece, announced) in pieces.iter().enumerate() {
-            for array in self.document.arrays.iter().filter(|array| array.piece == piece) {
+            for array in self.document.arrays_of(piece) {
                 let of_cells = array.section == "CellData";
                 let Some(is_ghost) = vtk_ghosts(array.name.as_bytes()) else { continue };
                 if array.components != 1 || !(of_cells || array.section == "PointData") {
