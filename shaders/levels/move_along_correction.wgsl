@@ -6,7 +6,7 @@ fn move_along_correction(
     @builtin(num_workgroups) groups: vec3<u32>,
 ) {
     let v = invocation(id, groups);
-    // The correction of a refused trial may have no numbers, of which a multiple by 0 is none either.
+    // The direction of a refused trial may contain infinities, and the product of 0 and infinity is no number.
     if v >= op.rows || length_along() == 0.0 {
         return;
     }

@@ -346,7 +346,14 @@ impl Capabilities {
                 let is_several = self.groups.is_several();
                 kind != main && !determines(content, dimension, main, kind, is_several)
             };
+            // Without elements, a group has no place.
+            let has_no_elements = match dimension {
+                0 => self.points == ElementSupport::None,
+                1 => self.lines == ElementSupport::None,
+                _ => false,
+            };
             let dropped = |kind: &&str| match self.groups {
+                _ if has_no_elements => true,
                 GroupSupport::None => true,
                 GroupSupport::One | GroupSupport::Sections => is_apart(kind),
                 GroupSupport::OneOfLines => dimension != 1 || is_apart(kind),
@@ -354,10 +361,12 @@ impl Capabilities {
                 GroupSupport::Sets => *kind == "entity" && is_apart(kind),
                 GroupSupport::Blocks => *kind != "block" && is_apart(kind),
             };
-            let one = |kind: &str| {
-                let groups = content.groups.iter();
-                groups.filter(|group| group.dimension == dimension && group.kind == kind).count()
-                    == 1
+            let is_of_all = |kind: &str| {
+                let groups = (0..).zip(&content.groups);
+                let mut own =
+                    groups.filter(|(_, group)| group.dimension == dimension && group.kind == kind);
+                own.next().is_some_and(|(group, _)| content.is_of_all(group, dimension))
+                    && own.next().is_none()
             };
             // Programs number the entities of a model, and no format but gmsh's has a use for their numbers.
             let is_for_gmsh = |kind: &str| {
@@ -373,13 +382,14 @@ impl Capabilities {
                 if groups().next().is_none() {
                     continue;
                 }
-                // If there is one group without a name, only its number is lost.
+                // If one group without a name has all elements, only its number is lost.
                 let keeps_none = match self.groups {
+                    _ if has_no_elements => true,
                     GroupSupport::None => true,
                     GroupSupport::OneOfLines => dimension != 1,
                     _ => false,
                 };
-                if keeps_none && one(kind) && groups().all(|group| group.name().is_none()) {
+                if keeps_none && is_of_all(kind) && groups().all(|group| group.name().is_none()) {
                     continue;
                 }
                 lost.push(format!("groups of {of} ({kind}): {}", group_names(groups())));

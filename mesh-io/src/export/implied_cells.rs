@@ -35,6 +35,15 @@ impl ImpliedCells {
         ImpliedCells { boundary, vertices }
     }
 
+    /// Returns whether the lines `cells` are all edges of the boundary, and no other lines.
+    pub(super) fn are_all(&self, content: &Content, cells: &[usize]) -> bool {
+        let edge = |&cell: &usize| match content.cells.of(cell) {
+            &[a, b] => [a.min(b), a.max(b)],
+            _ => [0; 2],
+        };
+        self.boundary == cells.iter().map(edge).collect()
+    }
+
     /// Returns whether a cell is a point on the boundary or on lines, or a line on the boundary.
     pub(super) fn has(&self, content: &Content, cell: usize) -> bool {
         match (content.cells.kinds[cell], content.cells.of(cell)) {

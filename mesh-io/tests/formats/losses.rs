@@ -260,3 +260,33 @@ fn groups_of_vertices_that_do_not_fit_their_numbers_are_told() {
         assert_eq!(told, [&points[..], &["reference surface 1"]].concat());
     }
 }
+
+/// A lone group without a name was left out without a word, even if it has only some of the elements. So were groups of points in
+/// formats without points.
+#[test]
+fn a_lone_group_of_some_elements_is_a_loss() {
+    let msh = |elements: &[&str]| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\
+             $Elements\n{}\n{}\n$EndElements\n",
+            elements.len(),
+            elements.join("\n")
+        )
+    };
+    let losses = |elements: &[&str], to| losses("a.msh", msh(elements), to);
+    let some = ["1 15 2 9 1 3", "2 1 2 7 1 1 2", "3 2 2 5 1 1 2 3", "4 2 2 0 1 1 3 4"];
+    let all_groups = "groups of points (physical): 9; groups of lines (physical): 7; groups of surfaces (physical): 5";
+    assert_eq!(losses(&some, Format::Off), all_groups);
+    let points = ["1 15 2 9 0 3", "2 15 2 10 0 2", "3 2 2 5 1 1 2 3", "4 2 2 5 1 1 3 4"];
+    assert_eq!(losses(&points, Format::Abaqus), "groups of points (physical): 9, 10");
+    // The numbers of groups of the whole boundary and of all triangles say nothing.
+    let whole = [
+        "1 1 2 7 1 1 2",
+        "2 1 2 7 1 2 3",
+        "3 1 2 7 1 3 4",
+        "4 1 2 7 1 4 1",
+        "5 2 2 5 1 1 2 3",
+        "6 2 2 5 1 1 3 4",
+    ];
+    assert_eq!(losses(&whole, Format::Off), "");
+}
