@@ -22,6 +22,8 @@ enum Atom {
     Input(String),
     /// A rounded sum passed through `opaque`.
     Opaque(Sum),
+    /// The bits of a rounded sum that a mask has.
+    Masked(Sum, u32),
 }
 
 #[derive(Clone, Debug)]
@@ -31,6 +33,11 @@ enum Value {
     Bits {
         floats: Vec<Sum>,
         hidden: bool,
+    },
+    /// Bits of floats that a mask has.
+    MaskedBits {
+        floats: Vec<Sum>,
+        mask: u32,
     },
     /// An integer or a memory location, as text.
     Word(String),
@@ -108,6 +115,9 @@ impl Program {
         let x = match &self.atoms[atom] {
             Atom::Input(name) => input(name),
             Atom::Opaque(sum) => self.sum(sum, input, rng, known),
+            Atom::Masked(sum, mask) => {
+                f32::from_bits(self.sum(sum, input, rng, known).to_bits() & mask)
+            }
         };
         known.insert(atom, x);
         x
@@ -244,6 +254,10 @@ impl Reader<'_> {
                     Value::Floats(atoms.collect())
                 }
                 (Value::Bits { floats, hidden: false }, ScalarKind::Float) => Value::Floats(floats),
+                (Value::MaskedBits { floats, mask }, ScalarKind::Float) => {
+                    let atoms = floats.into_iter().map(|sum| self.atom(Atom::Masked(sum, mask)));
+                    Value::Floats(atoms.collect())
+                }
                 other => panic!("{other:?}"),
             },
             ref other => panic!("{other:?}"),
@@ -321,6 +335,9 @@ fn binary(op: BinaryOperator, left: Value, right: Value) -> Value {
         (Value::Bits { floats, .. }, Value::Word(zero)) if op == BinaryOperator::ExclusiveOr => {
             assert!(zero == "params.zero" || zero == "exchange.zero", "{zero}");
             Value::Bits { floats, hidden: true }
+        }
+        (Value::Bits { floats, .. }, Value::Word(mask)) if op == BinaryOperator::And => {
+            Value::MaskedBits { floats, mask: mask.parse().unwrap() }
         }
         (Value::Word(left), Value::Word(right)) => Value::Word(format!("({left} {op:?} {right})")),
         other => panic!("{op:?} of {other:?}"),

@@ -96,6 +96,15 @@ fn cases() -> Vec<Case> {
             error: |x, found| sum_error(found, x("a.x") + x("a.y"), x("b.x") + x("b.y")),
         },
         Case {
+            function: "pair_times",
+            kernel: Kernel::Import,
+            inputs: |rng| {
+                let [high, low] = split(number(rng, 1e3));
+                vec![("a.x", high), ("a.y", low), ("y", number(rng, 1.0) as f32)]
+            },
+            error: |x, found| sum_error(found, (x("a.x") + x("a.y")) * x("y"), 0.0),
+        },
+        Case {
             function: "pair_accumulate",
             kernel: sweep(),
             inputs: |rng| {
@@ -274,7 +283,7 @@ fn no_order_of_evaluation_loses_digits() {
 }
 
 /// Guards to remove from the source, and the functions that lose digits without the guard.
-const UNGUARDED: [(&str, &str, &[&str]); 7] = [
+const UNGUARDED: [(&str, &str, &[&str]); 8] = [
     // The former state of shaders/pairs.wgsl and shaders/patch.wgsl, without this guard.
     (
         "opaque(a - aa) + opaque(b - bb)",
@@ -296,6 +305,7 @@ const UNGUARDED: [(&str, &str, &[&str]); 7] = [
         "(head_displacement - tail_displacement)",
         &["moved_edge"],
     ),
+    ("let product = opaque(x * y);", "let product = x * y;", &["pair_times"]),
     ("let s = opaque(a + b);", "let s = a + b;", &["two_sum", "imported"]),
     ("let bb = opaque(s - a);", "let bb = s - a;", &["two_sum"]),
     ("let aa = opaque(s - bb);", "let aa = s - bb;", &["two_sum"]),
