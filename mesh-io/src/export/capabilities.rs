@@ -2,7 +2,7 @@
 
 use super::content::{Content, ContentGroup, DataArray};
 use super::group_numbers::{self, GroupNumbers, determines, is_region_zero};
-use super::implied_cells::ImpliedCells;
+use super::implied_cells::{ImpliedCells, is_of_all};
 use super::name_rules::NameRules;
 use super::sides;
 use crate::content::group_label::GroupLabel;
@@ -361,11 +361,11 @@ impl Capabilities {
                 GroupSupport::Sets => *kind == "entity" && is_apart(kind),
                 GroupSupport::Blocks => *kind != "block" && is_apart(kind),
             };
-            let is_of_all = |kind: &str| {
+            let is_alone = |kind: &str| {
                 let groups = (0..).zip(&content.groups);
                 let mut own =
                     groups.filter(|(_, group)| group.dimension == dimension && group.kind == kind);
-                own.next().is_some_and(|(group, _)| content.is_of_all(group, dimension))
+                own.next().is_some_and(|(group, _)| is_of_all(content, group, dimension))
                     && own.next().is_none()
             };
             // Programs number the entities of a model, and no format but gmsh's has a use for their numbers.
@@ -389,7 +389,7 @@ impl Capabilities {
                     GroupSupport::OneOfLines => dimension != 1,
                     _ => false,
                 };
-                if keeps_none && is_of_all(kind) && groups().all(|group| group.name().is_none()) {
+                if keeps_none && is_alone(kind) && groups().all(|group| group.name().is_none()) {
                     continue;
                 }
                 lost.push(format!("groups of {of} ({kind}): {}", group_names(groups())));

@@ -1,6 +1,5 @@
 //! Format-independent mesh in memory, with all cells, groups and data of its file.
 
-use super::implied_cells::ImpliedCells;
 use crate::content::group_label::GroupLabel;
 use crate::visit::items::{CellKind, PeriodicNodes};
 
@@ -230,21 +229,6 @@ impl Content {
     /// Lists the groups to which the file assigns single vertices, each with the indices of its vertices.
     pub fn vertex_groups(&self) -> impl Iterator<Item = (&ContentGroup, &[u32])> {
         self.vertex_groups.iter().map(|(group, vertices)| (group, &vertices[..]))
-    }
-
-    /// Returns whether a group has all elements of a dimension, and for lines the whole boundary.
-    pub(crate) fn is_of_all(&self, group: u32, dimension: u8) -> bool {
-        let mut cells =
-            (0..self.cells.len()).filter(|&cell| self.cells.kinds[cell].dimension() == dimension);
-        let has = |cell: usize| self.sets[self.cells.sets[cell] as usize].contains(&group);
-        match dimension {
-            2 => cells.all(has),
-            1 => {
-                let lines: Vec<usize> = cells.collect();
-                lines.iter().all(|&cell| has(cell)) && ImpliedCells::new(self).are_all(self, &lines)
-            }
-            _ => false,
-        }
     }
 
     /// Returns whether a vertex is in two groups of vertices.

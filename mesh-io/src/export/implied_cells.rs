@@ -35,15 +35,6 @@ impl ImpliedCells {
         ImpliedCells { boundary, vertices }
     }
 
-    /// Returns whether the lines `cells` are all edges of the boundary, and no other lines.
-    pub(super) fn are_all(&self, content: &Content, cells: &[usize]) -> bool {
-        let edge = |&cell: &usize| match content.cells.of(cell) {
-            &[a, b] => [a.min(b), a.max(b)],
-            _ => [0; 2],
-        };
-        self.boundary == cells.iter().map(edge).collect()
-    }
-
     /// Returns whether a cell is a point on the boundary or on lines, or a line on the boundary.
     pub(super) fn has(&self, content: &Content, cell: usize) -> bool {
         match (content.cells.kinds[cell], content.cells.of(cell)) {
@@ -51,5 +42,27 @@ impl ImpliedCells {
             (CellKind::Line, &[a, b]) => self.boundary.contains(&[a.min(b), a.max(b)]),
             _ => false,
         }
+    }
+}
+
+/// Returns whether a group has all elements of a dimension from 1 to 2, and for lines the whole boundary, without other lines.
+pub(super) fn is_of_all(content: &Content, group: u32, dimension: u8) -> bool {
+    let cells = &content.cells;
+    let mut own = (0..cells.len()).filter(|&cell| cells.kinds[cell].dimension() == dimension);
+    let has_group = |cell: usize| content.sets[cells.sets[cell] as usize].contains(&group);
+    let is_whole = |lines: &[usize]| {
+        let edge = |&line: &usize| match cells.of(line) {
+            &[a, b] => [a.min(b), a.max(b)],
+            _ => [0; 2],
+        };
+        ImpliedCells::new(content).boundary == lines.iter().map(edge).collect()
+    };
+    match dimension {
+        2 => own.all(has_group),
+        1 => {
+            let lines: Vec<usize> = own.collect();
+            lines.iter().all(|&line| has_group(line)) && is_whole(&lines)
+        }
+        _ => false,
     }
 }
