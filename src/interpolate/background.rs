@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::parallel::map_ranges;
 use crate::topology::Topology;
 
-/// Number of steps that every walk may take.
+/// Smallest limit of the steps of a walk.
 const LEAST_STEPS: usize = 200;
 /// Largest number of nearby vertices from which a walk to a point is tried.
 const TRIED: usize = 9;
