@@ -169,8 +169,10 @@ fn rows_of_quadrilaterals_are_found_at_noses_corners_and_between_airfoils() {
 
 #[test]
 fn wakes_of_c_grids_and_the_rows_on_both_sides_are_found() {
-    for cut in CUTS {
-        let (grown, wake) = c_grid(0.12, cut);
+    for cut in CUTS.into_iter().chain([Cut::Whole]) {
+        let (mut grown, wake) = c_grid(0.12, cut);
+        let quadrilaterals = grown.faces.drain(..).map(|face| face.try_into().unwrap());
+        grown.mesh.quadrilaterals = quadrilaterals.collect();
         let found = layers_of(&grown);
         let is_found = |v: &u32| found.vertices.binary_search(v).is_ok();
         assert!(wake.len() >= 25 && wake.iter().all(is_found), "{cut:?}");
