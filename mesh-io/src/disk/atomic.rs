@@ -5,8 +5,8 @@
 use crate::disk::file_system::{FileSystem, NewFile, OsFileSystem};
 use crate::disk::paths::{directory_of, resolve};
 use crate::error::WriteError;
-use std::fs::{self, OpenOptions};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -211,11 +211,9 @@ fn stage<'d>(
 impl<'d> Staged<'d> {
     /// Returns whether the destination exists with a content other than the new one.
     fn changes(&self) -> bool {
-        let read = |path: &Path| fs::read(path).ok();
-        match &self.content {
-            Some(content) => self.existed && read(&self.target) != read(&content.path),
-            None => false,
-        }
+        self.content.as_ref().is_some_and(|content| {
+            self.existed && !are_equal(&self.target, &content.path).unwrap_or(false)
+        })
     }
 
     /// Moves the old file at the destination to a temporary name.
@@ -268,6 +266,27 @@ impl<'d> Staged<'d> {
             }
         }
     }
+}
+
+/// Returns whether two files have equal contents. Reads the files piece by piece, as they may be as large as the memory.
+fn are_equal(one: &Path, other: &Path) -> io::Result<bool> {
+    let (mut one, mut other) = (File::open(one)?, File::open(other)?);
+    let mut rest = one.metadata()?.len();
+    if other.metadata()?.len() != rest {
+        return Ok(false);
+    }
+    let mut pieces = [0; 2].map(|byte| vec![byte; 1 << 16]);
+    while rest > 0 {
+        let length = rest.min(1 << 16) as usize;
+        let [a, b] = pieces.each_mut().map(|piece| &mut piece[..length]);
+        one.read_exact(a)?;
+        other.read_exact(b)?;
+        if a != b {
+            return Ok(false);
+        }
+        rest -= length as u64;
+    }
+    Ok(true)
 }
 
 /// The path of a temporary file. Dropping the value removes the file, unless the file was renamed or kept.
@@ -387,6 +406,26 @@ mod tests {
         assert_eq!(fs::read_to_string(&a).unwrap(), "old");
         assert!(!b.exists());
         assert_eq!(entries(directory.path()), 2);
+    }
+
+    #[test]
+    fn files_are_compared_to_their_last_byte() {
+        let directory = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "b"].map(|name| directory.path().join(name));
+        for length in [0, 1, 1 << 16, (1 << 17) + 1] {
+            fs::write(&a, vec![7; length]).unwrap();
+            for (other, expected) in [(length, true), (length + 1, false)] {
+                fs::write(&b, vec![7; other]).unwrap();
+                assert_eq!(are_equal(&a, &b).unwrap(), expected, "{length} and {other}");
+            }
+            if length > 0 {
+                let mut content = vec![7; length];
+                content[length - 1] = 8;
+                fs::write(&b, content).unwrap();
+                assert!(!are_equal(&a, &b).unwrap(), "{length}");
+            }
+        }
+        assert!(are_equal(&a, &directory.path().join("missing")).is_err());
     }
 
     #[test]
