@@ -43,7 +43,8 @@ impl Topology<'_> {
     /// No vertex is moved on an error: [`MeshError::PointCount`] if `points` does not have one entry per vertex,
     /// [`MeshError::IndexOutOfRange`] if `moves` lists a vertex that the mesh does not have,
     /// [`MeshError::BoundNotANumber`] if `worst_imr` is NaN, [`MeshError::NotFinite`] if a vertex of an affected
-    /// triangle has, or would get, a coordinate that is infinite or NaN.
+    /// triangle has, or would get, a coordinate that is infinite or NaN, [`MeshError::OutOfRange`] if such a vertex has a
+    /// coordinate above 1e100.
     pub fn move_clamped(
         &self,
         points: &mut [[f64; 2]],
@@ -70,9 +71,14 @@ impl Topology<'_> {
         indices.dedup();
         let corners = || indices.iter().map(|&c| self.corners()[c as usize]);
         // The vertices of the affected corners, and moved vertices that no element uses.
-        let mut touched = ways.0.iter().map(|way| way.vertex).chain(corners().flatten());
-        if let Some(vertex) = touched.find(|&v| !is_finite(points[v as usize])) {
+        let touched = ways.0.iter().map(|way| way.vertex).chain(corners().flatten());
+        if let Some(vertex) = touched.clone().find(|&v| !is_finite(points[v as usize])) {
             return Err(MeshError::NotFinite { vertex });
+        }
+        let coordinates = touched.flat_map(|v| points[v as usize]);
+        let size = coordinates.fold(0.0, |size: f64, x| size.max(x.abs()));
+        if size > 1e100 {
+            return Err(MeshError::OutOfRange { size });
         }
         let limited: Vec<Limited> = indices
             .iter()

@@ -249,6 +249,10 @@ fn a_move_of_no_vertex_succeeds_and_one_to_nan_is_an_error() {
     let share = topology.move_clamped(&mut points.clone(), &huge, 8.0).unwrap();
     assert!((0.0..1e-200).contains(&share), "{share}");
     assert_eq!(points, mesh.points);
+    let mut far: Vec<[f64; 2]> = points.iter().map(|point| point.map(|x| 1e300 * x)).collect();
+    let error = topology.move_clamped(&mut far, &[(5, [f64::MAX, 0.0])], 8.0);
+    assert!(matches!(error, Err(MeshError::OutOfRange { size }) if size >= 1e300), "{error:?}");
+    assert!(far.iter().zip(&points).all(|(far, point)| *far == point.map(|x| 1e300 * x)));
     let error = topology.move_clamped(&mut points[..7], &[], 8.0);
     assert_eq!(error, Err(MeshError::PointCount { expected: vertices, given: 7 }));
 }
