@@ -154,6 +154,9 @@ impl Domain {
         if of_elements.has_free_interfaces {
             self.free_interfaces();
         }
+        if let Some(chart) = &of_elements.chart {
+            self.set_chart(chart.clone());
+        }
         // All vertices that the file anchors beside quadrilaterals are anchored here too.
         let mut held = vec![false; self.mesh.points.len()];
         of_elements.anchored.iter().for_each(|&vertex| held[vertex as usize] = true);

@@ -164,6 +164,39 @@ fn a_job_and_the_command_line_move_and_keep_vertices_of_quadrilaterals() {
     }
 }
 
+/// A mesh across the date line, and a band around the globe, each of triangles and quadrilaterals.
+#[test]
+fn a_job_on_the_sphere_keeps_quadrilaterals_as_the_command_line_does() {
+    for (columns, first, step) in [(7_u32, 177.0, 1.0), (36, -180.0, 10.0)] {
+        let is_closed = columns == 36;
+        let mut text = String::new();
+        for vertex in 0..7 * columns {
+            let (column, row) = (vertex % columns, vertex / columns);
+            let by = if (column, row) == (2, 3) { 0.3 * step } else { 0.0 };
+            let longitude = first + step * f64::from(column) + by;
+            let longitude = if longitude > 180.0 { longitude - 360.0 } else { longitude };
+            text += &format!("v {longitude} {} 0\n", 10.0 + f64::from(row));
+        }
+        for (column, row) in (0..columns).flat_map(|column| (0..6).map(move |row| (column, row))) {
+            let at = |c: u32, r: u32| (row + r) * columns + (column + c) % columns + 1;
+            let [a, b, c, d] = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
+            match column {
+                6 if !is_closed => {}
+                0..4 => text += &format!("f {a} {b} {c}\nf {a} {c} {d}\n"),
+                _ => text += &format!("f {a} {b} {c} {d}\n"),
+            }
+        }
+        let folder = folder(&vec![("in.obj", text.into_bytes())]);
+        let file = MeshFile::read(&folder.path("in.obj")).unwrap();
+        let job = Job::on_sphere(&file).unwrap().keep_quadrilaterals();
+        assert!(job.mesh().quadrilaterals.is_empty());
+        let words = "--surface sphere --quadrilaterals keep";
+        compare(&folder, "in.obj", words, &RunRequest::default(), job);
+        let written = MeshFile::read(&folder.path("own.obj")).unwrap();
+        assert!(written.points().iter().all(|[longitude, _]| longitude.abs() <= 180.0));
+    }
+}
+
 #[test]
 fn a_job_and_the_command_line_write_equal_files_by_the_options_of_a_mesh() {
     let mesh = disturbed();
