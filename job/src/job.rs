@@ -212,7 +212,8 @@ impl<'f> Job<'f> {
             let mut outcome = smoother.run(&options).on(backend).block()?;
             if let Some(plane) = self.domain.plane() {
                 let before = &self.mesh().points;
-                plane.certify_as_stored(smoother.topology(), before, &mut outcome.points)?;
+                let points = &mut outcome.points;
+                plane.certify_as_stored(smoother.topology(), before, points, &options)?;
             }
             Ok(outcome)
         };

@@ -3,7 +3,7 @@
 use gpu_smooth::interpolate::Interpolation;
 use gpu_smooth::measure::{Change, Distribution};
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Mesh, MeshError, Quality as MeshQuality, Topology, Untangle};
+use gpu_smooth::{Mesh, MeshError, Options, Quality as MeshQuality, Topology, Untangle};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -55,7 +55,8 @@ pub(crate) fn untangle<'py>(
         }
         let mut done = input::untangled(&mesh, stored, &observer)?;
         if let (Some(points), Some(plane)) = (&mut done, form.plane()) {
-            plane.certify_as_stored(&Topology::by_area(&mesh)?, &points.clone(), points)?;
+            let (topology, options) = (Topology::by_area(&mesh)?, Options::default());
+            plane.certify_as_stored(&topology, &points.clone(), points, &options)?;
         }
         Ok(done)
     })?;

@@ -219,7 +219,8 @@ impl<'a> RunPlan<'a> {
         let mut outcome = run.checkpoints(recovery).resume(&self.resumed).block()?;
         if let Some(plane) = self.plane {
             let before = &smoother.mesh().points;
-            plane.certify_as_stored(smoother.topology(), before, &mut outcome.points)?;
+            let points = &mut outcome.points;
+            plane.certify_as_stored(smoother.topology(), before, points, &self.options)?;
         }
         if let Some(file) = &self.checkpoints {
             file.clear(outcome.stop);

@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::load::plane::{likewise, of_file, remark};
 use gpu_smooth::{
-    Element, Mesh, MeshError, Topology,
+    Element, Mesh, MeshError, Options, Topology,
     front_ends::{Chart, Plane},
     options::Precision,
 };
@@ -166,16 +166,16 @@ impl LoadedMesh {
         Ok(remarks)
     }
 
-    /// Sets the vertices of triangles back to `before` that are inverted once the positions in a tilted plane are
-    /// rounded to coordinates of the file.
+    /// Moves vertices in a tilted plane to where the file stores them; see [`Plane::certify_as_stored`].
     pub(crate) fn certify_as_stored(
         &self,
         topology: &Topology<'_>,
         before: &[[f64; 2]],
         points: &mut [[f64; 2]],
+        options: &Options,
     ) -> Result<(), MeshError> {
         match self.plane() {
-            Some(plane) => plane.certify_as_stored(topology, before, points),
+            Some(plane) => plane.certify_as_stored(topology, before, points, options),
             None => Ok(()),
         }
     }

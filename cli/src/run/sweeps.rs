@@ -114,7 +114,7 @@ pub(super) fn smooth(
     let before = ready.mended.map_or(&input.file.mesh().points, |mended| &mended.mesh.points);
     input
         .file
-        .certify_as_stored(ready.smoother.topology(), before, &mut outcome.points)
+        .certify_as_stored(ready.smoother.topology(), before, &mut outcome.points, &options)
         .map_err(|error| explain::mesh_error(input.file, &error))?;
     clock.end(&outcome);
     let is_canceled = outcome.stop == Stop::Canceled;
