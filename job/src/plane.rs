@@ -55,7 +55,8 @@ fn z_of(file: &MeshFile) -> Result<Option<PointField>, ReadError> {
     if !file.has_third_coordinates() {
         return Ok(None);
     }
-    Ok(file.point_fields(Some(&["z".to_owned()]))?.into_iter().next())
+    let named_z = file.point_fields(Some(&["z".to_owned()]))?;
+    Ok(named_z.into_iter().find(PointField::is_third_of_points))
 }
 
 fn in_space(file: &MeshFile, z: &PointField) -> Vec<[f64; 3]> {

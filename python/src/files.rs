@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use gpu_smooth_job::options::Settings;
 use mesh_io::{
-    Conversion, Encoding, FieldError, MeshFile as File, ReadError, ReadOptions, WriteError,
+    Conversion, Encoding, FieldError, MeshFile as File, PointField, ReadError, ReadOptions,
+    WriteError,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -190,7 +191,9 @@ impl MeshFile {
         let name = Given { name: "name", value: name }.text()?;
         let fields = threads::detached(py, || self.0.point_fields(Some(&[name])))?;
         let fields = fields.map_err(|error| error::of_reading(py, &error))?;
-        let Some(field) = fields.last() else {
+        let is_coordinate =
+            |field: &&PointField| field.is_third_of_points() && self.0.has_third_coordinates();
+        let Some(field) = fields.iter().find(is_coordinate).or(fields.last()) else {
             return Err(error::file(py, "the file has no data of this name"));
         };
         let (values, rows) = (field.values().to_vec(), self.0.points().len());
@@ -229,6 +232,7 @@ impl MeshFile {
             let mut fields = Vec::new();
             if let Some(z) = z {
                 fields = self.0.point_fields(Some(&["z".to_owned()])).map_err(Refused::Reading)?;
+                fields.retain(PointField::is_third_of_points);
                 for field in &mut fields {
                     field.set(z.to_vec()).map_err(Refused::Field)?;
                 }

@@ -231,3 +231,26 @@ def test_pictures_of_another_plane_name_its_axes(mesh: Mesh) -> None:
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x", "z")
     (low, bottom), (high, top) = np.transpose([axes.get_xlim(), axes.get_ylim()])
     assert low <= 0 < 12 <= high and bottom <= 0 < 12 <= top
+
+
+def test_data_named_z_stay_beside_third_coordinates(mesh: Mesh, tmp_path: Path) -> None:
+    points, triangles = mesh
+    data = np.arange(len(points), dtype=float)
+    rows = "\n".join(" ".join(map(str, row)) for row in tilted(points).tolist())
+    cells = "\n".join(f"3 {a} {b} {c}" for a, b, c in triangles.tolist())
+    count, values = len(triangles), "\n".join(map(str, data.tolist()))
+    path = tmp_path / "in.vtk"
+    path.write_text(
+        f"# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+        f"POINTS {len(points)} double\n{rows}\nCELLS {count} {4 * count}\n{cells}\n"
+        f"CELL_TYPES {count}\n" + "5\n" * count + f"POINT_DATA {len(points)}\n"
+        f"SCALARS z double 1\nLOOKUP_TABLE default\n{values}\n"
+    )
+    file = gpu_smooth.MeshFile(path)
+    np.testing.assert_array_equal(file.data("z"), tilted(points)[:, 2])
+    result = gpu_smooth.smooth(file, z="data")
+    file.write(tmp_path / "out.vtk", result)
+    after = gpu_smooth.MeshFile(tmp_path / "out.vtk")
+    assert (after.points != file.points).any()
+    np.testing.assert_array_equal(after.data("z"), file.data("z"))
+    assert (tmp_path / "out.vtk").read_text().endswith(f"LOOKUP_TABLE default\n{values}\n")

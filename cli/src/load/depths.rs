@@ -33,7 +33,7 @@ pub(crate) fn depths(
     file: &LoadedMesh,
     fields: &[PointField],
 ) -> Result<Option<Vec<f64>>, CliError> {
-    let is_coordinate = |name: &str| name == "z" && file.plane().is_some();
+    let is_coordinate = |name: &str| file.plane().is_some() && !file.source.has_data(name);
     let find = |wanted: Direction| {
         let names = file.source.data_names().iter();
         let mut names = names.filter(|name| !is_coordinate(name));

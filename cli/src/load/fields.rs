@@ -37,14 +37,13 @@ impl FieldsRequest {
         let all = names.iter().any(|name| name == "all");
         let fields = file.source.point_fields(if all { None } else { Some(&names) });
         let mut fields = fields.map_err(|error| CliError::from(error).about("--interpolate"))?;
+        if file.plane().is_some() {
+            // The run moves third coordinates.
+            fields.retain(|field| !field.is_third_of_points());
+        }
         if all {
             // Constant fields, such as a third coordinate of 0, need no interpolation.
-            let mut is_coordinate = file.plane().is_some();
             fields.retain(|field| {
-                // The first field with the name z has the third coordinates of a mesh in a plane.
-                if field.name() == "z" && std::mem::take(&mut is_coordinate) {
-                    return false;
-                }
                 let first = field.values().first();
                 field.values().iter().any(|value| Some(value) != first)
             });
@@ -71,7 +70,7 @@ impl FieldsRequest {
             }
         };
         let mut names = before.source.data_names().to_vec();
-        names.retain(|name| name != "z" || before.plane().is_none());
+        names.retain(|name| before.plane().is_none() || before.source.has_data(name));
         if difference(&names) {
             return Vec::new();
         }
@@ -120,7 +119,7 @@ impl InterpolatedFields {
             .data_names()
             .iter()
             .filter(|name| !taken.contains(&name.as_str()))
-            .filter(|name| *name != "z" || file.plane().is_none())
+            .filter(|name| file.plane().is_none() || file.source.has_data(name))
             .collect();
         let (verb, them) = match left[..] {
             [] => return None,

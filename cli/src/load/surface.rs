@@ -17,7 +17,8 @@ pub(crate) fn lay_out(
     if surface == Surface::Plane {
         return match z {
             ThirdCoordinate::Coordinate => file.lay_out_in_plane(),
-            ThirdCoordinate::Data => Ok(Vec::new()),
+            ThirdCoordinate::NamedData if file.source.has_data("z") => file.lay_out_in_plane(),
+            ThirdCoordinate::Data | ThirdCoordinate::NamedData => Ok(Vec::new()),
         };
     }
     match file.domain.lay_out_on_sphere(file.precision()) {

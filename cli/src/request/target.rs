@@ -15,15 +15,18 @@ pub(crate) enum ThirdCoordinate {
     Coordinate,
     /// A mesh is smoothed in x and y.
     Data,
+    /// Data, unless the file has other data with the name z.
+    NamedData,
 }
 
 impl ThirdCoordinate {
-    /// Returns the meaning of z: data by `--z data`, if `--interpolate` names z, and on a sphere.
+    /// Returns the meaning of z: data by `--z data` and on a sphere, and data with the name z if `--interpolate` names z.
     pub(crate) fn of(settings: &Settings, interpolated: &[String]) -> Self {
         let mut names = interpolated.iter().flat_map(|names| names.split(','));
         let is_interpolated = names.any(|name| name.trim() == "z");
-        match settings.z_is_data || settings.surface == Surface::Sphere || is_interpolated {
+        match settings.z_is_data || settings.surface == Surface::Sphere {
             true => Self::Data,
+            false if is_interpolated => Self::NamedData,
             false => Self::Coordinate,
         }
     }

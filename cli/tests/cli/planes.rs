@@ -2,7 +2,7 @@
 
 use super::{Folder, assert_holds, assert_smoothed, disturbed, number};
 use gpu_smooth::Mesh;
-use mesh_io::ReadOptions;
+use mesh_io::{MeshFile, ReadOptions};
 use std::fmt::Write;
 
 type Point = [f64; 3];
@@ -51,8 +51,9 @@ fn node_and_ele(place: impl Fn([f64; 2]) -> Point) -> [String; 2] {
 /// Returns the vertices of a file in space.
 fn space(folder: &Folder, name: &str) -> Vec<Point> {
     let file = ReadOptions::new().weld(true).read(&folder.path(name)).unwrap();
-    let z = file.point_fields(Some(&["z".into()])).unwrap();
-    file.points().iter().zip(z[0].values()).map(|(&[x, y], &z)| [x, y, z]).collect()
+    let fields = file.point_fields(Some(&["z".into()])).unwrap();
+    let z = fields.iter().find(|field| field.is_third_of_points()).unwrap();
+    file.points().iter().zip(z.values()).map(|(&[x, y], &z)| [x, y, z]).collect()
 }
 
 /// Returns the vertices by two of their coordinates.
@@ -308,4 +309,71 @@ fn a_vertex_that_leaves_the_plane_of_its_mesh_is_told() {
     let run = folder.line("compare in.obj off.obj");
     assert_eq!(run.code, Some(1));
     assert_holds(&run.err, &["1 vertex has moved that must not"]);
+}
+
+/// Returns a legacy VTK of the mesh of [`disturbed`], with vertices where `place` puts them, and data of vertices named z.
+fn vtk(place: impl Fn([f64; 2]) -> Point, data: impl Fn([f64; 2]) -> f64) -> String {
+    let Mesh { points, triangles, .. } = disturbed();
+    let mut text = format!(
+        "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n",
+        points.len()
+    );
+    for [x, y, z] in points.iter().map(|&point| place(point)) {
+        writeln!(text, "{x} {y} {z}").unwrap();
+    }
+    writeln!(text, "CELLS {0} {1}", triangles.len(), 4 * triangles.len()).unwrap();
+    triangles.iter().for_each(|[a, b, c]| writeln!(text, "3 {a} {b} {c}").unwrap());
+    writeln!(text, "CELL_TYPES {}\n{}", triangles.len(), "5\n".repeat(triangles.len())).unwrap();
+    writeln!(text, "POINT_DATA {}\nSCALARS z double 1\nLOOKUP_TABLE default", points.len())
+        .unwrap();
+    points.iter().for_each(|&point| writeln!(text, "{}", data(point)).unwrap());
+    text
+}
+
+/// Returns the third coordinates of a file, and its data named z.
+fn both(folder: &Folder, name: &str) -> [Vec<f64>; 2] {
+    let file = MeshFile::read(&folder.path(name)).unwrap();
+    let fields = file.point_fields(Some(&["z".into()])).unwrap();
+    [true, false].map(|is_third| {
+        let mut of_kind = fields.iter().filter(|field| field.is_third_of_points() == is_third);
+        let found = of_kind.next().unwrap().values().to_vec();
+        assert!(of_kind.next().is_none());
+        found
+    })
+}
+
+#[test]
+fn data_named_z_are_no_third_coordinates() {
+    let curved = |[x, y]: [f64; 2]| [x, y, x * x];
+    let folder = Folder::new(&[
+        ("curved.vtk", &vtk(curved, |[x, _]| 2.0 * x)),
+        ("tilted.vtk", &vtk(tilted, |[x, y]| x * y)),
+        ("data.vtk", &vtk(|[x, y]| [x, y, 2.0 * y], |[x, _]| 100.0 + x)),
+    ]);
+    folder.line("curved.vtk out.vtk --engine cpu").refused(&["the mesh is not planar"]);
+    let run = folder.line("tilted.vtk out.vtk --engine cpu");
+    assert_holds(&run.err, &["tilted plane", "`z` stays as it is"]);
+    let [third, data] = both(&folder, "tilted.vtk");
+    let [third_after, data_after] = both(&folder, "out.vtk");
+    assert!(third != third_after && data == data_after);
+    let run = folder.line("tilted.vtk named.vtk --engine cpu --interpolate z");
+    assert_holds(&run.err, &["tilted plane"]);
+    let [third_named, data_named] = both(&folder, "named.vtk");
+    assert!(third_after == third_named && data != data_named);
+    let compared = folder.line("compare tilted.vtk named.vtk --interpolate z");
+    assert_eq!(compared.code, Some(0), "{}", compared.err);
+    for (at, z) in space(&folder, "out.vtk").iter().zip(&third_after) {
+        assert_eq!(at[2], *z);
+    }
+    // Both are interpolated, each by its own values, in a file of the same format and of another.
+    for out in ["out.vtk", "out.vtu"] {
+        let words = "--z data --interpolate all --engine cpu --force";
+        let run = folder.line(&format!("data.vtk {out} {words}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let points = MeshFile::read(&folder.path(out)).unwrap().points().to_vec();
+        let [third, data] = both(&folder, out);
+        for ([x, y], (third, data)) in points.into_iter().zip(third.into_iter().zip(data)) {
+            assert!((third - 2.0 * y).abs() < 1e-9 && (data - 100.0 - x).abs() < 1e-9, "{out}");
+        }
+    }
 }

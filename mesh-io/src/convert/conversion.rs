@@ -374,11 +374,11 @@ fn set_fields(content: &mut Content, fields: &[PointField]) {
     let mut uses: HashMap<&str, usize> = HashMap::new();
     for field in fields {
         let step = uses.entry(field.name()).or_default();
-        *step += 1;
-        if field.name() == "z" && *step == 1 && !content.z_values.is_empty() {
+        if field.is_third_of_points() && !content.z_values.is_empty() {
             content.z_values = field.values().to_vec();
             continue;
         }
+        *step += 1;
         let name = match *step {
             1 => field.name().to_owned(),
             step => format!("{} {step}", field.name()),

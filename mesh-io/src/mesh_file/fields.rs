@@ -59,7 +59,8 @@ impl MeshFile {
     }
 
     /// Reads an array of point data with one number for each vertex, real or whole: scalars of VTK's formats,
-    /// properties of PLY's vertices, and all arrays that [`point_fields`](Self::point_fields) reads.
+    /// properties of PLY's vertices, and all arrays that [`point_fields`](Self::point_fields) reads. Of data and third coordinates
+    /// that both have the name `z`, reads the data.
     ///
     /// # Errors
     /// [`ReadError`] if no array has the name, if the array is damaged, or if its numbers are not one per vertex.
@@ -69,7 +70,9 @@ impl MeshFile {
             self.data_of(FieldSelection::Named(&[name.to_owned()]))?;
         let vertices = self.points().len();
         let shown = quoted(name.as_bytes());
-        match fields.first().map(|field| (field.components(), field.values())) {
+        // Third coordinates have the name of data that are named z.
+        let data = fields.iter().find(|field| !field.is_third_of_points()).or(fields.first());
+        match data.map(|field| (field.components(), field.values())) {
             Some((1, values)) if values.len() == vertices => Ok(values.to_vec()),
             Some((1, values)) => {
                 let problem = format!("the array '{shown}' has {} numbers", values.len());

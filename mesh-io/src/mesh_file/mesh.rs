@@ -263,11 +263,20 @@ impl MeshFile {
     }
 
     /// Returns whether the third coordinates of vertices differ. [`point_fields`](Self::point_fields) then returns them
-    /// as the first field with the name `z`. In formats whose third number is a height or a depth by definition (SMS
+    /// as the field for which [`PointField::is_third_of_points`](crate::PointField::is_third_of_points) is true. In formats whose third number is a height or a depth by definition (SMS
     /// 2dm, MIKE), and in formats whose heights are arrays of data (ADCIRC, FVCOM, SELAFIN, UGRID), vertices have no third
     /// coordinate.
     pub fn has_third_coordinates(&self) -> bool {
         self.parsed.has_z && !matches!(self.format(), Format::Sms2dm | Format::Mike)
+    }
+
+    /// Returns whether an array of data on vertices has the name, apart from third coordinates.
+    pub fn has_data(&self, name: &str) -> bool {
+        let is_coordinate = name == "z" && self.has_third_coordinates();
+        match is_coordinate {
+            true => self.parsed.has_data_named_z,
+            false => self.data_names().iter().any(|data| data == name),
+        }
     }
 
     /// Returns whether the file says that x is longitude and y latitude in degrees (UGRID). `Some(false)` if it gives

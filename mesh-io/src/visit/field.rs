@@ -20,6 +20,8 @@ pub struct PointField {
     /// The vertex of each tuple of numbers; `None` if tuple `i` belongs to vertex `i`.
     vertices: Option<Vec<u32>>,
     location: Option<ArrayLocation>,
+    /// Whether the numbers are the third numbers of the points.
+    is_third_of_points: bool,
 }
 
 impl PointField {
@@ -36,13 +38,34 @@ impl PointField {
             None => old.clone(),
             Some(vertices) => scatter(&old, components, count, vertices.iter().copied()),
         };
-        PointField { name, components, values, new: old.clone(), old, vertices, location: stored }
+        PointField {
+            name,
+            components,
+            values,
+            new: old.clone(),
+            old,
+            vertices,
+            location: stored,
+            is_third_of_points: false,
+        }
+    }
+
+    /// Makes the field one of the third numbers of the points.
+    pub(crate) fn of_third_numbers(self) -> PointField {
+        PointField { is_third_of_points: true, ..self }
     }
 
     /// Returns the name in the file: the name of an array, `depth` in grids of ADCIRC, SCHISM and FVCOM, or `z` for
     /// third coordinates. The time steps of a result are fields with equal names.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Returns whether the numbers are the third numbers of the points in the file, and not an array of data: third coordinates,
+    /// or heights in the formats that [`has_third_coordinates`](crate::MeshFile::has_third_coordinates) names. Such a field has the
+    /// name `z`, as an array of data may have too.
+    pub fn is_third_of_points(&self) -> bool {
+        self.is_third_of_points
     }
 
     /// Returns the number of components per vertex, 1 for scalars.

@@ -48,7 +48,7 @@ pub(crate) fn parse_by(
         shared_with,
     } = (reader.visit)(source, &mut assembler)?;
     let (has_parameters, has_centers) = (assembler.has_parameters, assembler.has_centers);
-    let has_z = assembler.has_z;
+    let (has_z, has_data_named_z) = (assembler.has_z, assembler.has_data_named_z);
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
     let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, region_names, .. } = assembler;
@@ -121,6 +121,7 @@ pub(crate) fn parse_by(
         has_parameters,
         has_centers,
         has_z,
+        has_data_named_z,
         says_degrees,
         shared_with,
     })
@@ -180,6 +181,8 @@ struct MeshBuilder {
     has_centers: bool,
     /// Whether third coordinates differ.
     has_z: bool,
+    /// Whether an array of data beside third coordinates has the name `z`.
+    has_data_named_z: bool,
     /// Name of the file's list of vertices in messages.
     vertices_of: &'static str,
     /// Number of nodes on points and curves of the model.
@@ -187,6 +190,15 @@ struct MeshBuilder {
 }
 
 impl MeshBuilder {
+    /// Lists the name of an array, and declines its numbers.
+    fn announce(&mut self, name: &[u8], is_real: bool) -> bool {
+        let name = decoded(name);
+        if is_real && self.named.insert(name.clone()) {
+            self.data.push(name);
+        }
+        false
+    }
+
     /// Returns the index of a node of an element, or an error that names the element.
     #[inline]
     fn index(
@@ -395,15 +407,12 @@ impl MeshVisitor for MeshBuilder {
 
     fn z_array(&mut self, name: &[u8]) -> bool {
         self.has_z |= name == b"z";
-        self.point_array(name, 1, true)
+        self.announce(name, true)
     }
 
     fn point_array(&mut self, name: &[u8], _: u64, is_real: bool) -> bool {
-        let name = decoded(name);
-        if is_real && self.named.insert(name.clone()) {
-            self.data.push(name);
-        }
-        false
+        self.has_data_named_z |= name == b"z" && is_real;
+        self.announce(name, is_real)
     }
 
     fn end_nodes(&mut self, cursor: &Cursor<'_>) -> Result<(), ReadError> {

@@ -55,6 +55,8 @@ pub(crate) struct ParsedMesh {
     pub(crate) has_centers: bool,
     /// Whether points have third coordinates that differ.
     pub(crate) has_z: bool,
+    /// Whether an array of data beside third coordinates has the name `z`.
+    pub(crate) has_data_named_z: bool,
     /// Whether the file says that coordinates are longitude and latitude in degrees; `None` if it gives no unit.
     pub(crate) says_degrees: Option<bool>,
     /// Another array with bytes of the points, in messages; `None` if the points have bytes of their own.

@@ -36,7 +36,8 @@ pub(crate) fn point_data(
     wanted: FieldSelection<'_>,
 ) -> Result<PointData, ReadError> {
     let (last, ids, found) = (Default::default(), IdIndexBuilder::default(), PointData::default());
-    let mut visitor = PointDataVisitor { wanted, last, ids, found, named: HashSet::new() };
+    let (is_third, named) = (false, HashSet::new());
+    let mut visitor = PointDataVisitor { wanted, last, is_third, ids, found, named };
     (reader.visit)(source, &mut visitor)?;
     Ok(visitor.found)
 }
@@ -46,6 +47,8 @@ struct PointDataVisitor<'n> {
     wanted: FieldSelection<'n>,
     /// Name and number of components of the array announced last.
     last: (String, usize),
+    /// Whether this array has the third numbers of the points.
+    is_third: bool,
     ids: IdIndexBuilder,
     found: PointData,
     /// The names in `found.known` as a set, as a damaged file may announce very many names.
@@ -65,7 +68,14 @@ impl MeshVisitor for PointDataVisitor<'_> {
         true
     }
 
+    fn z_array(&mut self, name: &[u8]) -> bool {
+        let is_wanted = self.point_array(name, 1, true);
+        self.is_third = name == b"z";
+        is_wanted
+    }
+
     fn point_array(&mut self, name: &[u8], components: u64, is_real: bool) -> bool {
+        self.is_third = false;
         let name = decoded(name);
         let wanted = match self.wanted {
             FieldSelection::Named(names) => names.contains(&name),
@@ -83,6 +93,7 @@ impl MeshVisitor for PointDataVisitor<'_> {
         let vertices = numbers.nodes.as_ref().map(|nodes| nodes.iter().map(index).collect());
         let (name, components) = std::mem::take(&mut self.last);
         let count = self.ids.len();
-        self.found.fields.push(PointField::new(name, components, count, numbers, vertices));
+        let field = PointField::new(name, components, count, numbers, vertices);
+        self.found.fields.push(if self.is_third { field.of_third_numbers() } else { field });
     }
 }
