@@ -235,3 +235,44 @@ fn pixels_and_linear_lagrange_cells_are_read() {
     let (_, losses) = converted("c.vtk", vtk("3 0 1 3\n3 1 4 5\n3 1 5 3", "5 5 5"), Format::Su2);
     assert_eq!(losses, "third coordinates");
 }
+
+/// Returns a text legacy VTK of two triangles, with data after the cells.
+fn legacy_text(data: &str) -> String {
+    format!(
+        "# vtk DataFile Version 4.2\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+         0 0 0 1 0 0 1 1 0 0 1 0\nCELLS 2 8\n3 0 1 2\n3 0 2 3\nCELL_TYPES 2\n5\n5\n{data}"
+    )
+}
+
+/// VTK 9.7 writes the names of components a line each, and an empty line for a component without a name.
+#[test]
+fn metadata_with_empty_names_of_components_hides_no_later_array() {
+    let names = "METADATA\nCOMPONENT_NAMES\n\n\nZ\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\n\
+                 DATA 2 2.2 7 \n\n";
+    let one = "METADATA\nCOMPONENT_NAMES\n\n\n";
+    let text = format!(
+        "CELL_DATA 2\nVECTORS a double\n0 1 2\n3 4 5\n{names}SCALARS b int\nLOOKUP_TABLE default\n1 2\n{one}\
+         FIELD FieldData 3\nc 3 2 double\n0 1 2 3 4 5 \n{names}d 1 2 int\n3 4\n{one}MaterialIDs 1 2 int\n7 9\n{one}\
+         POINT_DATA 4\nFIELD FieldData 1\nq 1 4 int\n1 2 3 4\n"
+    );
+    let text = legacy_text(&text);
+    let before = format!("FIELD FieldData 2\ne 3 1 int\n1 2 3\n{names}f 1 1 int\n1\n{one}POINTS");
+    let named = text.replace("POINTS", &before);
+    let named = named.replace("CELLS", &format!("{names}CELLS"));
+    for text in [text, named] {
+        let folder = Folder::new(&[("a.vtk", &text)]);
+        let read = folder.read("a.vtk");
+        assert_eq!(read.regions(), Some(&[0, 1][..]));
+        let content = read.content().unwrap();
+        let arrays: Vec<_> = cell_data(&content).iter().map(|data| data.0).collect();
+        assert_eq!(arrays, ["a", "b", "c", "d"]);
+        assert_eq!(content.point_data()[0].values(), [1.0, 2.0, 3.0, 4.0]);
+    }
+    // In version 5, the lists of cells are arrays too.
+    let cells = format!(
+        "CELLS 3 6\nOFFSETS vtktypeint64\n0 3 6\n{one}CONNECTIVITY vtktypeint64\n0 1 2 0 2 3\n{one}CELL_TYPES"
+    );
+    let text = legacy_text("").replace("CELLS 2 8\n3 0 1 2\n3 0 2 3\nCELL_TYPES", &cells);
+    let folder = Folder::new(&[("a.vtk", &text)]);
+    assert_eq!(folder.read("a.vtk").triangles(), [[0, 1, 2], [0, 2, 3]]);
+}

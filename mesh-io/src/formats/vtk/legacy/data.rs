@@ -5,7 +5,7 @@ use crate::binary::byte_order::ByteOrder;
 use crate::content::group_label::GroupLabel;
 use crate::edit::numbers::{NumberEncoding, Offsets};
 use crate::formats::vtk::bits_and_texts::{bits, lost_text};
-use crate::formats::vtk::legacy::skip::{array_name, size_at, skip_section, take};
+use crate::formats::vtk::legacy::skip::{size_at, skip_metadata, skip_section, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
@@ -109,12 +109,11 @@ impl Data<'_> {
                 let size = cursor.integer("the size of a table").ok()?.checked_mul(4)?;
                 skip_section(cursor, self.binary, b"unsigned_char", size).ok()?;
             }
-            b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
             b"FIELD" => {
                 cursor.token()?;
                 for _ in 0..cursor.integer("the number of arrays").ok()? {
                     cursor.next_row().then_some(())?;
-                    let name = array_name(cursor)?;
+                    let name = cursor.token()?;
                     let components = cursor.integer("the number of components").ok()?;
                     let tuples = cursor.integer("the number of tuples").ok()?;
                     let kind = cursor.token()?;
@@ -126,9 +125,23 @@ impl Data<'_> {
         Some(())
     }
 
+    /// Reads an array with its METADATA. `None` if the array is damaged.
+    fn array(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        name: &[u8],
+        kind: &[u8],
+        components: u64,
+        tuples: u64,
+    ) -> Option<()> {
+        self.array_numbers(cursor, name, kind, components, tuples)?;
+        skip_metadata(cursor, components);
+        Some(())
+    }
+
     /// Reads an array of regions, or an array that the visitor wants; skips any other array. `None` if the array is
     /// damaged.
-    fn array(
+    fn array_numbers(
         &mut self,
         cursor: &mut Cursor<'_>,
         name: &[u8],

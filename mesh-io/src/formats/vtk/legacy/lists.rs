@@ -1,6 +1,6 @@
 //! Cell lists of a legacy VTK file.
 
-use super::skip::{size_at, take};
+use super::skip::{size_at, skip_metadata, take};
 use crate::binary::byte_order::ByteOrder;
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
@@ -117,6 +117,7 @@ pub(super) fn read<'a>(
         *cursor = ahead;
         let size = width(cursor, first)?;
         let offsets = integers(cursor, first, binary.then_some(size))?;
+        skip_metadata(cursor, 1);
         cursor.row(0, 1, "lists of CONNECTIVITY")?;
         if !cursor.token().is_some_and(|word| word.eq_ignore_ascii_case(b"CONNECTIVITY")) {
             return Err(cursor.error("OFFSETS without CONNECTIVITY", CORRECT));
@@ -124,6 +125,7 @@ pub(super) fn read<'a>(
         let size = width(cursor, second)?;
         let first = start_of(cursor, binary);
         let numbers = integers(cursor, second, binary.then_some(size))?;
+        skip_metadata(cursor, 1);
         let count = offsets.len().saturating_sub(1);
         if !offsets.is_sorted() || (!offsets.is_empty() && offsets.at(count) > second) {
             return Err(cursor.error("the OFFSETS do not fit the CONNECTIVITY", CORRECT));
@@ -133,6 +135,7 @@ pub(super) fn read<'a>(
     }
     let first_cell = start_of(cursor, binary);
     let numbers = integers(cursor, second, binary.then_some(4))?;
+    skip_metadata(cursor, 1);
     let mut at = 0;
     for done in 0..first {
         let corners = if at < numbers.len() { Some(numbers.at(at)) } else { None };

@@ -68,6 +68,7 @@ impl FormatReader for Vtk {
                     }
                     let mut seen = ZValues::new(visitor);
                     precision = Some(points(cursor, binary, &mut seen, visitor)?);
+                    skip::skip_metadata(cursor, 3);
                     z_values = Some(seen);
                 }
                 b"CELLS" | b"POLYGONS" | b"LINES" | b"VERTICES" | b"TRIANGLE_STRIPS" => {
@@ -83,6 +84,7 @@ impl FormatReader for Vtk {
                 b"CELL_TYPES" => {
                     let count = cursor.integer("the number of cell types")?;
                     let types = Some(lists::integers(cursor, count, binary.then_some(4))?);
+                    skip::skip_metadata(cursor, 1);
                     match cells.last_mut() {
                         Some(cells) if cells.count as u64 == count => cells.types = types,
                         _ => {
@@ -93,7 +95,6 @@ impl FormatReader for Vtk {
                         }
                     }
                 }
-                b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
                 b"FIELD" => {
                     visitor.unsupported("field data");
                     skip::skip_field(cursor, binary)?;

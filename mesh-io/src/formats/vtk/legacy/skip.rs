@@ -119,15 +119,19 @@ fn size_of(kind: &[u8]) -> Option<usize> {
     }
 }
 
-/// Reads the name of the next array of a field, after any METADATA of the previous array. `None` if no name follows.
-pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
-    loop {
-        let name = cursor.token()?;
-        if !name.eq_ignore_ascii_case(b"METADATA") {
-            return Some(name);
+/// Skips the METADATA behind an array of `components` numbers per tuple, if the next row starts METADATA. An empty line
+/// ends them. The names of components before that line may be empty lines too.
+pub(super) fn skip_metadata(cursor: &mut Cursor<'_>, components: u64) {
+    let mut ahead = cursor.clone();
+    while ahead.next_word()
+        && ahead.token().is_some_and(|word| word.eq_ignore_ascii_case(b"METADATA"))
+    {
+        while let Some(line) = ahead.line().filter(|line| !line.is_empty()) {
+            if line.eq_ignore_ascii_case(b"COMPONENT_NAMES") {
+                (0..components).all(|_| ahead.line().is_some());
+            }
         }
-        while cursor.line().is_some_and(|line| !line.is_empty()) {}
-        cursor.next_row().then_some(())?;
+        *cursor = ahead.clone();
     }
 }
 
@@ -137,13 +141,12 @@ pub(super) fn skip_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), Re
     let arrays = cursor.integer("the number of arrays of a field")?;
     for done in 0..arrays {
         cursor.row(done, arrays, "arrays of a field")?;
-        if array_name(cursor).is_none() {
-            return Err(cursor.error("the file ends within a field", CUT_OFF));
-        }
+        cursor.token();
         let components = cursor.integer("the number of components")?;
         let tuples = cursor.integer("the number of tuples")?;
         let kind = cursor.token().unwrap_or_default();
         skip_section(cursor, binary, kind, components.saturating_mul(tuples))?;
+        skip_metadata(cursor, components);
     }
     Ok(())
 }
