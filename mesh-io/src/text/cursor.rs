@@ -398,6 +398,15 @@ impl<'a> Cursor<'a> {
         (!word.is_empty()).then_some(word)
     }
 
+    /// Takes the next word of the row up to a blank, as a name: bytes that start comments behind numbers are part of the
+    /// name. `None` at the end of the row.
+    pub(crate) fn name(&mut self) -> Option<&'a [u8]> {
+        let rest = &self.bytes[self.skip_blanks(self.at)..];
+        let length = rest.iter().position(|&byte| matches!(byte, 1..=b' ')).unwrap_or(rest.len());
+        self.at = self.bytes.len() - rest.len() + length;
+        (length > 0).then_some(&rest[..length])
+    }
+
     /// Takes up to `count` tokens of the row, and returns the bytes from the first token to the last, separators
     /// included.
     pub(crate) fn tokens(&mut self, count: u64) -> &'a [u8] {

@@ -360,3 +360,16 @@ fn damaged_data_of_a_name_that_is_there_twice_are_errors() {
     let error = fields("1 2 3").unwrap_err();
     assert!(error.contains("'T' has 3 numbers, 1 per vertex"), "{error}");
 }
+
+/// In the header of a PLY, comments are rows of their own, so that names may have number signs.
+#[test]
+fn number_signs_of_a_ply_belong_to_names() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty float u#1\n\
+                property float #2\nelement face 2\nproperty list uchar int vertex_indices\nproperty int f#1\n\
+                end_header\n0 0 1 5\n1 0 2 6\n1 1 3 7\n0 1 4 8\n3 0 1 2 9\n3 0 2 3 10\n";
+    let folder = Folder::new(&[("a.ply", text)]);
+    let content = folder.read("a.ply").content().unwrap();
+    let names: Vec<_> = content.point_data().iter().map(mesh_io::DataArray::name).collect();
+    assert_eq!(names, ["u#1", "#2"]);
+    assert_eq!(content.cell_data()[0].name(), "f#1");
+}

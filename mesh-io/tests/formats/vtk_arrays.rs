@@ -276,3 +276,28 @@ fn metadata_with_empty_names_of_components_hides_no_later_array() {
     let folder = Folder::new(&[("a.vtk", &text)]);
     assert_eq!(folder.read("a.vtk").triangles(), [[0, 1, 2], [0, 2, 3]]);
 }
+
+/// VTK writes number signs in names as they are.
+#[test]
+fn number_signs_of_a_legacy_vtk_belong_to_names_not_to_comments() {
+    let data = "CELL_DATA 2\nSCALARS a#1 int 1\nLOOKUP_TABLE #t\n1 2\nSCALARS #b int\nLOOKUP_TABLE default\n\
+                3 4\nLOOKUP_TABLE #t 2\n0 0 0 1\n1 1 1 1\nFIELD #f 3\n# a comment of four\n#c 1 2 int\n5 6\n\n\
+                c#d 1 2 int # values\n7 8\nMaterialIDs 1 2 int\n7 9\nPOINT_DATA 4\nVECTORS #q double\n\
+                0 1 2 3 4 5 6 7 8 9 10 11\n";
+    let field = "FIELD #f 1\n#e 1 2 int\n1 2\nPOINTS";
+    let text = legacy_text(data).replace("POINTS", field);
+    let folder = Folder::new(&[("a.vtk", &text)]);
+    let read = folder.read("a.vtk");
+    assert_eq!(read.regions(), Some(&[0, 1][..]));
+    let content = read.content().unwrap();
+    let expected: [(&str, &[f64]); 4] =
+        [("a#1", &[1., 2.]), ("#b", &[3., 4.]), ("#c", &[5., 6.]), ("c#d", &[7., 8.])];
+    assert_eq!(cell_data(&content), expected);
+    assert_eq!(content.point_data()[0].name(), "#q");
+    let whole = |numbers: &[i64]| whole(numbers, 4);
+    let (ids, regions) = (whole(&[1, 2]), whole(&[7, 9]));
+    let data = [b"CELL_DATA 2\nFIELD f 2\n#c 1 2 int\n", &ids[..], b"\nMaterialIDs 1 2 int\n"];
+    let (content, _) =
+        converted("a.vtk", legacy(b"", &[&data.concat(), &regions[..]].concat()), Format::Vtk);
+    assert_eq!(cell_data(&content), [("#c", &[1.0, 2.0][..])]);
+}

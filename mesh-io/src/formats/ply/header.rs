@@ -57,7 +57,7 @@ pub(super) fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>
                 }
             }
             b"element" => {
-                let name = cursor.token().unwrap_or_default();
+                let name = cursor.name().unwrap_or_default();
                 let count = cursor.integer("the number of elements")?;
                 lists.push(List { name, count, properties: Vec::new() });
             }
@@ -67,7 +67,7 @@ pub(super) fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(Items, Vec<List<'a>
                     b"list" => (Some(number(cursor)?), number(cursor)?),
                     kind => (None, number_of(cursor, kind)?),
                 };
-                let name = cursor.token().unwrap_or_default();
+                let name = cursor.name().unwrap_or_default();
                 match lists.last_mut() {
                     Some(list) => list.properties.push(Property { name, length, number }),
                     None => {

@@ -5,7 +5,7 @@ use crate::binary::byte_order::ByteOrder;
 use crate::content::group_label::GroupLabel;
 use crate::edit::numbers::{NumberEncoding, Offsets};
 use crate::formats::vtk::bits_and_texts::{bits, lost_text};
-use crate::formats::vtk::legacy::skip::{size_at, skip_metadata, skip_section, take};
+use crate::formats::vtk::legacy::skip::{array_name, size_at, skip_metadata, skip_section, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
@@ -71,7 +71,7 @@ impl Data<'_> {
                 self.count = cursor.integer("a count").ok()?;
             }
             b"SCALARS" => {
-                let (name, kind) = (cursor.token()?, cursor.token()?);
+                let (name, kind) = (cursor.name()?, cursor.token()?);
                 let components = cursor.integer_or(1, "the number of components").ok()?;
                 let mut ahead = cursor.clone();
                 if ahead.next_row() && ahead.token()?.eq_ignore_ascii_case(b"LOOKUP_TABLE") {
@@ -88,32 +88,31 @@ impl Data<'_> {
                     b"VECTORS" | b"NORMALS" => 3,
                     _ => 1,
                 };
-                let (name, kind) = (cursor.token()?, cursor.token()?);
+                let (name, kind) = (cursor.name()?, cursor.token()?);
                 self.array(cursor, name, kind, components, self.count)?;
             }
             b"TEXTURE_COORDINATES" => {
-                let name = cursor.token()?;
+                let name = cursor.name()?;
                 let components = cursor.integer("the dimension").ok()?;
                 let kind = cursor.token()?;
                 self.array(cursor, name, kind, components, self.count)?;
             }
             b"COLOR_SCALARS" => {
-                let name = cursor.token()?;
+                let name = cursor.name()?;
                 let components = cursor.integer("the number of colors").ok()?;
                 // In text, VTK writes and reads colors as real numbers from 0 to 1.
                 let kind: &[u8] = if self.binary { b"unsigned_char" } else { b"float" };
                 self.array(cursor, name, kind, components, self.count)?;
             }
             b"LOOKUP_TABLE" => {
-                cursor.token()?;
+                cursor.name()?;
                 let size = cursor.integer("the size of a table").ok()?.checked_mul(4)?;
                 skip_section(cursor, self.binary, b"unsigned_char", size).ok()?;
             }
             b"FIELD" => {
-                cursor.token()?;
+                cursor.name()?;
                 for _ in 0..cursor.integer("the number of arrays").ok()? {
-                    cursor.next_row().then_some(())?;
-                    let name = cursor.token()?;
+                    let name = array_name(cursor)?;
                     let components = cursor.integer("the number of components").ok()?;
                     let tuples = cursor.integer("the number of tuples").ok()?;
                     let kind = cursor.token()?;

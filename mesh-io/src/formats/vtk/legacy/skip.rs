@@ -99,11 +99,32 @@ fn may_follow(bytes: &[u8]) -> bool {
     ];
     let bytes = bytes.trim_ascii_start();
     let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-    let Some(first) = words.next() else { return true };
+    let Some(first) = words(line).next() else { return true };
+    KEYWORDS.iter().any(|keyword| first.eq_ignore_ascii_case(keyword)) || is_array_head(line)
+}
+
+/// Returns whether a line has the name of an array, two counts and a type, as the head of an array of a field.
+fn is_array_head(line: &[u8]) -> bool {
+    let mut words = words(line).skip(1);
     let mut is_count = || words.next().is_some_and(|word| word.iter().all(u8::is_ascii_digit));
-    KEYWORDS.iter().any(|keyword| first.eq_ignore_ascii_case(keyword))
-        || (is_count() && is_count() && words.next().is_some_and(|kind| kind.is_ascii()))
+    is_count() && is_count() && words.next().is_some_and(|kind| kind.is_ascii())
+}
+
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+/// Moves to the head of the next array of a field. Returns the name of the array, or `None` if the file ends. A line
+/// that starts with a number sign is a comment only if it is no head, as names may start so too.
+pub(super) fn array_name<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
+    loop {
+        let start = cursor.at_byte();
+        let line = cursor.line()?.trim_ascii_start();
+        if !line.is_empty() && (!line.starts_with(b"#") || is_array_head(line)) {
+            cursor.at = start;
+            return cursor.name();
+        }
+    }
 }
 
 /// Returns the width in bytes of a binary number type; `None` for types that cannot be read, and for `vtkIdType`, whose
@@ -137,11 +158,13 @@ pub(super) fn skip_metadata(cursor: &mut Cursor<'_>, components: u64) {
 
 /// Skips a FIELD of the dataset, after its keyword: name, array count and arrays.
 pub(super) fn skip_field(cursor: &mut Cursor<'_>, binary: bool) -> Result<(), ReadError> {
-    cursor.token();
+    cursor.name();
     let arrays = cursor.integer("the number of arrays of a field")?;
     for done in 0..arrays {
-        cursor.row(done, arrays, "arrays of a field")?;
-        cursor.token();
+        if array_name(cursor).is_none() {
+            let problem = format!("the file ends after {done} of {arrays} arrays of a field");
+            return Err(cursor.error(problem, CUT_OFF));
+        }
         let components = cursor.integer("the number of components")?;
         let tuples = cursor.integer("the number of tuples")?;
         let kind = cursor.token().unwrap_or_default();
