@@ -301,3 +301,28 @@ fn number_signs_of_a_legacy_vtk_belong_to_names_not_to_comments() {
         converted("a.vtk", legacy(b"", &[&data.concat(), &regions[..]].concat()), Format::Vtk);
     assert_eq!(cell_data(&content), [("#c", &[1.0, 2.0][..])]);
 }
+
+/// VTK numbers the cells of polygonal data by kind: vertices, lines, polygons. Lists may stand in another order.
+#[test]
+fn cell_data_of_polygonal_data_follow_the_order_of_vtk() {
+    let points = "POINTS 4 double\n0 0 0 1 0 0 1 1 0 0 1 0\n";
+    let polygons = "POLYGONS 2 8\n3 0 1 2\n3 0 2 3\n";
+    let (lines, vertices) = ("LINES 1 3\n2 0 1\n", "VERTICES 1 2\n1 0\n");
+    for lists in [[polygons, lines, vertices], [vertices, lines, polygons]] {
+        let text = format!(
+            "# vtk DataFile Version 4.2\nt\nASCII\nDATASET POLYDATA\n{points}{}CELL_DATA 4\n\
+             FIELD FieldData 2\nmaterialids 1 4 int\n1 2 7 9\nn 1 4 double\n10 20 30 40\n",
+            lists.concat()
+        );
+        let folder = Folder::new(&[("a.vtk", &text)]);
+        let read = folder.read("a.vtk");
+        assert_eq!(read.regions(), Some(&[0, 1][..]));
+        let content = read.content().unwrap();
+        let vertices = content.cells().map(|cell| cell.vertices.to_vec());
+        assert_eq!(content.cell_data()[0].name(), "n");
+        let values = content.cell_data()[0].values().iter().copied();
+        let expected =
+            [(vec![0], 10.), (vec![0, 1], 20.), (vec![0, 1, 2], 30.), (vec![0, 2, 3], 40.)];
+        assert_eq!(vertices.zip(values).collect::<Vec<_>>(), expected);
+    }
+}

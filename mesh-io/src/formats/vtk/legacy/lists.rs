@@ -22,23 +22,22 @@ pub(super) struct Cells<'a> {
     offsets: Option<IntArray<'a>>,
     /// VTK's type number of each cell. `None` for polygonal data, and for CELLS before CELL_TYPES is read.
     pub(super) types: Option<IntArray<'a>>,
-    kind: List,
+    pub(super) kind: List,
     /// Cursor at the first cell.
     first: Cursor<'a>,
     /// Width of a binary integer in bytes; `None` for text.
     width: Option<usize>,
 }
 
-/// Keyword of a cell list.
-#[derive(Clone, Copy, PartialEq)]
+/// Keyword of a cell list, in the order in which VTK numbers the cells of polygonal data (`vtkPolyData`).
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum List {
     /// Cells of an unstructured grid, whose types CELL_TYPES lists.
     Cells,
+    Vertices,
+    Lines,
     Polygons,
     Strips,
-    Lines,
-    /// VERTICES: points of polygonal data.
-    Others,
 }
 
 /// Reads `count` integers: binary ones of `size` bytes, or text if `size` is `None`.

@@ -77,7 +77,7 @@ impl FormatReader for Vtk {
                         b"POLYGONS" => List::Polygons,
                         b"TRIANGLE_STRIPS" => List::Strips,
                         b"LINES" => List::Lines,
-                        _ => List::Others,
+                        _ => List::Vertices,
                     };
                     cells.push(lists::read(cursor, binary, kind)?);
                 }
@@ -122,6 +122,7 @@ impl FormatReader for Vtk {
             z_values.send("z", form, visitor);
         }
         visitor.region_attributes(regions.columns);
+        cells.sort_by_key(|cells| cells.kind);
         let [ghost_cells, ghost_points] = regions.ghosts;
         let regions = RegionNumbers::from_iter(regions.numbers);
         let send = |visitor: &mut dyn MeshVisitor| {
