@@ -181,10 +181,10 @@ fn texts_of_a_vtu_are_losses_and_bits_are_numbers() {
     }
 }
 
-/// VTK writes colors as real numbers from 0 to 1 in text, and as bytes in binary. A lookup table is no data, even if it
+/// VTK writes colors as bytes in binary, and as these bytes divided by 255 in text. A lookup table is no data, even if it
 /// has as many colors as there are cells.
 #[test]
-fn colors_of_a_legacy_vtk_are_real_in_text() {
+fn colors_of_a_legacy_vtk_are_bytes_in_text_too() {
     let head = b"CELL_DATA 2\nCOLOR_SCALARS c 3\n";
     let table = b"\nSCALARS s int 1\nLOOKUP_TABLE t\n";
     let binary = [
@@ -200,18 +200,26 @@ fn colors_of_a_legacy_vtk_are_real_in_text() {
     .concat();
     let text = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
                 0 0 0 1 0 0 1 1 0 0 1 0\nCELLS 2 8\n3 0 1 2 3 0 2 3\nCELL_TYPES 2\n5 5\nCELL_DATA 2\nCOLOR_SCALARS c 3\n\
-                0 0.5 1 0.25 1 1\nSCALARS s int 1\nLOOKUP_TABLE t\n5 6\nLOOKUP_TABLE t 2\n0 0 0 1\n1 1 1 1\n\
+                0 0.2 1 0.00392157 0.00784314 0.0117647\nSCALARS s int 1\nLOOKUP_TABLE t\n5 6\nLOOKUP_TABLE t 2\n0 0 0 1\n1 1 1 1\n\
                 SCALARS end int 1\nLOOKUP_TABLE default\n7 8\n";
-    let colors: [(Vec<u8>, bool, [f64; 6]); 2] = [
-        (legacy(b"", &binary), false, [0., 51., 255., 1., 2., 3.]),
-        (text.into(), true, [0., 0.5, 1., 0.25, 1., 1.]),
-    ];
-    for (bytes, is_real, colors) in colors {
+    for bytes in [legacy(b"", &binary), text.into()] {
         let (content, losses) = converted("a.vtk", bytes, Format::Vtu);
+        let colors = [0.0, 51.0, 255.0, 1.0, 2.0, 3.0];
         let expected = [("c", &colors[..]), ("s", &[5.0, 6.0]), ("end", &[7.0, 8.0])];
         assert_eq!(cell_data(&content), expected);
-        assert_eq!((content.cell_data()[0].is_real(), losses.as_str()), (is_real, ""));
+        assert_eq!((content.cell_data()[0].is_real(), losses.as_str()), (false, ""));
     }
+}
+
+/// VTK 9.7 writes active scalars of the type `unsigned char` as colors, which may be regions.
+#[test]
+fn regions_of_a_legacy_vtk_may_be_colors() {
+    let colors = "CELL_DATA 2\nCOLOR_SCALARS MaterialIDs 1\n0.027451 0.0352941 \n";
+    let folder = Folder::new(&[("a.vtk", &legacy_text(colors))]);
+    let file = folder.read("a.vtk");
+    assert_eq!(file.regions(), Some(&[0, 1][..]));
+    let tags: Vec<_> = file.groups().unwrap().iter().map(|group| group.tag).collect();
+    assert_eq!(tags, [Some(7), Some(9)]);
 }
 
 /// Points of a pixel are in rows. DOLFINx writes linear cells as Lagrange cells of order 1.

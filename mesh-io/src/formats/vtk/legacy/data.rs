@@ -38,7 +38,14 @@ pub(super) fn regions(
     visitor: &mut dyn MeshVisitor,
 ) -> RegionArrays {
     let of_cells = keyword == b"CELL_DATA";
-    let mut data = Data { binary, of_cells, count: 0, found: RegionArrays::default(), visitor };
+    let mut data = Data {
+        binary,
+        of_cells,
+        count: 0,
+        has_text_colors: false,
+        found: RegionArrays::default(),
+        visitor,
+    };
     let Ok(count) = cursor.integer("a count") else {
         return data.found;
     };
@@ -57,6 +64,9 @@ struct Data<'s> {
     of_cells: bool,
     /// Number of points or cells that the current attributes belong to.
     count: u64,
+    /// Whether the current array has colors in text, which VTK writes and reads as bytes divided by 255
+    /// (`vtkDataReader::ReadCoScalars`).
+    has_text_colors: bool,
     found: RegionArrays,
     visitor: &'s mut dyn MeshVisitor,
 }
@@ -100,9 +110,10 @@ impl Data<'_> {
             b"COLOR_SCALARS" => {
                 let name = cursor.name()?;
                 let components = cursor.integer("the number of colors").ok()?;
-                // In text, VTK writes and reads colors as real numbers from 0 to 1.
-                let kind: &[u8] = if self.binary { b"unsigned_char" } else { b"float" };
-                self.array(cursor, name, kind, components, self.count)?;
+                self.has_text_colors = !self.binary;
+                let is_sound = self.array(cursor, name, b"unsigned_char", components, self.count);
+                self.has_text_colors = false;
+                is_sound?;
             }
             b"LOOKUP_TABLE" => {
                 cursor.name()?;
@@ -208,7 +219,10 @@ impl Data<'_> {
         } else {
             for _ in 0..tuples {
                 cursor.next_word().then_some(())?;
-                let number = cursor.coordinate('r', "a region").ok()?;
+                let mut number = cursor.coordinate('r', "a region").ok()?;
+                if self.has_text_colors {
+                    number = color_byte(number);
+                }
                 // Adding zero makes a negative zero positive.
                 names.push((number + 0.0).to_bits().cast_signed());
             }
@@ -258,9 +272,17 @@ impl Data<'_> {
             cursor.next_word().then_some(())?;
             numbers.read(cursor).ok()?;
         }
-        let numbers = numbers.finish(precision.unwrap_or_default(), None);
+        let mut numbers = numbers.finish(precision.unwrap_or_default(), None);
+        if self.has_text_colors {
+            numbers.numbers.iter_mut().for_each(|number| *number = color_byte(*number));
+        }
         Some(PointNumbers { location: numbers.location.filter(|_| precision.is_some()), ..numbers })
     }
+}
+
+/// Returns the byte that a color from 0 to 1 stands for.
+fn color_byte(color: f64) -> f64 {
+    (255.0 * color).round().clamp(0.0, 255.0)
 }
 
 /// Returns whether an array of this type holds texts instead of numbers.
