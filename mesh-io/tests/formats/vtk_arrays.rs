@@ -334,3 +334,24 @@ fn cell_data_of_polygonal_data_follow_the_order_of_vtk() {
         assert_eq!(vertices.zip(values).collect::<Vec<_>>(), expected);
     }
 }
+
+/// Data may hold the regions, so data that are not read are a note and a loss.
+#[test]
+fn data_of_a_legacy_vtk_from_a_damaged_attribute_on_are_listed() {
+    let end = "\nSCALARS MaterialIDs int\nLOOKUP_TABLE default\n7 9\n";
+    for (attribute, keyword) in [
+        ("SHAPES s int\n1 2", "SHAPES"),
+        ("VECTORS v\n0 1 2 3 4 5", "VECTORS"),
+        ("FIELD f 2\na 1 2 int\n1 2", "FIELD"),
+    ] {
+        let text = legacy_text(&format!("CELL_DATA 2\n{attribute}{end}"));
+        let folder = Folder::new(&[("a.vtk", &text)]);
+        let expected =
+            format!("data from the attribute `{keyword}` on, which is damaged or not known");
+        let read = folder.read("a.vtk");
+        let notes: Vec<_> = read.remarks().iter().map(ToString::to_string).collect();
+        assert_eq!(notes, [format!("the file has {expected}: they are not read")]);
+        let (_, losses) = converted("a.vtk", &text, Format::Vtu);
+        assert_eq!(losses, expected);
+    }
+}

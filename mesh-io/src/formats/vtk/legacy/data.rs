@@ -3,12 +3,14 @@
 
 use crate::binary::byte_order::ByteOrder;
 use crate::content::group_label::GroupLabel;
+use crate::content::remark::Remark;
 use crate::edit::numbers::{NumberEncoding, Offsets};
 use crate::formats::vtk::bits_and_texts::{bits, lost_text};
 use crate::formats::vtk::legacy::skip::{array_name, size_at, skip_metadata, skip_section, take};
 use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
+use crate::text::token::quoted;
 use crate::visit::ghosts::vtk_ghosts;
 use crate::visit::items::{PointNumbers, RegionAttribute};
 use crate::visit::storage::ArrayLocation;
@@ -30,7 +32,7 @@ pub(super) struct RegionArrays {
 
 /// Reads point and cell data to the end of the file. `keyword` is the POINT_DATA or CELL_DATA before the cursor.
 /// Returns the first two region arrays; arrays that the visitor wants go to the visitor. A damaged or unknown attribute
-/// ends the reading without an error, as the mesh does not depend on data.
+/// ends the reading with a remark instead of an error, as the mesh itself does not depend on data.
 pub(super) fn regions(
     cursor: &mut Cursor<'_>,
     binary: bool,
@@ -51,7 +53,12 @@ pub(super) fn regions(
     };
     data.count = count;
     while cursor.next_word() {
+        let keyword = quoted(cursor.clone().token().unwrap_or_default());
         if data.attribute(cursor).is_none() {
+            let rest =
+                format!("data from the attribute `{keyword}` on, which is damaged or not known");
+            data.visitor.remark(Remark::Text(format!("the file has {rest}: they are not read")));
+            data.visitor.unsupported(&rest);
             break;
         }
     }
@@ -91,7 +98,7 @@ impl Data<'_> {
                 self.array(cursor, name, kind, components, self.count)?;
             }
             b"VECTORS" | b"NORMALS" | b"TENSORS" | b"TENSORS6" | b"GLOBAL_IDS"
-            | b"PEDIGREE_IDS" => {
+            | b"PEDIGREE_IDS" | b"EDGE_FLAGS" => {
                 let components = match keyword.as_slice() {
                     b"TENSORS" => 9,
                     b"TENSORS6" => 6,

@@ -74,7 +74,7 @@ pub(super) fn size_at(cursor: &Cursor<'_>, kind: &[u8], count: u64) -> Option<us
 /// Returns whether the bytes after an array start with a keyword or with the head of an array of a field, or are blank.
 fn may_follow(bytes: &[u8]) -> bool {
     /// Keywords that stand after an array in a dataset or in its data.
-    const KEYWORDS: [&[u8]; 21] = [
+    const KEYWORDS: [&[u8]; 23] = [
         b"METADATA",
         b"POINT_DATA",
         b"CELL_DATA",
@@ -85,6 +85,7 @@ fn may_follow(bytes: &[u8]) -> bool {
         b"TENSORS6",
         b"GLOBAL_IDS",
         b"PEDIGREE_IDS",
+        b"EDGE_FLAGS",
         b"TEXTURE_COORDINATES",
         b"COLOR_SCALARS",
         b"LOOKUP_TABLE",
@@ -94,6 +95,7 @@ fn may_follow(bytes: &[u8]) -> bool {
         b"POLYGONS",
         b"LINES",
         b"VERTICES",
+        b"TRIANGLE_STRIPS",
         b"CELL_TYPES",
         b"CONNECTIVITY",
     ];
