@@ -11,6 +11,14 @@ pub(crate) enum ByteOrder {
     Big,
 }
 
+/// A type of integers in a binary file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct IntegerType {
+    /// Width of an integer in bytes, from 1 to 8.
+    pub(crate) bytes: usize,
+    pub(crate) is_signed: bool,
+}
+
 impl ByteOrder {
     #[inline]
     pub(crate) fn i32(self, bytes: [u8; 4]) -> i32 {
@@ -72,6 +80,18 @@ impl ByteOrder {
     pub(crate) fn signed(self, bytes: &[u8]) -> i64 {
         let unused = 64 - 8 * bytes.len();
         self.whole(bytes).cast_signed() << unused >> unused
+    }
+
+    /// Reads an integer of a type. Unsigned integers from 2^63 on keep their bits.
+    #[inline]
+    pub(crate) fn integer(self, number: IntegerType, bytes: &[u8]) -> i64 {
+        if number.is_signed { self.signed(bytes) } else { self.whole(bytes).cast_signed() }
+    }
+
+    /// Reads an integer of a type as a real number.
+    #[inline]
+    pub(crate) fn integer_as_real(self, number: IntegerType, bytes: &[u8]) -> f64 {
+        if number.is_signed { self.signed(bytes) as f64 } else { self.whole(bytes) as f64 }
     }
 
     #[inline]

@@ -46,8 +46,8 @@ impl<'a> Attribute<'a> {
 impl Attribute<'_> {
     /// Returns the first integer; `None` if the attribute has another type or no items.
     pub(crate) fn whole(&self) -> Option<i64> {
-        let Datatype::Whole(size, order) = self.number else { return None };
-        Some(order.signed(self.bytes.get(..size)?))
+        let Datatype::Whole(number, order) = self.number else { return None };
+        Some(order.integer(number, self.bytes.get(..number.bytes)?))
     }
 }
 

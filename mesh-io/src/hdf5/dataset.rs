@@ -114,9 +114,9 @@ impl<'a> Hdf5<'a> {
     /// read.
     pub(crate) fn integers(&self, object: &Object) -> Option<Vec<i64>> {
         let dataset = self.dataset(object).ok()??;
-        let Datatype::Whole(size, order) = dataset.datatype else { return None };
+        let Datatype::Whole(number, order) = dataset.datatype else { return None };
         let array = self.array(&dataset).ok()?;
-        Some(array.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
+        Some(array.bytes.chunks_exact(number.bytes).map(|own| order.integer(number, own)).collect())
     }
 
     /// Reads the items of a dataset.

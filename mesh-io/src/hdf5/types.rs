@@ -1,7 +1,7 @@
 //! Datatype and dataspace messages: the type of a dataset's items, and the dataset's shape.
 
 use super::bytes::{ByteReader, Hdf5Error};
-use crate::binary::byte_order::ByteOrder;
+use crate::binary::byte_order::{ByteOrder, IntegerType};
 use crate::precision::Precision;
 
 /// The type of the items of a dataset or attribute.
@@ -9,8 +9,7 @@ use crate::precision::Precision;
 pub(crate) enum Datatype {
     /// Text of this many bytes per item.
     Text(usize),
-    /// Integers of this many bytes, signed or unsigned.
-    Whole(usize, ByteOrder),
+    Whole(IntegerType, ByteOrder),
     /// IEEE floating-point numbers of single or double precision.
     Real(Precision, ByteOrder),
     /// Reference to a text of variable length. The reference itself has this many bytes.
@@ -23,10 +22,8 @@ impl Datatype {
     /// Returns the size of an item in bytes.
     pub(crate) fn bytes(self) -> usize {
         match self {
-            Datatype::Text(bytes)
-            | Datatype::Whole(bytes, _)
-            | Datatype::VariableText(bytes)
-            | Datatype::Other(bytes) => bytes,
+            Datatype::Whole(number, _) => number.bytes,
+            Datatype::Text(bytes) | Datatype::VariableText(bytes) | Datatype::Other(bytes) => bytes,
             Datatype::Real(precision, _) => precision.bytes(),
         }
     }
@@ -41,7 +38,10 @@ impl Datatype {
             (0, 1 | 2 | 4 | 8) => {
                 let (offset, precision) = (bytes.count(2)?, bytes.count(2)?);
                 match (offset, precision) == (0, 8 * size) {
-                    true => Datatype::Whole(size, order),
+                    true => {
+                        let number = IntegerType { bytes: size, is_signed: bits & 8 != 0 };
+                        Datatype::Whole(number, order)
+                    }
                     false => Datatype::Other(size),
                 }
             }

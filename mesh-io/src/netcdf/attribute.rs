@@ -23,7 +23,7 @@ impl Attribute {
     pub(super) fn real(&self) -> Option<f64> {
         let first = self.bytes.get(..self.number.bytes())?;
         match self.number {
-            NumberType::Whole(_) => Some(self.order.signed(first) as f64),
+            NumberType::Whole(number) => Some(self.order.integer_as_real(number, first)),
             NumberType::Real(precision) => Some(self.order.real(precision, first)),
             NumberType::Text | NumberType::Other(_) => None,
         }
@@ -32,7 +32,9 @@ impl Attribute {
     /// Returns the first number as an integer; `None` for text, and for real numbers with a fraction or from 1e15 on.
     pub(super) fn whole(&self) -> Option<i64> {
         match self.number {
-            NumberType::Whole(bytes) => Some(self.order.signed(self.bytes.get(..bytes)?)),
+            NumberType::Whole(number) => {
+                Some(self.order.integer(number, self.bytes.get(..number.bytes)?))
+            }
             _ => self.real().filter(|x| x.fract() == 0.0 && x.abs() < 1e15).map(|x| x as i64),
         }
     }

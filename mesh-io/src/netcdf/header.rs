@@ -90,7 +90,9 @@ impl Variable {
         let each = bytes.chunks_exact(self.number.bytes().max(1));
         match self.number {
             NumberType::Real(precision) => each.map(|x| self.order.real(precision, x)).collect(),
-            NumberType::Whole(_) => each.map(|x| self.order.signed(x) as f64).collect(),
+            NumberType::Whole(number) => {
+                each.map(|x| self.order.integer_as_real(number, x)).collect()
+            }
             NumberType::Text | NumberType::Other(_) => Vec::new(),
         }
     }
@@ -170,9 +172,10 @@ impl<'a> Header<'a> {
 
     /// Returns the integers of a variable, of record 0 only; `None` if the variable has another type or cannot be read.
     pub(crate) fn integers(&self, variable: &Variable) -> Option<Vec<i64>> {
-        let NumberType::Whole(bytes) = variable.number else { return None };
+        let NumberType::Whole(number) = variable.number else { return None };
         let items = self.items(variable).ok()?;
-        Some(items.own().chunks_exact(bytes).map(|n| variable.order.signed(n)).collect())
+        let each = items.own().chunks_exact(number.bytes);
+        Some(each.map(|own| variable.order.integer(number, own)).collect())
     }
 
     /// Returns the rows of a table of characters, each up to its first zero byte and without blanks around the text.

@@ -1,13 +1,13 @@
 //! Types of numbers, with their codes in headers of the classic format, and the tags of lists there.
 
+use crate::binary::byte_order::IntegerType;
 use crate::precision::Precision;
 
 /// The type of the numbers of a variable or attribute.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum NumberType {
     Text,
-    /// Integers of this many bytes.
-    Whole(usize),
+    Whole(IntegerType),
     Real(Precision),
     /// Any other type, with the size of an item in bytes.
     Other(usize),
@@ -17,19 +17,21 @@ impl NumberType {
     pub(crate) fn bytes(self) -> usize {
         match self {
             NumberType::Text => 1,
-            NumberType::Whole(bytes) | NumberType::Other(bytes) => bytes,
+            NumberType::Whole(number) => number.bytes,
+            NumberType::Other(bytes) => bytes,
             NumberType::Real(precision) => precision.bytes(),
         }
     }
-    /// Returns the type with a code of the format; `None` for unknown codes. Unsigned integers are read as signed
-    /// integers.
+
+    /// Returns the type with a code of the format; `None` for unknown codes.
     pub(super) fn of_type(number: u32) -> Option<NumberType> {
+        let integer = |bytes, is_signed| Some(NumberType::Whole(IntegerType { bytes, is_signed }));
         match number {
             CHAR => Some(NumberType::Text),
-            BYTE | UBYTE => Some(NumberType::Whole(1)),
-            SHORT | USHORT => Some(NumberType::Whole(2)),
-            INT | UINT => Some(NumberType::Whole(4)),
-            INT64 | UINT64 => Some(NumberType::Whole(8)),
+            BYTE | UBYTE => integer(1, number == BYTE),
+            SHORT | USHORT => integer(2, number == SHORT),
+            INT | UINT => integer(4, number == INT),
+            INT64 | UINT64 => integer(8, number == INT64),
             FLOAT => Some(NumberType::Real(Precision::Single)),
             DOUBLE => Some(NumberType::Real(Precision::Double)),
             _ => None,

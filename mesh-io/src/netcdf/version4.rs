@@ -77,7 +77,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
 /// Returns the netCDF type and the byte order of a datatype. Texts and unknown types become `Other`.
 fn number_of(number: hdf5::Datatype) -> (NumberType, ByteOrder) {
     match number {
-        hdf5::Datatype::Whole(bytes, order) => (NumberType::Whole(bytes), order),
+        hdf5::Datatype::Whole(number, order) => (NumberType::Whole(number), order),
         hdf5::Datatype::Real(precision, order) => (NumberType::Real(precision), order),
         hdf5::Datatype::Text(bytes)
         | hdf5::Datatype::VariableText(bytes)

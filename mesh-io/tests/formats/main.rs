@@ -44,6 +44,7 @@ mod stl;
 mod strings;
 mod to_hdf5;
 mod ugrid;
+mod unsigned;
 mod vtk_arrays;
 mod vtu;
 mod words;

@@ -2,7 +2,7 @@
 
 use super::boundaries::Boundaries;
 use super::file::{File, labeled};
-use crate::binary::byte_order::ByteOrder;
+use crate::binary::byte_order::{ByteOrder, IntegerType};
 use crate::binary::number_field::NumberField;
 use crate::content::group_label::GroupLabel;
 use crate::error::ReadError;
@@ -107,7 +107,9 @@ impl<'a> File<'a> {
         let own = self.hdf5.child(section, b"ElementConnectivity").and_then(|own| self.data(own));
         let dataset =
             own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten().ok_or_else(damaged)?;
-        let Datatype::Whole(size, order) = dataset.datatype else { return Err(damaged()) };
+        let Datatype::Whole(IntegerType { bytes: size, .. }, order) = dataset.datatype else {
+            return Err(damaged());
+        };
         let array = self.hdf5.array(&dataset)?;
         let nodes = Nodes { array, size, order };
         let of_all = self.integers(section).and_then(|numbers| numbers.first().copied());

@@ -1,7 +1,7 @@
 //! The element blocks of an Exodus file.
 
 use super::File;
-use crate::binary::byte_order::ByteOrder;
+use crate::binary::byte_order::{ByteOrder, IntegerType};
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::netcdf::{Items, NumberType, Variable};
@@ -96,7 +96,8 @@ impl<'a> File<'a> {
         let start = self.header.start_of(variable);
         let cursor = Cursor::at_byte_offset(self.source, start);
         let found = (&variable.shape[..], variable.number, variable.is_record);
-        let (&[count, corners], NumberType::Whole(width), false) = found else {
+        let (&[count, corners], NumberType::Whole(IntegerType { bytes: width, .. }), false) = found
+        else {
             let problem = format!("connect{number} is not a table of whole numbers");
             return Err(cursor.error(problem, CORRECT));
         };

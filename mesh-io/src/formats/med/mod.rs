@@ -7,7 +7,7 @@
 mod families;
 pub(crate) mod write;
 
-use crate::binary::byte_order::ByteOrder;
+use crate::binary::byte_order::{ByteOrder, IntegerType};
 use crate::binary::number_field::NumberField;
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
@@ -205,10 +205,12 @@ impl<'a> File<'a> {
         let of_families = of_families.unwrap_or_default();
         let own = self.hdf5.child(object, b"NOD");
         let dataset = own.map(|own| self.hdf5.dataset(own)).transpose()?.flatten();
-        let Some((dataset, Datatype::Whole(size, order))) = dataset.map(|own| {
-            let number = own.datatype;
-            (own, number)
-        }) else {
+        let Some((dataset, Datatype::Whole(IntegerType { bytes: size, .. }, order))) =
+            dataset.map(|own| {
+                let number = own.datatype;
+                (own, number)
+            })
+        else {
             let problem = format!("the type {} has no list of nodes", quoted(name));
             return Err(cursor.error(problem, "Save the mesh again"));
         };

@@ -4,6 +4,7 @@ use super::cells::Cells;
 use super::kind::TableKind;
 use super::mesh::Mesh;
 use super::table::Table;
+use crate::binary::byte_order::IntegerType;
 use crate::binary::number_field::NumberField;
 use crate::error::ReadError;
 use crate::netcdf::NumberType;
@@ -119,7 +120,7 @@ impl<'h, 'a> Faces<'h, 'a> {
 /// Visits faces in bulk if their table has 32- or 64-bit integers and a row of three corners per face. Returns the number
 /// of visited faces.
 fn send_records(faces: &Table<'_, '_>, visitor: &mut dyn MeshVisitor) -> usize {
-    let (NumberType::Whole(width @ (4 | 8)), 3, true) =
+    let (NumberType::Whole(IntegerType { bytes: width @ (4 | 8), .. }), 3, true) =
         (faces.variable.number, faces.corners, faces.has_rows)
     else {
         return 0;

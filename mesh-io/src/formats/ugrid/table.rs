@@ -140,14 +140,24 @@ impl<'h, 'a> Table<'h, 'a> {
     fn corner(&self, element: usize, corner: usize) -> Corner {
         let at = self.position(element, corner);
         let own = &self.items.bytes[at..at + self.variable.number.bytes()];
-        let number = match self.variable.number {
-            NumberType::Real(precision) => self.variable.order.real(precision, own),
-            _ => self.variable.order.signed(own) as f64,
+        let order = self.variable.order;
+        let (number, is_negative) = match self.variable.number {
+            NumberType::Real(precision) => {
+                let number = order.real(precision, own);
+                (number, number < 0.0)
+            }
+            NumberType::Whole(kind) => {
+                let number = order.integer_as_real(kind, own);
+                // -1 as an unsigned integer, and netCDF's default fill value of 64 bits, -2.
+                let is_negative = !kind.is_signed && matches!(order.signed(own), -2 | -1);
+                (number, number < 0.0 || is_negative)
+            }
+            NumberType::Text | NumberType::Other(_) => (f64::NAN, false),
         };
         let is_missing = number.is_nan() || Some(number) == self.missing;
         // Some files name no fill value. A negative entry from the fourth corner on, which no node has as its number,
         // then marks a missing corner.
-        if is_missing || (number < 0.0 && corner >= 3) {
+        if is_missing || (is_negative && corner >= 3) {
             return Corner::Missing;
         }
         let is_node = number >= 0.0 && number.fract() == 0.0 && number < 9e15;

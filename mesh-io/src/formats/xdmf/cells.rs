@@ -3,6 +3,7 @@
 use super::File;
 use super::document::Item;
 use super::heavy;
+use crate::binary::byte_order::IntegerType;
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::Cell;
@@ -142,7 +143,7 @@ impl<'a> File<'a> {
             let cursor = self.content(item);
             return Ok(CellNumbers::Text(cursor));
         };
-        let Some((size, order)) = numbers.whole() else {
+        let Some((IntegerType { bytes: size, .. }, order)) = numbers.whole() else {
             let problem = "a Topology with fractions";
             return Err(self.cursor(item).error(problem, "Save the mesh again"));
         };

@@ -1,6 +1,6 @@
 //! The items of an XDMF file: attributes of their tags, and the location of their numbers.
 
-use crate::binary::byte_order::ByteOrder;
+use crate::binary::byte_order::{ByteOrder, IntegerType};
 use crate::disk::source::Source;
 use crate::error::{Location, ReadError};
 use crate::formats::xdmf::companions::Reference;
@@ -198,12 +198,14 @@ fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Resul
                 "big" => ByteOrder::Big,
                 _ => ByteOrder::Little,
             };
+            let is_signed = !is_real.starts_with('u');
+            let integer = |bytes| Datatype::Whole(IntegerType { bytes, is_signed }, order);
             let number = match (is_real.as_str(), precision) {
                 ("" | "float", 4) => Datatype::Real(Precision::Single, order),
                 ("" | "float", 8) => Datatype::Real(Precision::Double, order),
-                ("char" | "uchar", _) => Datatype::Whole(1, order),
-                ("short" | "ushort", _) => Datatype::Whole(2, order),
-                ("int" | "uint", 1 | 2 | 4 | 8) => Datatype::Whole(precision as usize, order),
+                ("char" | "uchar", _) => integer(1),
+                ("short" | "ushort", _) => integer(2),
+                ("int" | "uint", 1 | 2 | 4 | 8) => integer(precision as usize),
                 _ => {
                     let problem = format!("numbers of {precision} bytes are not read");
                     return Err(xml.error(problem, SAVE));

@@ -1,7 +1,7 @@
 //! Numbers outside of the XML: in HDF5 or raw companion files.
 
 use super::document::{Content, Item};
-use crate::binary::byte_order::ByteOrder;
+use crate::binary::byte_order::{ByteOrder, IntegerType};
 use crate::disk::source::{Companion, Source};
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
@@ -214,20 +214,25 @@ impl<'a> HeavyArray<'a> {
                 let each = self.bytes.chunks_exact(precision.bytes());
                 Some(each.map(|number| order.real(precision, number)).collect())
             }
-            _ => Some(self.integers()?.into_iter().map(|number| number as f64).collect()),
+            _ => {
+                let (number, order) = self.whole()?;
+                let each = self.bytes.chunks_exact(number.bytes);
+                Some(each.map(|own| order.integer_as_real(number, own)).collect())
+            }
         }
     }
 
-    /// Returns all numbers as signed integers; `None` for other types than integers.
+    /// Returns all numbers as integers; `None` for other types than integers.
     pub(super) fn integers(&self) -> Option<Vec<i64>> {
-        let (size, order) = self.whole()?;
-        Some(self.bytes.chunks_exact(size).map(|number| order.signed(number)).collect())
+        let (number, order) = self.whole()?;
+        let each = self.bytes.chunks_exact(number.bytes);
+        Some(each.map(|own| order.integer(number, own)).collect())
     }
 
-    /// Returns width in bytes and byte order of integers; `None` for other types.
-    pub(super) fn whole(&self) -> Option<(usize, ByteOrder)> {
+    /// Returns type and byte order of integers; `None` for other types.
+    pub(super) fn whole(&self) -> Option<(IntegerType, ByteOrder)> {
         match self.number {
-            Datatype::Whole(size, order) => Some((size, order)),
+            Datatype::Whole(number, order) => Some((number, order)),
             _ => None,
         }
     }

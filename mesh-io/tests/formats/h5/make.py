@@ -169,6 +169,27 @@ xdmf(
     topology("raw-cells.bin", more=' Precision="4" Endian="Little"', form="Binary"),
 )
 
+# Two triangles with regions and data that are negative if their unsigned integers are read as signed ones.
+with h5py.File("unsigned.h5", "w") as f:
+    f.create_dataset("points", data=np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]))
+    f.create_dataset("cells", data=np.array([[0, 1, 2], [0, 2, 3]], dtype="u8"))
+    f.create_dataset("region", data=np.array([4_000_000_000, 200], dtype="u4"))
+    for kind, first in [("u1", 255), ("i1", -1), ("u8", 1 << 63)]:
+        f.create_dataset(kind, data=np.array([first, 1], dtype=kind))
+with open("unsigned.xdmf", "w") as out:
+    out.write(
+        '<Xdmf Version="3.0"><Domain><Grid Name="mesh"><Topology TopologyType="Triangle" NumberOfElements="2">\n'
+        '<DataItem Dimensions="2 3" NumberType="UInt" Format="HDF">unsigned.h5:/cells</DataItem></Topology>\n'
+        '<Geometry GeometryType="XY"><DataItem Dimensions="4 2" Precision="8" Format="HDF">unsigned.h5:/points</DataItem>'
+        "</Geometry>\n"
+    )
+    for name, kind in [("region", "UInt"), ("u1", "UChar"), ("i1", "Char"), ("u8", "UInt")]:
+        out.write(
+            f'<Attribute Name="{name}" Center="Cell"><DataItem Dimensions="2" NumberType="{kind}" Format="HDF">'
+            f"unsigned.h5:/{name}</DataItem></Attribute>\n"
+        )
+    out.write("</Grid></Domain></Xdmf>\n")
+
 
 def exodus(name, form, zlib):
     with netCDF4.Dataset(name, "w", format=form) as f:

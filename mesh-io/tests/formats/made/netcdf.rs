@@ -75,7 +75,14 @@ impl NetCdf {
         pad(&mut self.out.bytes);
     }
 
-    fn add(&mut self, name: &str, number: i32, dimensions: &[&'static str], content: Vec<u8>) {
+    /// Adds a variable of the type `number`, with its content in the big byte order.
+    pub(crate) fn add(
+        &mut self,
+        name: &str,
+        number: i32,
+        dimensions: &[&'static str],
+        content: Vec<u8>,
+    ) {
         let (name, dimensions) = (name.to_owned(), dimensions.to_vec());
         self.variables.push(Variable { name, number, dimensions, content, attributes: Vec::new() });
     }
