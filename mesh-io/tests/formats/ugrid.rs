@@ -3,9 +3,10 @@
 use super::Folder;
 use super::facts::remarks;
 use super::hdf5;
+use super::made::netcdf::{Attribute, NetCdf};
 use super::made::{Made, all, base};
 use super::others::folder;
-use mesh_io::{Format, MeshFile, Remark};
+use mesh_io::{Format, MeshFile, Precision, Remark};
 use std::fs;
 
 /// Returns the samples with faces.
@@ -225,4 +226,68 @@ fn faces_that_are_none_are_refused_by_number_and_place() {
     refused(&bytes, &[&place, " has a corner after a missing one"]);
     let (bytes, place) = with(5, 0, -7);
     refused(&bytes, &[&place, " has the corner -7, which is no node"]);
+}
+
+/// A row of the table is a face unless the dimension of the faces says otherwise, however few faces the mesh has. Columns
+/// of a file that names no dimension repeat nodes in their rows.
+#[test]
+fn a_mesh_may_have_fewer_faces_than_a_face_has_corners() {
+    let faces: [[i32; 5]; 4] =
+        [[0, 1, 8, -1, -1], [1, 2, 3, 8, -1], [3, 4, 5, 8, -1], [5, 6, 7, 0, 8]];
+    let columns = (0..5).flat_map(|corner| faces.iter().map(move |face| face[corner])).collect();
+    let rows = faces.concat();
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Dimension {
+        Named,
+        OfPositions,
+        OfData,
+        Unnamed,
+    }
+    for (axes, table, is_of_columns) in
+        [(["face", "corner"], rows, false), (["corner", "face"], columns, true)]
+    {
+        for dimension in
+            [Dimension::Named, Dimension::OfPositions, Dimension::OfData, Dimension::Unnamed]
+        {
+            if is_of_columns && dimension == Dimension::Unnamed {
+                continue;
+            }
+            let mut file = NetCdf::new(1);
+            file.ints("mesh", &[], &[0]);
+            file.attribute("cf_role", Attribute::Text("mesh_topology"));
+            file.attribute("topology_dimension", Attribute::Whole(2));
+            file.attribute("node_coordinates", Attribute::Text("x y"));
+            file.attribute("face_node_connectivity", Attribute::Text("faces"));
+            match dimension {
+                Dimension::Named => file.attribute("face_dimension", Attribute::Text("face")),
+                Dimension::OfPositions => {
+                    file.attribute("face_coordinates", Attribute::Text("face_x face_y"));
+                    file.reals("face_x", Precision::Double, &["face"], &[0.0; 4]);
+                    file.reals("face_y", Precision::Double, &["face"], &[0.0; 4]);
+                }
+                Dimension::OfData => {
+                    file.ints("n", &["face"], &[1, 2, 3, 4]);
+                    file.attribute("location", Attribute::Text("face"));
+                }
+                Dimension::Unnamed => {}
+            }
+            file.ints("faces", &axes, &table);
+            file.attribute("_FillValue", Attribute::Whole(-1));
+            for (axis, name) in ["x", "y"].into_iter().enumerate() {
+                let angles = (0..8).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4);
+                let around = angles.map(|angle| [angle.cos(), angle.sin()][axis]);
+                file.reals(
+                    name,
+                    Precision::Double,
+                    &["node"],
+                    &around.chain([0.0]).collect::<Vec<_>>(),
+                );
+            }
+            let folder = Folder::new(&[]);
+            folder.put("a.nc", file.build(&[("node", 9), ("face", 4), ("corner", 5)], 0).bytes);
+            let read = folder.read("a.nc");
+            let counts = (read.triangles().len(), read.quadrilaterals().len());
+            assert_eq!(counts, (1, 2), "{axes:?}, {dimension:?}");
+        }
+    }
 }

@@ -107,8 +107,7 @@ impl<'h, 'a> Mesh<'h, 'a> {
         lengths: [u64; 2],
     ) -> Option<(DataLocation, RecordParts)> {
         let is_numeric = matches!(variable.number, NumberType::Real(_) | NumberType::Whole(_));
-        let is_own = |mesh| self.own.is_some_and(|own| own.name == mesh);
-        if !is_numeric || variable.text("mesh").is_some_and(|mesh| !is_own(mesh)) {
+        if !is_numeric || variable.text("mesh").is_some_and(|mesh| !self.is_own(mesh)) {
             return None;
         }
         let location = match variable.text("location") {

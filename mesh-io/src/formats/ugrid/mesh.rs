@@ -90,6 +90,27 @@ impl<'h, 'a> Mesh<'h, 'a> {
         attribute_of(self.own, attribute)
     }
 
+    /// Returns the number of faces or edges by their positions, or else by data with this `location`. `None` without such
+    /// variables of one dimension.
+    pub(super) fn element_count(&self, kind: TableKind) -> Option<u64> {
+        let (location, _, _, _) = kind.words();
+        let positions = self.named(&format!("{location}_coordinates")).into_iter();
+        let is_own = |variable: &&Variable| {
+            let is_of_mesh = variable.text("mesh").is_none_or(|mesh| self.is_own(mesh));
+            is_of_mesh && variable.text("location") == Some(location.as_bytes())
+        };
+        let mut counted = positions.chain(self.header.variables.iter().filter(is_own));
+        counted.find_map(|variable| match variable.shape[..] {
+            [count] => Some(count),
+            _ => None,
+        })
+    }
+
+    /// Returns whether `name` is the name of the mesh variable.
+    pub(super) fn is_own(&self, name: &[u8]) -> bool {
+        self.own.is_some_and(|own| own.name == name)
+    }
+
     /// Returns whether attributes say that x is longitude and y latitude in degrees, or that coordinates have another unit.
     /// `None` if attributes say neither. Units take precedence over standard names, as longitudes may be in radians.
     pub(super) fn says_degrees(&self) -> Option<bool> {

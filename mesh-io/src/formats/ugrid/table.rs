@@ -58,31 +58,34 @@ impl<'h, 'a> Table<'h, 'a> {
         else {
             return Err(wrong("are not a table of numbers"));
         };
-        // The mesh may name the dimension of its elements. Otherwise the longer dimension counts elements, as the
-        // shorter one counts corners.
+        // The mesh may name the dimension of its elements, and positions or data may have that dimension.
         let dimension = str::from_utf8(mesh.attribute(dimension)).ok();
-        let has_rows = match dimension.and_then(|name| header.dimension(name)) {
-            Some(length) if (length == rows) != (length == columns) => length == rows,
-            _ => rows >= columns,
+        let count = dimension.and_then(|name| header.dimension(name));
+        let count = count.or_else(|| mesh.element_count(what));
+        let is_told = count.filter(|&count| (count == rows) != (count == columns));
+        let has_rows = match is_told {
+            Some(count) => count == rows,
+            None => rows >= columns || columns == 2 || what == TableKind::Faces,
         };
-        let (count, corners) = if has_rows { (rows, columns) } else { (columns, rows) };
-        if corners < least || (corners > 2 && matches!(what, TableKind::Edges)) {
-            return Err(wrong(&format!("have {corners} corners")));
-        }
-        let (count, corners) = (count as usize, corners as usize);
-        let items = header.items(variable)?;
-        let missing = variable.missing();
-        let table = Table {
+        let mut table = Table {
             header,
             kind: what,
             variable,
-            items,
-            count,
-            corners,
+            items: header.items(variable)?,
+            count: if has_rows { rows } else { columns } as usize,
+            corners: if has_rows { columns } else { rows } as usize,
             has_rows,
-            missing,
+            missing: variable.missing(),
             first: 0,
         };
+        // By the conventions, a row is then a face. Some files have columns instead, whose rows repeat nodes.
+        if is_told.is_none() && has_rows && rows < columns && table.repeats_a_node() {
+            (table.count, table.corners, table.has_rows) = (columns as usize, rows as usize, false);
+        }
+        let corners = table.corners as u64;
+        if corners < least || (corners > 2 && matches!(what, TableKind::Edges)) {
+            return Err(wrong(&format!("have {corners} corners")));
+        }
         let first = match variable.whole("start_index") {
             Some(first @ (0 | 1)) => first as u64,
             Some(other) => return Err(wrong(&format!("start at number {other}, not at 0 or 1"))),
@@ -162,6 +165,21 @@ impl<'h, 'a> Table<'h, 'a> {
         }
         let is_node = number >= 0.0 && number.fract() == 0.0 && number < 9e15;
         if is_node { Corner::Node(number as u64) } else { Corner::Other(number) }
+    }
+
+    /// Returns whether some element lists a node twice.
+    fn repeats_a_node(&self) -> bool {
+        (0..self.count).any(|element| {
+            let corner = |corner| match self.corner(element, corner) {
+                Corner::Node(node) => Some(node),
+                Corner::Missing | Corner::Other(_) => None,
+            };
+            let mut nodes: Vec<u64> = (0..self.corners).filter_map(corner).collect();
+            let count = nodes.len();
+            nodes.sort_unstable();
+            nodes.dedup();
+            nodes.len() < count
+        })
     }
 
     /// Guesses the start index of a file without `start_index`: 1 if node numbers range from at least 1 to at least
