@@ -1,7 +1,8 @@
 //! Makes the table of conversions in docs/formats.md from the capabilities of each target.
 
 use super::targets::TARGETS;
-use crate::export::capabilities::{Capabilities, DataSupport, ElementSupport, GroupSupport};
+use crate::export::capabilities::{Capabilities, ElementSupport, GroupSupport};
+use crate::export::data_support::DataSupport;
 use crate::format::Format;
 use crate::registry::FormatEntry;
 use std::fmt::Write;
@@ -92,7 +93,7 @@ fn names(holds: &Capabilities) -> String {
 fn numbers(numbers: DataSupport, owner: &str) -> String {
     match numbers {
         DataSupport::None => "–".into(),
-        DataSupport::All => "all".into(),
+        DataSupport::All | DataSupport::Padded => "all".into(),
         DataSupport::Scalars => format!("one number {owner}"),
         DataSupport::Unnamed => format!("one number {owner}, without names"),
         DataSupport::Only(name) => format!("`{name}`"),

@@ -1,6 +1,7 @@
 //! The table of formats that meshes are converted to.
 
-use crate::export::capabilities::{Capabilities, DataSupport, ElementSupport, GroupSupport};
+use crate::export::capabilities::{Capabilities, ElementSupport, GroupSupport};
+use crate::export::data_support::DataSupport;
 use crate::export::name_rules::NameRules;
 use crate::export::writer_input::WriterInput;
 use crate::format::Format;
@@ -47,8 +48,8 @@ const GMSH: Capabilities = Capabilities {
     names: [true; 3],
     name_rules: NameRules::Quoted,
     allows_negative_numbers: false,
-    point_data: DataSupport::All,
-    cell_data: DataSupport::All,
+    point_data: DataSupport::Padded,
+    cell_data: DataSupport::Padded,
     ..Capabilities::TRIANGLES
 };
 const VTK: Capabilities = Capabilities {

@@ -1,6 +1,7 @@
 //! Capabilities of formats, and the losses of a mesh in a format.
 
-use super::content::{Content, ContentGroup, DataArray};
+use super::content::{Content, ContentGroup};
+use super::data_support::DataSupport;
 use super::group_numbers::{self, GroupNumbers, determines, is_region_zero};
 use super::implied_cells::{ImpliedCells, is_of_all};
 use super::name_rules::NameRules;
@@ -82,19 +83,6 @@ pub(crate) enum GroupSupport {
     Blocks,
     /// A section for the elements of each shape and group.
     Sections,
-}
-
-/// The data arrays that a format can store.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum DataSupport {
-    None,
-    All,
-    /// Arrays with one component.
-    Scalars,
-    /// Arrays with one component, without their names.
-    Unnamed,
-    /// Arrays with the given name and one component.
-    Only(&'static str),
 }
 
 impl GroupSupport {
@@ -406,37 +394,6 @@ impl Capabilities {
                 let names = group_names(named.into_iter());
                 lost.push(format!("names of groups of {of}, which become numbers: {names}"));
             }
-        }
-    }
-}
-
-impl DataSupport {
-    /// Returns whether the format can store a data array.
-    pub(crate) fn supports(self, data: &DataArray) -> bool {
-        match self {
-            DataSupport::None => false,
-            DataSupport::All => true,
-            DataSupport::Scalars | DataSupport::Unnamed => data.components == 1,
-            DataSupport::Only(name) => data.name == name && data.components == 1,
-        }
-    }
-
-    fn losses(self, what: &str, data: &[DataArray], lost: &mut Vec<String>) {
-        let names = |kept: bool| -> Vec<&str> {
-            let of = data.iter().filter(|data| self.supports(data) == kept);
-            let mut names: Vec<&str> = of.map(|data| data.name.as_str()).collect();
-            names.dedup();
-            names
-        };
-        let dropped = names(false);
-        if !dropped.is_empty() {
-            lost.push(format!("{what}: {}", join_first(&dropped)));
-        }
-        let mut kept = names(true);
-        // Names such as `attribute1` are the format's own.
-        kept.retain(|name| !name.starts_with("attribute"));
-        if self == DataSupport::Unnamed && !kept.is_empty() {
-            lost.push(format!("names of {what}: {}", join_first(&kept)));
         }
     }
 }

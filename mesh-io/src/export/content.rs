@@ -145,6 +145,11 @@ impl DataArray {
         self.components
     }
 
+    /// Returns the number of components with which gmsh displays the data: 1, 3 or 9, or any larger number.
+    pub(crate) fn padded_components(&self) -> usize {
+        [1, 3, 9].into_iter().find(|&size| size >= self.components).unwrap_or(self.components)
+    }
+
     /// Returns whether some whole number is so large that `values` may have rounded it: doubles represent every whole number
     /// below 2^53 in size. The number 2^53 itself may stand for its successor.
     pub(crate) fn has_large_numbers(&self) -> bool {

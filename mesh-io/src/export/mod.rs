@@ -12,6 +12,7 @@ pub(crate) mod capabilities;
 pub(crate) mod content;
 pub(crate) mod content_builder;
 pub(crate) mod counters;
+pub(crate) mod data_support;
 pub(crate) mod group_numbers;
 mod implied_cells;
 pub(crate) mod name_rules;

@@ -290,3 +290,40 @@ fn a_lone_group_of_some_elements_is_a_loss() {
     ];
     assert_eq!(losses(&whole, Format::Off), "");
 }
+
+/// gmsh displays data of 1, 3 or 9 components, and reads any number of components.
+#[test]
+fn filled_components_of_gmsh_are_listed() {
+    let vtk = |each: usize| {
+        let numbers =
+            |count: usize| (1..=count * each).map(|n| n.to_string()).collect::<Vec<_>>().join(" ");
+        format!(
+            "# vtk DataFile Version 4.2\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n\
+             0 0 0 1 0 0 0 1 0\nCELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\nCELL_DATA 1\nFIELD FieldData 1\n\
+             c {each} 1 double\n{}\nPOINT_DATA 3\nFIELD FieldData 1\np {each} 3 double\n{}\n",
+            numbers(1),
+            numbers(3)
+        )
+    };
+    for (each, padded) in [(1, 1), (2, 3), (3, 3), (4, 9), (9, 9), (12, 12)] {
+        for format in [Format::Gmsh22, Format::Gmsh41] {
+            let conversion = conversion("a.vtk", vtk(each), format);
+            let expected = match padded == each {
+                true => "",
+                false => {
+                    "numbers of components of data of vertices, which zeros fill up to 3 or 9: p; \
+                     numbers of components of data of elements, which zeros fill up to 3 or 9: c"
+                }
+            };
+            assert_eq!(conversion.losses().join("; "), expected);
+            let content = file("a.msh", conversion.bytes().unwrap()).content().unwrap();
+            assert_eq!(content.unsupported(), [""; 0]);
+            let data = &content.point_data()[0];
+            assert_eq!(data.components(), padded);
+            let second = |k: usize| if k < each { (each + k + 1) as f64 } else { 0.0 };
+            let expected: Vec<f64> = (0..padded).map(second).collect();
+            assert_eq!(data.values()[padded..2 * padded], expected);
+            assert_eq!(content.cell_data()[0].components(), padded);
+        }
+    }
+}

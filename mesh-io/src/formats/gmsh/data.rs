@@ -66,8 +66,7 @@ struct Head<'a> {
     count: u64,
 }
 
-/// Reads the tags of a section. `None` without a name, if a tag is damaged, or if there are not 1 to 9
-/// components.
+/// Reads the tags of a section. `None` without a name, without components, or if a tag is damaged.
 fn head<'a>(cursor: &mut Cursor<'a>) -> Option<Head<'a>> {
     let mut name = None;
     for place in 0..count(cursor)? {
@@ -94,8 +93,7 @@ fn head<'a>(cursor: &mut Cursor<'a>) -> Option<Head<'a>> {
     }
     let [_, components, count] = integers;
     let name = name?;
-    // Scalars, vectors and tensors, with or without padding.
-    (1..=9).contains(&components).then_some(Head { name, time, components, count })
+    (components > 0).then_some(Head { name, time, components, count })
 }
 
 fn count(cursor: &mut Cursor<'_>) -> Option<u64> {

@@ -427,9 +427,7 @@ fn section(
     items: impl Iterator<Item = (u64, usize)>,
     out: &mut Rows,
 ) {
-    // gmsh displays data of 1, 3 or 9 components, so others are padded with zeros.
-    let each = data.components;
-    let padded = [1, 3, 9].into_iter().find(|&size| size >= each).unwrap_or(each);
+    let (each, padded) = (data.components, data.padded_components());
     let of = |place: usize| data.values.get(place * each..(place + 1) * each).unwrap_or_default();
     let is_given = |place: &usize| !of(*place).iter().all(|value| value.is_nan());
     let rows: Vec<(u64, usize)> = items.filter(|(_, place)| is_given(place)).collect();
