@@ -284,6 +284,17 @@ impl Content {
         self.cells.sets.iter().map(|&set| found[set as usize]).collect()
     }
 
+    /// Returns whether the groups of a kind hold the numbers of cell data, which define regions. Cells without a group have no number or
+    /// the number 0.
+    pub(super) fn has_groups_of(&self, kind: &str, data: &DataArray) -> bool {
+        if self.groups.iter().all(|group| group.kind != kind) {
+            return false;
+        }
+        let is_given = |value: &f64| !value.is_nan() && *value != 0.0;
+        let given = data.values.chunks(data.components).map(|own| own.iter().any(is_given));
+        self.column(kind).iter().zip(given).all(|(group, is_given)| group.is_some() || !is_given)
+    }
+
     /// Lists the kinds of groups in a dimension, sorted by descending importance.
     pub(crate) fn group_kinds(&self, dimension: u8) -> Vec<&str> {
         // Kinds that programs number come last, in this order. Users name the groups of all other kinds.

@@ -138,11 +138,9 @@ impl ContentBuilder {
             }
             fits
         });
-        // Data that define regions are stored as groups alone.
-        let groups = &content.groups;
-        let is_group =
-            |data: &DataArray| groups.iter().any(|group| group.kind == common_kind(&data.name));
-        content.cell_data.retain(|data| !is_group(data));
+        let data = std::mem::take(&mut content.cell_data).into_iter();
+        let is_group = |data: &DataArray| content.has_groups_of(&common_kind(&data.name), data);
+        content.cell_data = data.filter(|data| !is_group(data)).collect();
         content
     }
 

@@ -327,3 +327,27 @@ fn filled_components_of_gmsh_are_listed() {
         }
     }
 }
+
+/// A former defect: beside lines, data that are zero in all triangles were left out.
+#[test]
+fn cell_data_of_zeros_are_written_as_xdmf_beside_lines() {
+    let vtk = "# vtk DataFile Version 4.2\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+               0 0 0 1 0 0 1 1 0 0 1 0\nCELLS 3 11\n3 0 1 2\n3 0 2 3\n2 0 1\nCELL_TYPES 3\n5\n5\n3\n\
+               CELL_DATA 3\nFIELD FieldData 3\nmarked 1 3 int\n0 0 1\nn 1 3 int\n1 2 0\nboth 1 3 int\n0 0 0\n";
+    let conversion = conversion("a.vtk", vtk, Format::Xdmf);
+    assert_eq!(conversion.losses(), [""; 0]);
+    let text = conversion.text().unwrap();
+    let (triangles, lines) = text.split_once("</Grid>").unwrap();
+    for array in ["marked", "n", "both"] {
+        let attribute = format!("<Attribute Name=\"{array}\"");
+        assert!(triangles.contains(&attribute) && lines.contains(&attribute), "{array}: {text}");
+    }
+    let content = file("a.xdmf", text).content().unwrap();
+    // Numbers of lines are mesh tags, which are groups. Triangles without a group have the number 0.
+    let data: Vec<_> =
+        content.cell_data().iter().map(|data| (data.name(), &data.values()[..2])).collect();
+    assert_eq!(data, [("n", &[1.0, 2.0][..])]);
+    let line = content.cells().find(|cell| cell.kind == mesh_io::CellKind::Line).unwrap();
+    let tags: Vec<_> = line.groups().map(|group| (group.kind(), group.tag())).collect();
+    assert_eq!(tags, [("marked", Some(1)), ("n", Some(0)), ("both", Some(0))]);
+}

@@ -28,10 +28,11 @@ pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
     }
     let count = input.content.points.len();
     of_points(input).iter().for_each(|array| attribute(array, "Node", count, &mut out));
-    let arrays = of_cells(input, &cells);
-    let arrays =
-        arrays.iter().filter(|array| !has_tags || !array.is_zero() || kinds.len() == cells.len());
-    arrays.for_each(|array| attribute(array, "Cell", cells.len(), &mut out));
+    let arrays = match has_tags && kinds.len() > cells.len() {
+        true => without_empty_groups(input, &cells),
+        false => of_cells(input, &cells),
+    };
+    arrays.iter().for_each(|array| attribute(array, "Cell", cells.len(), &mut out));
     out.push_str("</Grid>\n");
     if has_tags {
         tags(input, "lines", "PolyLine", 2, &lines, &mut out);
@@ -39,6 +40,16 @@ pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
     }
     out.push_str("</Domain>\n</Xdmf>\n");
     out
+}
+
+/// Makes the arrays of some cells, without the numbers of groups to which none of these cells belong.
+fn without_empty_groups(input: &WriterInput<'_>, cells: &[usize]) -> Vec<Array> {
+    let mut arrays = of_cells(input, cells);
+    // The data of the mesh follow the numbers of groups.
+    let data = arrays.split_off(arrays.len() - input.cell_data().count());
+    arrays.retain(|array| !array.is_zero());
+    arrays.extend(data);
+    arrays
 }
 
 /// Appends the points: x and y if z is 0 everywhere, as DOLFINx takes the columns for the dimension of space.
@@ -101,9 +112,9 @@ fn tags(
         "<Grid Name=\"{name}\" GridType=\"Uniform\">\n<xi:include xpointer=\"xpointer(/Xdmf/Domain/Grid/Geometry)\"/>\n"
     );
     uniform(input, kind, corners, cells, out);
-    let mut arrays = of_cells(input, cells);
+    let mut arrays = without_empty_groups(input, cells);
     // Data that only triangles have are NaN at lines, and no whole numbers.
-    arrays.retain(|array| array.is_of_tags() && !array.is_zero());
+    arrays.retain(Array::is_of_tags);
     if arrays.is_empty() {
         arrays.push(Array::whole(name, vec![0; cells.len()]));
     }
