@@ -18,7 +18,7 @@ use crate::visit::items::{CellKind, Element, GroupScope};
 use crate::visit::reader::FormatReader;
 use crate::visit::rows::all_rows;
 use crate::visit::storage::CoordinateStorage;
-use crate::visit::visitor::MeshVisitor;
+use crate::visit::visitor::{MeshVisitor, POLYLINES};
 use crate::visit::z_values::ZValues;
 
 pub(crate) struct Obj;
@@ -145,6 +145,9 @@ impl FormatReader for Obj {
                 }
                 Row::Line(points) => {
                     let nodes = counted(cursor, points.all(), before)?;
+                    if nodes.len() > 2 {
+                        visitor.unsupported(POLYLINES);
+                    }
                     visitor.polyline(cursor, 0, region, &nodes)?;
                 }
                 Row::Texture | Row::Other => {}

@@ -9,6 +9,9 @@ use crate::visit::items::{
 };
 use crate::visit::records::{NodeRecords, TriangleRecords};
 
+/// Loss of polylines in conversions, for users.
+pub(crate) const POLYLINES: &str = "lines of more than two points, which become several lines";
+
 /// Visitor of the items of a mesh file. A reader visits all nodes, then all elements, both in file order.
 pub(crate) trait MeshVisitor {
     /// Returns whether a list may be parsed on several threads. Items then arrive in file order, but the cursor passed

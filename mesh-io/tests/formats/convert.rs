@@ -217,7 +217,8 @@ fn content_that_a_format_cannot_hold_is_listed() {
     let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 0\nv 2 0 0\nv 2 1 0\nvn 0 0 1\nvt 0 0\nusemtl a b\no part\nf 1/1/1 2//1 5\n\
                f 2 3 5\no other\nf 3 4 5\nf 4 1 5\nf 2 6 7 3\nl 1 2 3\np 5\n";
     let of = |to| converted("in.obj", obj, to).1;
-    let left = "normals; texture coordinates";
+    let left =
+        "normals; texture coordinates; lines of more than two points, which become several lines";
     // Materials and objects become physical groups.
     assert_eq!(of(Format::Gmsh22), left);
     let gmsh = converted("in.obj", obj, Format::Gmsh22).0;

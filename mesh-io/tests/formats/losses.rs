@@ -1,5 +1,6 @@
 //! Parts of files that conversions list as losses, as the target format or the conversion does not hold them.
 
+use super::hdf5::made;
 use super::made::netcdf::{Attribute, NetCdf, RECORDS};
 use mesh_io::{Conversion, Format, MeshFile, Precision};
 use std::path::Path;
@@ -350,4 +351,42 @@ fn cell_data_of_zeros_are_written_as_xdmf_beside_lines() {
     let line = content.cells().find(|cell| cell.kind == mesh_io::CellKind::Line).unwrap();
     let tags: Vec<_> = line.groups().map(|group| (group.kind(), group.tag())).collect();
     assert_eq!(tags, [("marked", Some(1)), ("n", Some(0)), ("both", Some(0))]);
+}
+
+/// A former defect: types of boundary conditions were lost without a word.
+#[test]
+fn types_of_boundaries_of_cgns_are_listed() {
+    let bytes = std::fs::read(made("periodic.cgns")).unwrap();
+    assert!(!losses("a.cgns", &bytes[..], Format::Cgns).contains("types"));
+    let (from, to) = (b"FamilySpecified", b"BCWallViscous  ");
+    let at = bytes.windows(from.len()).position(|own| own == from).unwrap();
+    let typed = [&bytes[..at], to, &bytes[at + to.len()..]].concat();
+    for format in [Format::Cgns, Format::Vtu] {
+        let expected = "types of boundaries: S_1 (BCWallViscous)";
+        assert!(losses("a.cgns", &typed[..], format).contains(expected));
+    }
+}
+
+/// A former defect: polylines became lines, and sets of points single points, without a word.
+#[test]
+fn polylines_and_sets_of_points_that_are_divided_are_listed() {
+    let lines = "lines of more than two points, which become several lines";
+    let points = "sets of points, which become single points";
+    for (vertices, ends, expected) in
+        [("1 0", "2 0 1", ""), ("2 0 1", "3 0 1 2", &*format!("{points}; {lines}"))]
+    {
+        let count = |list: &str| list.split(' ').count();
+        let text = format!(
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\n\
+             VERTICES 1 {}\n{vertices}\nLINES 1 {}\n{ends}\nPOLYGONS 1 4\n3 0 1 2\n",
+            count(vertices),
+            count(ends)
+        );
+        assert_eq!(losses("a.vtk", text, Format::Vtu), expected);
+        let corners: Vec<usize> = (1..count(ends)).collect();
+        let corners = corners.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nl {corners}\nf 1 2 3\n");
+        let expected = if count(ends) > 3 { lines } else { "" };
+        assert_eq!(losses("a.obj", text, Format::Obj), expected);
+    }
 }

@@ -3,6 +3,7 @@
 use super::file::{File, labeled};
 use crate::content::decoded::decoded;
 use crate::content::group_label::GroupLabel;
+use crate::export::capabilities::join_first;
 use crate::hdf5::Object;
 use crate::visit::items::GroupScope;
 use crate::visit::visitor::MeshVisitor;
@@ -70,6 +71,7 @@ impl<'a> File<'a> {
     pub(super) fn boundaries(&self, vertices: usize, visitor: &mut dyn MeshVisitor) -> Boundaries {
         let mut boundaries = Boundaries::default();
         let mut tag = 0;
+        self.lost_of_boundaries(visitor);
         for (_, all) in labeled(self.hdf5, self.zone, b"ZoneBC_t") {
             for (name, node) in labeled(self.hdf5, all, b"BC_t") {
                 let names = self.names(name, node);
@@ -102,11 +104,40 @@ impl<'a> File<'a> {
                             }
                         }
                     }
-                    (None, None) => {}
+                    (None, None) => {
+                        let name = decoded(name);
+                        visitor.unsupported(&format!("the elements of the boundary {name}"));
+                    }
                 }
             }
         }
         boundaries
+    }
+
+    /// Reports the parts of boundary conditions that are no groups: types, such as `BCWall`, of boundary conditions and of
+    /// families, and data.
+    fn lost_of_boundaries(&self, visitor: &mut dyn MeshVisitor) {
+        let all = labeled(self.hdf5, self.zone, b"ZoneBC_t").into_iter();
+        let all: Vec<_> = all.flat_map(|(_, all)| labeled(self.hdf5, all, b"BC_t")).collect();
+        let families =
+            labeled(self.hdf5, self.base, b"Family_t").into_iter().filter_map(|(name, family)| {
+                let kinds = labeled(self.hdf5, family, b"FamilyBC_t");
+                kinds.first().map(|&(_, kind)| (name, kind))
+            });
+        // These types say nothing about the solution.
+        const NEUTRAL: [&[u8]; 3] = [b"Null", b"UserDefined", b"FamilySpecified"];
+        let kinds = all.iter().copied().chain(families).filter_map(|(name, node)| {
+            let kind = self.text(node).filter(|kind| !NEUTRAL.contains(&kind.as_slice()))?;
+            Some(format!("{} ({})", decoded(name), decoded(&kind)))
+        });
+        let kinds: Vec<String> = kinds.collect();
+        if !kinds.is_empty() {
+            let kinds: Vec<&str> = kinds.iter().map(String::as_str).collect();
+            visitor.unsupported(&format!("types of boundaries: {}", join_first(&kinds)));
+        }
+        if all.iter().any(|(_, node)| !labeled(self.hdf5, node, b"BCDataSet_t").is_empty()) {
+            visitor.unsupported("data of boundaries");
+        }
     }
 
     /// Returns the kinds and names of a boundary condition's groups: the boundary condition, the names of its family,

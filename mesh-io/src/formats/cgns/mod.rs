@@ -10,6 +10,7 @@ mod periodic;
 mod sections;
 pub(crate) mod write;
 
+use crate::content::decoded::decoded;
 use crate::disk::source::Source;
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
@@ -182,8 +183,12 @@ impl<'a> File<'a> {
             if faces.0.is_empty() {
                 self.sections(&Boundaries::default(), &mut faces)?;
             }
-            if numbers.len() == faces.0.len() {
-                visitor.cell_numbers(numbers, Some(faces.0.clone()));
+            match numbers.len() == faces.0.len() {
+                true => visitor.cell_numbers(numbers, Some(faces.0.clone())),
+                false => visitor.unsupported(&format!(
+                    "{}, whose number of values does not fit the number of faces",
+                    decoded(name)
+                )),
             }
         }
         Ok(())

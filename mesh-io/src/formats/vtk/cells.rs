@@ -8,7 +8,7 @@ use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::items::{CellKind, Element};
 use crate::visit::records::{FieldRule, MIN_PARALLEL_RECORDS, Region, TriangleRecords};
 use crate::visit::rows::volume;
-use crate::visit::visitor::MeshVisitor;
+use crate::visit::visitor::{MeshVisitor, POLYLINES};
 use std::ops::Range;
 
 /// A cell of a VTK or XDMF file.
@@ -46,6 +46,13 @@ impl Cell<'_> {
                 nodes.swap(2, 3);
             }
             return visitor.element(cursor, &Element { id, kind, region, nodes });
+        }
+        match cell_type {
+            types::POLY_LINE if points.len() > 2 => visitor.unsupported(POLYLINES),
+            types::POLY_VERTEX if points.len() > 1 => {
+                visitor.unsupported("sets of points, which become single points");
+            }
+            _ => {}
         }
         match (kind, cell_type) {
             (CellKind::Polygon, _) => visitor.polygon(cursor, id, region, points),
