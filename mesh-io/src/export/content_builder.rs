@@ -91,8 +91,16 @@ pub(crate) fn common_kind(kind: &str) -> String {
 }
 
 impl ContentBuilder {
+    /// Sets the array whose numbers come next. Numbers of an earlier array that did not come are listed as lost.
+    fn announce(&mut self, next: Option<PendingArray>) {
+        if let Some(PendingArray { name, .. }) = std::mem::replace(&mut self.announced, next) {
+            self.unsupported(&format!("{name}, whose numbers cannot be read"));
+        }
+    }
+
     /// Completes the content after the last item of the file.
     fn finish(mut self, region_array: Option<&str>) -> Content {
+        self.announce(None);
         self.add_cell_data();
         if let Some(array) = region_array {
             self.add_regions(array);
@@ -364,8 +372,13 @@ impl MeshVisitor for ContentBuilder {
             _ => decoded(name),
         };
         let components = usize::try_from(components).unwrap_or(usize::MAX);
-        self.announced =
-            Some(PendingArray { name, components, is_real, is_height: false, packing: None });
+        self.announce(Some(PendingArray {
+            name,
+            components,
+            is_real,
+            is_height: false,
+            packing: None,
+        }));
         true
     }
 

@@ -159,7 +159,7 @@ fn data_of_gmsh_that_are_not_read_are_listed() {
     assert_lost("a.msh", data("1\n\"T\"\n", "1 5\n2 5\n3 6\n"), "");
     let lost = "data without a name, or with damaged tags";
     assert_lost("a.msh", data("0\n", "1 5\n2 5\n3 6\n"), lost);
-    assert_lost("a.msh", data("1\n\"T\"\n", "1 5\n2 5\n"), "data that are cut off or damaged");
+    assert_lost("a.msh", data("1\n\"T\"\n", "1 5\n2 5\n"), "T, whose numbers cannot be read");
 }
 
 #[test]
@@ -197,4 +197,46 @@ fn holes_and_region_points_of_a_poly_are_listed() {
     let both = "holes of the .poly; region points of the .poly";
     assert_eq!(lost("1\n1 .1 .1\n1\n1 .2 .2 7 .1\n"), both);
     assert_eq!(lost("9\n1 .1 .1\n"), "holes of the .poly");
+}
+
+/// A former defect: data of vertices that could not be read were lost without a word.
+#[test]
+fn data_whose_numbers_cannot_be_read_are_listed() {
+    let vtk = |data: &str| {
+        format!(
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\n\
+             CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n{data}"
+        )
+    };
+    let lost = "T, whose numbers cannot be read";
+    for (numbers, expected) in [("1 2 3", ""), ("1 none 3", lost)] {
+        let of_points =
+            format!("POINT_DATA 3\nFIELD f 2\nT 1 3 double\n{numbers}\nU 1 3 int\n1 2 3\n");
+        assert_lost("a.vtk", vtk(&of_points), expected);
+        let xdmf = format!(
+            "<Xdmf><Domain><Grid><Topology TopologyType=\"Triangle\"><DataItem NumberType=\"Int\">0 1 2</DataItem>\
+             </Topology><Geometry GeometryType=\"XY\"><DataItem>0 0 1 0 0 1</DataItem></Geometry>\
+             <Attribute Name=\"T\" Center=\"Node\"><DataItem>{numbers}</DataItem></Attribute></Grid></Domain></Xdmf>"
+        );
+        assert_lost("a.xdmf", xdmf, expected);
+    }
+    let exodus = |shape: &[&'static str]| {
+        let mut file = NetCdf::new(1);
+        for (name, numbers) in [("coordx", [0., 1., 0.]), ("coordy", [0., 0., 1.])] {
+            file.reals(name, Precision::Double, &["num_nodes"], &numbers);
+        }
+        file.ints("connect1", &["one", "three"], &[1, 2, 3]);
+        file.attribute("elem_type", Attribute::Text("TRI3"));
+        file.names("name_nod_var", &["one", "len_name"], &["T"]);
+        file.names("name_elem_var", &["one", "len_name"], &["e"]);
+        file.reals("vals_nod_var1", Precision::Double, shape, &[1., 2., 3.]);
+        let (of_block, numbers): (&'static str, &[f64]) =
+            if shape.len() > 1 { ("three", &[1., 2., 3.]) } else { ("one", &[1.]) };
+        file.reals("vals_elem_var1eb1", Precision::Double, &[of_block], numbers);
+        let lengths = [("num_nodes", 3), ("one", 1), ("three", 3), ("len_name", 16)];
+        file.build(&lengths, 0).bytes
+    };
+    assert_lost("a.exo", exodus(&["num_nodes"]), "");
+    let lost = "T, whose numbers cannot be read; e, whose numbers cannot be read";
+    assert_lost("a.exo", exodus(&["one", "num_nodes"]), lost);
 }

@@ -10,7 +10,6 @@ mod periodic;
 mod sections;
 pub(crate) mod write;
 
-use crate::content::decoded::decoded;
 use crate::disk::source::Source;
 use crate::edit::numbers::{EncodedArrays, NumberEncoding, Offsets};
 use crate::error::ReadError;
@@ -183,12 +182,8 @@ impl<'a> File<'a> {
             if faces.0.is_empty() {
                 self.sections(&Boundaries::default(), &mut faces)?;
             }
-            match numbers.len() == faces.0.len() {
-                true => visitor.cell_numbers(numbers, Some(faces.0.clone())),
-                false => visitor.unsupported(&format!(
-                    "{}, whose number of values does not fit the number of faces",
-                    decoded(name)
-                )),
+            if numbers.len() == faces.0.len() {
+                visitor.cell_numbers(numbers, Some(faces.0.clone()));
             }
         }
         Ok(())

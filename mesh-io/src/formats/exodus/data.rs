@@ -52,8 +52,10 @@ impl File<'_> {
                 }
                 (None, None) => None,
             };
-            if let Some((variable, parts)) = found {
-                data.send(name, variable, &parts, None, visitor);
+            match found {
+                Some((variable, parts)) => data.send(name, variable, &parts, None, visitor),
+                // An array without numbers is a loss.
+                None => _ = visitor.point_array(name, 1, true),
             }
         }
     }
@@ -71,7 +73,10 @@ impl File<'_> {
             };
             let parts: Vec<_> =
                 blocks.iter().filter_map(|block| Some((block, of(block)?))).collect();
-            let Some((_, first)) = parts.first() else { continue };
+            let Some((_, first)) = parts.first() else {
+                visitor.cell_array(name, 1, true);
+                continue;
+            };
             let mut read: Vec<Option<Vec<Vec<f64>>>> = parts.iter().map(|_| None).collect();
             for step in 0..self.header.steps(first) {
                 if !visitor.cell_array(name, 1, true) {

@@ -51,7 +51,7 @@ pub(super) fn read(
     match (numbers, nodes) {
         (Some(numbers), Some(_)) => visitor.point_numbers(numbers),
         (Some(numbers), None) => visitor.cell_numbers(numbers.numbers, numbers.nodes),
-        (None, _) => visitor.unsupported("data that are cut off or damaged"),
+        (None, _) => {}
     }
 }
 

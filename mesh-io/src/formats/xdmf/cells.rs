@@ -210,11 +210,8 @@ impl<'a> File<'a> {
             let is_region = regions.iter().any(|own| own.at == item.at);
             let (is_real, components) = (self.is_real(item), item.components(cells));
             if !is_region && visitor.cell_array(item.name.as_bytes(), components, is_real) {
-                match self.numbers(item) {
-                    Ok(numbers) => {
-                        visitor.cell_numbers(numbers.numbers, Some((0..cells).collect()));
-                    }
-                    Err(_) => visitor.unsupported("cell data that are damaged"),
+                if let Ok(numbers) = self.numbers(item) {
+                    visitor.cell_numbers(numbers.numbers, Some((0..cells).collect()));
                 }
             }
         }

@@ -232,11 +232,8 @@ impl File<'_> {
                     if !is_region
                         && visitor.cell_array(array.name.as_bytes(), array.components, is_real) =>
                 {
-                    match self.numbers(array) {
-                        Ok(numbers) => {
-                            visitor.cell_numbers(numbers.numbers, Some(cells.clone().collect()));
-                        }
-                        Err(_) => visitor.unsupported("cell data that are damaged"),
+                    if let Ok(numbers) = self.numbers(array) {
+                        visitor.cell_numbers(numbers.numbers, Some(cells.clone().collect()));
                     }
                 }
                 _ => {}
