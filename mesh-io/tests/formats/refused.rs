@@ -344,3 +344,34 @@ fn other_text_after_a_list_is_no_element() {
     let file = MeshFile::from_bytes(Path::new("a.14"), adcirc.into_bytes()).unwrap();
     assert_eq!(file.triangles().len(), 1);
 }
+
+/// A former defect: the message blamed the `Dimensions`, which are right.
+#[test]
+fn computed_points_and_elements_of_an_xdmf_are_refused_by_name() {
+    let item = |kind: &str, dimensions: &str, numbers: &str| {
+        format!(
+            "<DataItem ItemType=\"{kind}\" Function=\"$0\" Dimensions=\"{dimensions}\">\
+             <DataItem Dimensions=\"{dimensions}\">{numbers}</DataItem></DataItem>"
+        )
+    };
+    for kind in ["HyperSlab", "Function", "Coordinates"] {
+        let plain = "<DataItem ItemType=\"Uniform\" Dimensions=\"3 2\">0 0 1 0 0 1</DataItem>";
+        let triangle = "<DataItem NumberType=\"Int\">0 1 2</DataItem>";
+        for (section, points, triangles) in [
+            ("Geometry", item(kind, "3 2", "0 0 1 0 0 1"), triangle.to_owned()),
+            ("Topology", plain.to_owned(), item(kind, "3", "0 1 2")),
+        ] {
+            let text = format!(
+                "<Xdmf>\n<Domain><Grid>\n<Geometry GeometryType=\"XY\">{points}</Geometry>\n\
+                 <Topology TopologyType=\"Triangle\">{triangles}</Topology>\n</Grid></Domain></Xdmf>"
+            );
+            let line = if section == "Geometry" { 3 } else { 4 };
+            let expected = format!(
+                "a.xdmf:{line}: a {section} of a DataItem of the type {kind} is not read. "
+            );
+            let folder = Folder::new(&[("a.xdmf", &text)]);
+            let error = MeshFile::read(&folder.path("a.xdmf")).unwrap_err().to_string();
+            assert!(error.contains(&expected), "{error}");
+        }
+    }
+}

@@ -221,6 +221,12 @@ fn item(source: &Source, xml: &XmlTag<'_>, tag: &Section, of: &Section) -> Resul
             return Err(xml.error(problem, SAVE));
         }
     };
+    let item_type = small(tag, &["ItemType"]);
+    if of.name != "Attribute" && !matches!(item_type.as_str(), "" | "uniform") {
+        let item_type = quoted(tag.value(&["ItemType"]).unwrap_or_default().as_bytes());
+        let problem = format!("a {} of a DataItem of the type {item_type} is not read", of.name);
+        return Err(xml.error(problem, SAVE));
+    }
     if of.name == "Topology" && optional(of, &["BaseOffset"])?.is_some_and(|base: u64| base != 0) {
         return Err(xml.error("a Topology with another BaseOffset than 0 is not read", SAVE));
     }
