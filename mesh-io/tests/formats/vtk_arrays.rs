@@ -355,3 +355,17 @@ fn data_of_a_legacy_vtk_from_a_damaged_attribute_on_are_listed() {
         assert_eq!(losses, expected);
     }
 }
+
+/// ParaView's filters write NaN where they have no number.
+#[test]
+fn regions_that_are_not_finite_hide_no_later_array() {
+    let data = "CELL_DATA 2\nFIELD f 3\nregion 1 2 double\nnan 2\nMaterialIDs 1 2 int\n7 9\nn 1 2 int\n1 2\n";
+    let folder = Folder::new(&[("a.vtk", &legacy_text(data))]);
+    let file = folder.read("a.vtk");
+    assert_eq!(file.regions(), Some(&[0, 1][..]));
+    let notes: Vec<_> = file.remarks().iter().map(ToString::to_string).collect();
+    assert_eq!(notes, ["the cell data `region` are not finite numbers, so they number no regions"]);
+    let content = file.content().unwrap();
+    let names: Vec<_> = cell_data(&content).iter().map(|data| data.0).collect();
+    assert_eq!(names, ["region", "n"]);
+}

@@ -30,6 +30,9 @@ pub(super) struct RegionArrays {
     pub(super) ghosts: [Vec<u64>; 2],
 }
 
+/// Region numbers of all cells, and a function that maps a number to its label.
+type Regions = (Vec<i64>, fn(i64) -> Option<GroupLabel>);
+
 /// Reads point and cell data to the end of the file. `keyword` is the POINT_DATA or CELL_DATA before the cursor.
 /// Returns the first two region arrays; arrays that the visitor wants go to the visitor. A damaged or unknown attribute
 /// ends the reading with a remark instead of an error, as the mesh itself does not depend on data.
@@ -199,9 +202,23 @@ impl Data<'_> {
             && names_regions(name)
             && self.found.columns.len() < MAX_ARRAYS
             && !(self.binary && kind.eq_ignore_ascii_case(b"bit"));
+        if self.of_cells && of_all && is_region {
+            let start = cursor.clone();
+            if let Some((numbers, label)) = self.region_numbers(cursor, kind, tuples) {
+                let kind = String::from_utf8_lossy(name).into_owned();
+                self.found.columns.push(RegionAttribute { kind, from_dimension: 0, label });
+                self.found.numbers.push(numbers);
+                return Some(());
+            }
+            // Numbers such as NaN are no regions, but must hide no later array.
+            *cursor = start;
+            self.visitor.remark(Remark::Text(format!(
+                "the cell data `{}` are not finite numbers, so they number no regions",
+                quoted(name)
+            )));
+        }
         if self.of_cells
             && of_all
-            && !is_region
             && self.visitor.asks_for_cell_arrays()
             && self.visitor.cell_array(name, components, precision.is_some())
         {
@@ -209,34 +226,32 @@ impl Data<'_> {
             self.visitor.cell_numbers(found.numbers, None);
             return Some(());
         }
-        if !(self.of_cells && of_all && is_region) {
-            return skip_section(cursor, self.binary, kind, count).ok();
-        }
-        let what = String::from_utf8_lossy(name).into_owned();
-        // Region number of each cell: an integer, or the bits of a real number.
-        let (mut names, mut label) = (Vec::new(), number_of_bits as fn(i64) -> Option<GroupLabel>);
+        skip_section(cursor, self.binary, kind, count).ok()
+    }
+
+    /// Reads the region number of each cell, an integer or the bits of a real number. Returns the numbers and a function
+    /// that maps them to labels. `None` if a number is missing or not finite.
+    fn region_numbers(&self, cursor: &mut Cursor<'_>, kind: &[u8], tuples: u64) -> Option<Regions> {
         if self.binary {
             let size = size_at(cursor, kind, tuples)?;
             // Bits identify real numbers. Negative zero differs from zero in its bits but names the same region.
-            let negative_zero = precision.map(|_| i64::MIN >> (64 - 8 * size));
+            let negative_zero = precision_of(kind).map(|_| i64::MIN >> (64 - 8 * size));
             let positive = |bits: i64| if Some(bits) == negative_zero { 0 } else { bits };
             let numbers = take(cursor, tuples, size).ok()?.chunks_exact(size);
-            names.extend(numbers.map(|number| positive(ByteOrder::Big.signed(number))));
-            label = label_of(kind);
-        } else {
-            for _ in 0..tuples {
-                cursor.next_word().then_some(())?;
-                let mut number = cursor.coordinate('r', "a region").ok()?;
-                if self.has_text_colors {
-                    number = color_byte(number);
-                }
-                // Adding zero makes a negative zero positive.
-                names.push((number + 0.0).to_bits().cast_signed());
-            }
+            let numbers = numbers.map(|number| positive(ByteOrder::Big.signed(number))).collect();
+            return Some((numbers, label_of(kind)));
         }
-        self.found.columns.push(RegionAttribute { kind: what, from_dimension: 0, label });
-        self.found.numbers.push(names);
-        Some(())
+        let mut numbers = Vec::new();
+        for _ in 0..tuples {
+            cursor.next_word().then_some(())?;
+            let mut number = cursor.coordinate('r', "a region").ok()?;
+            if self.has_text_colors {
+                number = color_byte(number);
+            }
+            // Adding zero makes a negative zero positive.
+            numbers.push((number + 0.0).to_bits().cast_signed());
+        }
+        Some((numbers, number_of_bits))
     }
 
     /// Reads numbers as [`numbers`](Self::numbers) does. Numbers that cannot be read are skipped, so that they hide no
