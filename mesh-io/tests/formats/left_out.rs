@@ -240,3 +240,28 @@ fn data_whose_numbers_cannot_be_read_are_listed() {
     let lost = "T, whose numbers cannot be read; e, whose numbers cannot be read";
     assert_lost("a.exo", exodus(&["one", "num_nodes"]), lost);
 }
+
+/// Surfaces become lines of element sides. Abaqus also has surfaces of nodes and of faces.
+#[test]
+fn surfaces_of_nodes_and_faces_of_abaqus_are_listed() {
+    let deck = |kind: &str, surface: &str| {
+        format!(
+            "*NODE, NSET=all\n1, 0., 0.\n2, 1., 0.\n3, 0., 1.\n*ELEMENT, TYPE={kind}, ELSET=own\n1, 1, 2, 3\n\
+             *SURFACE, NAME=s#1{surface}\n"
+        )
+    };
+    let lost = "nodes or faces of the surface s#1";
+    for (kind, surface, expected) in [
+        ("CPS3", "\n1, S1", ""),
+        ("CPS3", ", TYPE=ELEMENT\nown, S2", ""),
+        ("CPS3", ", TYPE=NODE\nall, 1.", lost),
+        ("CPS3", "\nown,", lost),
+        ("S3", "\nown, SPOS", lost),
+        ("S3", "\nown, S1", lost),
+        ("S3", "\nown, E1", ""),
+    ] {
+        let file = MeshFile::from_bytes(Path::new("a.inp"), deck(kind, surface).into()).unwrap();
+        let losses = Conversion::new(&file, Format::Abaqus).unwrap().unwrap().losses().join("; ");
+        assert_eq!(losses, expected, "{kind}{surface}");
+    }
+}

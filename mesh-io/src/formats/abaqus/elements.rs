@@ -5,6 +5,7 @@ use super::deck::{ASSEMBLY, Deck};
 use super::lists::List;
 use super::sets::{IdPositions, Key, Sets, WorkBudget};
 use super::{rows, types};
+use crate::content::decoded::decoded;
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
@@ -116,7 +117,7 @@ impl ElementGroups {
         if !has_groups {
             found.within.clear();
         }
-        found.find_sides(source, deck, &sets, all, effort)?;
+        found.find_sides(source, deck, &sets, all, effort, visitor)?;
         Ok(found)
     }
 
@@ -129,12 +130,17 @@ impl ElementGroups {
         sets: &Sets,
         all: &IdPositions,
         effort: &mut WorkBudget,
+        visitor: &mut dyn MeshVisitor,
     ) -> Result<(), ReadError> {
         let of_assembly = deck.of_assembly("SURFACE").map(|block| (block, ASSEMBLY));
         for (block, scope) in deck.of_mesh("SURFACE").chain(of_assembly) {
             let of_elements =
                 block.name("TYPE").is_none_or(|of| of.eq_ignore_ascii_case(b"ELEMENT"));
-            let Some(name) = block.name("NAME").filter(|_| of_elements) else { continue };
+            let Some(name) = block.name("NAME") else { continue };
+            if !of_elements {
+                visitor.unsupported(&lost_surface(name));
+                continue;
+            }
             let surface = self.surfaces.len() as u32;
             self.surfaces.push((name.to_vec(), block.at));
             let mut row = Vec::new();
@@ -152,6 +158,8 @@ impl ElementGroups {
                     };
                     let side = |element| (element, surface, label);
                     self.sides.extend(members.into_iter().map(side));
+                } else if row.iter().any(|item| !item.is_empty()) {
+                    visitor.unsupported(&lost_surface(name));
                 }
                 row.clear();
             }
@@ -199,10 +207,14 @@ impl ElementGroups {
                     && *element == place
                 {
                     let corners = kind.nodes();
-                    if let Some(side) =
-                        types::side(of, label).filter(|&side| side < corners && corners > 2)
-                    {
-                        lines.push((*surface, [nodes[side], nodes[(side + 1) % corners]]));
+                    match types::side(of, label).filter(|&side| side < corners && corners > 2) {
+                        Some(side) => {
+                            lines.push((*surface, [nodes[side], nodes[(side + 1) % corners]]));
+                        }
+                        None => {
+                            let (name, _) = &self.surfaces[*surface as usize];
+                            visitor.unsupported(&lost_surface(name));
+                        }
                     }
                     sides = rest;
                 }
@@ -235,6 +247,12 @@ impl ElementGroups {
         visitor.group_scopes(&[]);
         Ok(())
     }
+}
+
+/// Returns the loss of a surface of nodes, or of faces instead of sides of elements, for users.
+#[cold]
+fn lost_surface(name: &[u8]) -> String {
+    format!("nodes or faces of the surface {}", decoded(name))
 }
 
 /// Visits the groups of the next element, if they differ from the groups of the element before.
