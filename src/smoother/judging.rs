@@ -23,6 +23,7 @@ use crate::topology::predicates::orientation;
 use crate::whole::altitude::{self, Limits};
 use crate::whole::{Improvement, RunEnd};
 
+use super::large_angles::RoundLimits;
 use super::over_all::OverAll;
 use super::prepared::Smoother;
 use super::rounds::Present;
@@ -295,7 +296,7 @@ impl Smoother<'_> {
         ended: &mut RunEnd,
         observe: &mut dyn Observer,
     ) -> Result<bool, MeshError> {
-        let Stored { points, at, problem, curves, rounded, written, .. } = stored;
+        let Stored { points, at, problem, curves, improving, rounded, written, .. } = stored;
         let floor = self.lacking_floor(options, points).await;
         let (was_canceled, sweep) = (ended.stop == Stop::Canceled, ended.history.len() as u32 - 1);
         let now = Progress { phase: Phase::Improving, sweep, f: *rounded };
@@ -316,7 +317,8 @@ impl Smoother<'_> {
             None if was_canceled => return Ok(false),
             None => {
                 let present = Present { problem, curves: curves.as_mut(), positions: at, points };
-                let lessened = self.lessen_large_angles(options, initial, present, goes_on);
+                let limits = RoundLimits { most: initial, improving: improving.as_ref() };
+                let lessened = self.lessen_large_angles(options, limits, present, goes_on);
                 stored.large_angles = lessened.await?;
             }
         }

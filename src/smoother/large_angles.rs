@@ -6,6 +6,7 @@ use crate::measure::{InnerEdge, inner_edges};
 use crate::metric::Metric;
 use crate::options::{Guard, Options};
 use crate::outcome::LargeAngles;
+use crate::whole::Improvement;
 use crate::whole::altitude::{self, Limits};
 use crate::worst::Penalties;
 
@@ -86,16 +87,25 @@ impl Aim for ToAcute {
     }
 }
 
+/// Limits of a result beyond which the rounds at the end of a run by ACUTE are undone.
+pub(super) struct RoundLimits<'i> {
+    /// Largest objective.
+    pub(super) most: f64,
+    /// The improvement of the worst triangles before the rounds, if the options ask for that.
+    pub(super) improving: Option<&'i Improvement>,
+}
+
 impl Smoother<'_> {
     /// Lessens the large angles that a run by ACUTE has left at `points`, its result as stored, which are those of
     /// `positions`. Returns the record of the rounds. `None` if the run has another base metric, if its targets
     /// belong to places or are no concern of the metric, if no sweep is to be made, or if no triangle that can move has a large angle.
     /// `None` too, and the points are unchanged, if the rounds lessen neither the edges that solvers refuse nor the large
-    /// angles, if f would exceed `most`, or if vertices that slide would exceed the guard of the worst triangle.
+    /// angles, if f would exceed its limit, if the worst triangles would lose their improvement, or if vertices that slide would
+    /// exceed the guard of the worst triangle.
     pub(super) async fn lessen_large_angles(
         &self,
         options: &Options,
-        most: f64,
+        RoundLimits { most, improving }: RoundLimits<'_>,
         Present { problem, mut curves, positions, points }: Present<'_>,
         goes_on: impl FnMut() -> bool,
     ) -> Result<Option<LargeAngles>, MeshError> {
@@ -128,6 +138,9 @@ impl Smoother<'_> {
         let at = self.problem.normalized(points, Vec::new()).await;
         let f = objective(options.scheme.base(), problem, &at).await;
         let mut is_kept = now.is_better_than(&before) && f <= most;
+        if let Some(improving) = improving {
+            is_kept &= improving.holds_at(problem, &at).await;
+        }
         // Rounds move vertices along curves without the guard.
         if options.guard == Guard::Worst {
             let lists = [&self.mesh.points[..], &swept, points];

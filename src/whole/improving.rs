@@ -22,6 +22,8 @@ pub(crate) struct Improvement {
     /// Largest badness of a movable triangle before the stage, at positions as they are stored. Infinite until
     /// [`holds_as_stored`](Self::holds_as_stored) evaluates it.
     worst: f64,
+    /// Largest inverse mean ratio of a movable triangle before the stage, which the stage allows.
+    shape: f64,
     /// Objective by the base metric at the start and at the end of the stage.
     pub(crate) f: [f64; 2],
 }
@@ -67,7 +69,7 @@ impl Improvement {
             }
         }
         let vertices = passes.moved();
-        Some(Self { badness, vertices, worst: f64::INFINITY, f: [before, f] })
+        Some(Self { badness, vertices, worst: f64::INFINITY, shape: rules.shape, f: [before, f] })
     }
 
     /// Compares the worst triangle at positions as they are stored, without the stage and with it. If the stage has not made
@@ -86,6 +88,16 @@ impl Improvement {
             (self.vertices, self.f[1]) = (0, self.f[0]);
         }
         holds
+    }
+
+    /// Returns whether the promise of the stage holds at positions to which vertices have gone after the stage: the worst
+    /// triangle is better than before the stage, or as it was if the stage has moved no vertex, and has no higher inverse mean
+    /// ratio.
+    pub(crate) async fn holds_at(&self, problem: &Problem, positions: &[DVec2]) -> bool {
+        let now = worst_movable(problem, self.badness, positions).await;
+        let is_better = now < self.worst || self.vertices == 0 && now == self.worst;
+        let shape = worst_movable(problem, Badness(WorstBy::Imr), positions).await;
+        is_better && shape.sqrt() <= self.shape
     }
 
     /// Returns whether the worst triangle is better than in the mesh before the run.

@@ -1,7 +1,8 @@
 //! Runs by ACUTE, for solvers with unknowns at circumcenters.
 
-use crate::{backends, name, perturbed, run, with_points};
+use crate::{backends, name, perturbed, plate, run, with_points};
 use gpu_smooth::measure::{InnerEdge, Measured};
+use gpu_smooth::options::WorstBy;
 use gpu_smooth::{
     Backend, Guard, Mesh, Metric, Options, Quality, Slide, Smoother, Stopping, Targets, Topology,
     measure::Change, targets::Surface,
@@ -229,4 +230,22 @@ fn rounds_on_large_angles_do_not_cost_the_gain_of_the_sweeps() {
     assert!(after < 0.5 * before, "{before} to {after}");
     let refused = |points| counts(&mesh, points)[..2].iter().sum::<usize>();
     assert!(refused(&outcome.points) <= refused(&mesh.points));
+}
+
+#[test]
+fn rounds_on_large_angles_keep_the_improvement_of_the_worst_triangles() {
+    let mut kept = 0;
+    for seed in 0..12 {
+        let mesh = support::perturb_random(&plate(300), 0.5, seed);
+        let smoother = Smoother::new(&mesh).unwrap();
+        for by in [WorstBy::Imr, WorstBy::MinAngle, WorstBy::Altitude] {
+            let outcome = run(&smoother, &acute().improve_worst(Some(by)), &Backend::Cpu);
+            kept += usize::from(outcome.large_angles.is_some());
+            let told = outcome.improved.unwrap();
+            let [before, after] = told.worst;
+            let is_better = if by == WorstBy::Imr { after < before } else { after > before };
+            assert!(is_better || told.vertices == 0 && after == before, "{seed} {by:?}: {told:?}");
+        }
+    }
+    assert!(kept > 0);
 }
