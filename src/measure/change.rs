@@ -1,6 +1,7 @@
 //! Comparison of two states of a mesh: displacements of vertices, and changes of element sizes.
 
 use crate::error::MeshError;
+use crate::measure::ranks::rank;
 use crate::parallel::{collect, map_parts, map_ranges, ranges};
 use crate::precision::Precision;
 use crate::topology::Topology;
@@ -21,9 +22,9 @@ pub struct Change {
 /// Distribution of a number over vertices. Without vertices, all fields are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distribution {
-    /// Median over the vertices.
+    /// Median over the vertices: the least value that at least half of the values do not exceed.
     pub median: f64,
-    /// 95th percentile over the vertices.
+    /// 95th percentile over the vertices: the least value that at least 95 % of the values do not exceed.
     pub p95: f64,
     /// Largest value of a vertex.
     pub most: f64,
@@ -228,9 +229,14 @@ fn longest_and_area(points: &[[f64; 2]], corner: &[u32; 3]) -> (f64, f64) {
 }
 
 fn spread(mut numbers: Vec<f64>) -> Distribution {
-    let Some(last) = numbers.len().checked_sub(1) else { return Distribution::default() };
-    let mut at = |rank: usize| *numbers.select_nth_unstable_by(rank, f64::total_cmp).1;
-    Distribution { median: at(last / 2), p95: at(last * 19 / 20), most: at(last) }
+    if numbers.is_empty() {
+        return Distribution::default();
+    }
+    let mut at = |share: f64| {
+        let rank = rank(share, numbers.len());
+        *numbers.select_nth_unstable_by(rank, f64::total_cmp).1
+    };
+    Distribution { median: at(0.5), p95: at(0.95), most: at(1.0) }
 }
 
 #[cfg(test)]
@@ -254,6 +260,20 @@ mod tests {
         assert!((change.size.most - 0.75f64.powf(-0.125)).abs() < 1e-15, "{change:?}");
         assert_eq!(change.least_altitude, [1.0, 0.5]);
         assert!(Change::between(&topology, &mesh.points, &after[1..]).is_err());
+    }
+
+    #[test]
+    fn percentiles_are_values_that_enough_others_do_not_exceed() {
+        for (count, p95) in [(1, 1), (2, 2), (19, 19), (20, 19), (21, 20), (40, 38), (41, 39)] {
+            let found = spread((1..=count).rev().map(f64::from).collect());
+            let expected = Distribution {
+                median: f64::from((count + 1) / 2),
+                p95: f64::from(p95),
+                most: f64::from(count),
+            };
+            assert_eq!(found, expected, "{count}");
+        }
+        assert_eq!(spread(Vec::new()), Distribution::default());
     }
 
     #[test]
