@@ -2,17 +2,14 @@
 
 use std::sync::OnceLock;
 
-use crate::error::{BadQuadrilateral, BadTriangle, MeshError};
+use crate::error::MeshError;
 use crate::mesh::{Element, Mesh};
 use crate::parallel::counting_sort::Groups;
-use crate::parallel::pace::now;
-use crate::parallel::{map_parts, map_ranges};
+use crate::topology::checks::{check_indices, check_size, size};
 use crate::topology::corners::Corners;
-use crate::topology::predicates;
 use crate::topology::sides::{BoundaryEdge, boundary_sides};
 use crate::topology::stars::{close, doublet, outer_edge, stars as find_stars};
-use crate::topology::turns;
-use crate::topology::winding::{Majority, NONE, are_positive, neighbors, wind};
+use crate::topology::winding::{Majority, are_positive, neighbors, wind};
 
 /// The elements of a mesh with consistent windings, and its free vertices. Borrows the triangles of a mesh without
 /// quadrilaterals if they already are consistent and counter-clockwise.
@@ -142,122 +139,6 @@ impl<'m> Topology<'m> {
     fn with_corners<'n>(self, corners: Corners<'n>) -> Topology<'n> {
         let Self { free, fixed_on_boundary, boundary, stars, .. } = self;
         Topology { corners, free, fixed_on_boundary, boundary, stars }
-    }
-
-    /// Checks that the mesh can be smoothed: every triangle is counter-clockwise at `points`, every quadrilateral convex and
-    /// counter-clockwise, some vertex is free, and the elements around each free vertex wind around it once.
-    ///
-    /// Other overlaps pass the check, for example two parts of a mesh over one area.
-    ///
-    /// # Errors
-    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex, [`MeshError::Infeasible`] if a
-    /// corner is inverted or flat at `points`, [`MeshError::NothingFree`] if no vertex is free,
-    /// [`MeshError::OverlappingStar`] if elements wind more than once around a free vertex.
-    pub fn check_smoothable(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
-        self.check_count(points)?;
-        let is_feasible = turns::is_feasible(points, &self.corners, &self.free);
-        if is_feasible && self.free.contains(&true) {
-            return Ok(());
-        }
-        if let Some(error) = now(self.infeasible(points)) {
-            return Err(error);
-        }
-        if !self.free.contains(&true) {
-            return Err(MeshError::NothingFree { vertices: points.len() });
-        }
-        match turns::overlapping_star(points, &self.corners, &self.free) {
-            None => Ok(()),
-            Some((vertex, turns)) => Err(MeshError::OverlappingStar { vertex, turns }),
-        }
-    }
-
-    /// Returns the error that lists the corners that are inverted or flat at `points`, by exact predicates. `None` if there is
-    /// no such corner. `points` must have one entry per vertex.
-    pub(crate) async fn infeasible(&self, points: &[[f64; 2]]) -> Option<MeshError> {
-        let bad = predicates::not_positive(points, self.corners()).await;
-        (!bad.is_empty()).then(|| {
-            let (triangles, quadrilaterals) = self.described(points, &bad);
-            MeshError::Infeasible { triangles, quadrilaterals }
-        })
-    }
-
-    /// Describes corners that are inverted or flat, given in ascending order.
-    pub(crate) fn described(
-        &self,
-        points: &[[f64; 2]],
-        bad: &[u32],
-    ) -> (Vec<BadTriangle>, Vec<BadQuadrilateral>) {
-        let (mut triangles, mut quadrilaterals) = (Vec::new(), Vec::new());
-        for &index in bad {
-            let vertices = self.corners()[index as usize];
-            let flat = predicates::orientation(points, &vertices) == 0.0;
-            match self.corners.element(index) {
-                Element::Triangle(triangle) => {
-                    triangles.push(BadTriangle { triangle, vertices, flat });
-                }
-                Element::Quadrilateral(quadrilateral) => {
-                    let all = self.corners.quadrilateral(quadrilateral);
-                    let corner = all.iter().position(|&v| v == vertices[0]).unwrap_or(0);
-                    quadrilaterals.push(BadQuadrilateral {
-                        quadrilateral,
-                        vertices: all,
-                        corner,
-                        flat,
-                    });
-                }
-            }
-        }
-        (triangles, quadrilaterals)
-    }
-
-    /// Returns the triangles that are inverted or flat with the vertices at `points`, by exact predicates, in ascending
-    /// order. Triangles with a coordinate that is not finite count as inverted.
-    ///
-    /// # Errors
-    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
-    pub fn bad_triangles(&self, points: &[[f64; 2]]) -> Result<Vec<BadTriangle>, MeshError> {
-        self.check_count(points)?;
-        let bad = now(predicates::not_positive(points, self.triangles()));
-        Ok(self.described(points, &bad).0)
-    }
-
-    /// Returns the corners of quadrilaterals that are not convex with the vertices at `points`, by exact predicates, in
-    /// ascending order. Corners with a coordinate that is not finite count as concave.
-    ///
-    /// # Errors
-    /// [`MeshError::PointCount`] if `points` does not have one entry per vertex.
-    pub fn bad_quadrilaterals(
-        &self,
-        points: &[[f64; 2]],
-    ) -> Result<Vec<BadQuadrilateral>, MeshError> {
-        self.check_count(points)?;
-        let first = self.triangles().len() as u32;
-        let mut bad = now(predicates::not_positive(points, self.corners.of_quadrilaterals()));
-        bad.iter_mut().for_each(|corner| *corner += first);
-        Ok(self.described(points, &bad).1)
-    }
-
-    /// Checks new points of the vertices as [`Self::new`] checks those of a mesh. `used` lists the vertices that some element
-    /// uses.
-    pub(crate) fn check_points(&self, points: &[[f64; 2]], used: &[u32]) -> Result<(), MeshError> {
-        self.check_count(points)?;
-        check_finite(points)?;
-        check_size(used.len(), |i| size(points[used[i] as usize]))
-    }
-
-    /// Fails with [`MeshError::PointCount`] unless `points` has one entry per vertex.
-    pub(crate) fn check_count(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
-        let (expected, given) = (self.free.len(), points.len());
-        if given == expected { Ok(()) } else { Err(MeshError::PointCount { expected, given }) }
-    }
-
-    /// Returns [`MeshError::NotFinite`] for the first vertex of an element with an infinite coordinate or NaN.
-    pub(crate) fn check_finite(&self, points: &[[f64; 2]]) -> Result<(), MeshError> {
-        let is_finite = |&v: &u32| points[v as usize].iter().all(|x| x.is_finite());
-        match self.corners().as_flattened().iter().find(|v| !is_finite(v)) {
-            Some(&vertex) => Err(MeshError::NotFinite { vertex }),
-            None => Ok(()),
-        }
     }
 
     /// Returns the triangles in the order of the mesh, with consistent windings: counter-clockwise unless inverted.
@@ -404,97 +285,10 @@ impl<'m> Topology<'m> {
     }
 }
 
-/// Upper limit of the number of vertices. One-rings mark vertices by the highest bit of their numbers.
-const MOST_VERTICES: usize = 1 << 31;
-
-/// Checks that the mesh has elements, that indices fit 32 bits and are valid, that coordinates are finite, and that no
-/// element repeats a vertex.
-fn check_indices(mesh: &Mesh) -> Result<(), MeshError> {
-    let Mesh { points, triangles, quadrilaterals, fixed } = mesh;
-    if triangles.is_empty() && quadrilaterals.is_empty() {
-        return Err(MeshError::Empty);
-    }
-    let vertices = points.len();
-    let corners = triangles.len() + 4 * quadrilaterals.len();
-    if vertices >= MOST_VERTICES || corners >= NONE as usize / 3 {
-        return Err(MeshError::TooLarge { vertices, triangles: mesh.size().triangles });
-    }
-    check_finite(points)?;
-    check_elements(vertices, triangles, Element::Triangle)?;
-    check_elements(vertices, quadrilaterals, Element::Quadrilateral)?;
-    match fixed.iter().find(|&&v| v as usize >= vertices) {
-        Some(&vertex) => Err(MeshError::IndexOutOfRange { element: None, vertex, vertices }),
-        None => Ok(()),
-    }
-}
-
-/// Checks that the vertices of elements exist, and that no element repeats one.
-fn check_elements<const N: usize>(
-    vertices: usize,
-    elements: &[[u32; N]],
-    element: impl Fn(usize) -> Element,
-) -> Result<(), MeshError> {
-    let count = vertices as u32;
-    let is_bad = |corners: &[u32; N]| {
-        let mut bad = false;
-        for i in 0..N {
-            bad |= corners[i] >= count;
-            for k in 0..i {
-                bad |= corners[i] == corners[k];
-            }
-        }
-        bad
-    };
-    let Some(index) = first(elements, is_bad) else { return Ok(()) };
-    let (corners, element) = (&elements[index], element(index));
-    if let Some(&vertex) = corners.iter().find(|&&v| v >= count) {
-        return Err(MeshError::IndexOutOfRange { element: Some(element), vertex, vertices });
-    }
-    let is_repeated = |&i: &usize| corners[i + 1..].contains(&corners[i]);
-    match (0..N).find(is_repeated) {
-        Some(i) => Err(MeshError::RepeatedVertex { element, vertex: corners[i] }),
-        None => Ok(()),
-    }
-}
-
-/// Checks that all coordinates are finite.
-fn check_finite(points: &[[f64; 2]]) -> Result<(), MeshError> {
-    let is_infinite = |p: &[f64; 2]| !(p[0].is_finite() & p[1].is_finite());
-    match first(points, is_infinite) {
-        None => Ok(()),
-        Some(vertex) => Err(MeshError::NotFinite { vertex: vertex as u32 }),
-    }
-}
-
-/// Returns the index of the first item for which `is_bad` holds.
-fn first<T: Sync>(items: &[T], is_bad: impl Fn(&T) -> bool + Sync) -> Option<usize> {
-    const CHUNK: usize = 1 << 14;
-    // Every item of a chunk is tested, as a loop without branches is faster than a loop that may end early.
-    let any = |_, chunk: &[T]| chunk.iter().fold(false, |any, item| any | is_bad(item));
-    let chunk = map_parts(items.chunks(CHUNK), any).into_iter().position(|any| any)?;
-    items.iter().skip(chunk * CHUNK).position(is_bad).map(|i| chunk * CHUNK + i)
-}
-
-/// Returns the larger coordinate of a point, in absolute value.
-fn size(point: [f64; 2]) -> f64 {
-    point[0].abs().max(point[1].abs())
-}
-
-/// Checks that the largest coordinate of a vertex that some element uses is from 1e-100 to 1e100 in absolute value.
-/// Unused vertices may be anywhere. `size` returns the larger coordinate of each of `count` vertices, 0 for an unused
-/// vertex.
-fn check_size(count: usize, size: impl Fn(usize) -> f64 + Sync) -> Result<(), MeshError> {
-    let sizes = map_ranges(count, 1 << 14, |range| range.map(&size).fold(0.0, f64::max));
-    let size = sizes.into_iter().fold(0.0, f64::max);
-    match size {
-        1e-100..=1e100 => Ok(()),
-        _ => Err(MeshError::OutOfRange { size }),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::BadTriangle;
 
     /// A square with its center. All triangles are counter-clockwise except the third.
     fn fan() -> Mesh {

@@ -3,11 +3,13 @@
 
 mod boundary;
 mod certify;
+mod checks;
 mod clamp;
 mod connectivity;
 mod corners;
 mod crossings;
 mod enclosed_area;
+mod feasibility;
 mod hanging;
 mod nesting;
 pub(crate) mod predicates;
