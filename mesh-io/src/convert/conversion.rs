@@ -142,8 +142,7 @@ impl Conversion {
             _ => Vec::new(),
         };
         let lost = target.capabilities.losses(&content, &coded);
-        let omissions =
-            target.capabilities.lost_names_of_empty_groups(&content).into_iter().collect();
+        let omissions = target.capabilities.omissions(&content);
         let mut renamed = names::fit(&target.capabilities, &mut content);
         renamed.extend(target.capabilities.renumbered_zero(&content));
         renamed.extend(names::regions(&content, file.format(), to));
@@ -200,8 +199,8 @@ impl Conversion {
         &self.renamings
     }
 
-    /// Lists what the format does not store, although no vertex, element or data array depends on it, one line each: names of
-    /// groups without elements.
+    /// Lists what the format does not store, although no vertex, element or number depends on it, one line each: names of
+    /// groups without elements, and the numbers of components of data that zeros fill up.
     pub fn omissions(&self) -> &[String] {
         &self.omissions
     }

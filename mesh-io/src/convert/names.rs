@@ -1,12 +1,13 @@
 //! Respelling of the names of groups and data for a format. Conversions change names nowhere else.
 
 use crate::content::group_label::GroupLabel;
-use crate::export::capabilities::{Capabilities, GroupSupport, join_first};
+use crate::export::capabilities::{Capabilities, GroupSupport};
 use crate::export::content::{Content, ContentGroup};
 use crate::export::group_numbers::GroupNumbers;
 use crate::export::name_rules::{NameRules, distinct};
 use crate::format::Format;
 use crate::formats::{cgns, ugrid, vtk};
+use crate::text::token::join_first;
 use std::collections::HashMap;
 
 /// Respells the names that a format stores but cannot spell, and names sets of vertices. Distinct names stay distinct.

@@ -8,7 +8,7 @@ use super::name_rules::NameRules;
 use super::sides;
 use crate::content::group_label::GroupLabel;
 use crate::precision::Precision;
-use crate::text::token::on_one_line;
+use crate::text::token::{join_first, on_one_line};
 use crate::visit::items::{CellKind, PeriodicNodes};
 
 /// Loss of periodic pairs, for users.
@@ -234,15 +234,19 @@ impl Capabilities {
         lost
     }
 
-    /// Returns a line with the names of groups without elements, if the format does not store these names.
-    pub(crate) fn lost_names_of_empty_groups(&self, content: &Content) -> Option<String> {
+    /// Lists what the format does not store, although no vertex, element or number depends on it: names of groups without
+    /// elements, and the numbers of components of data that zeros fill up.
+    pub(crate) fn omissions(&self, content: &Content) -> Vec<String> {
         let is_lost = !self.names_empty_groups && !content.empty_groups.is_empty();
-        is_lost.then(|| {
-            format!(
-                "names of groups without elements: {}",
-                group_names(content.empty_groups.iter())
-            )
-        })
+        let names = || {
+            let names = group_names(content.empty_groups.iter());
+            format!("names of groups without elements: {names}")
+        };
+        let filled = [
+            self.point_data.filled("data of vertices", &content.point_data),
+            self.cell_data.filled("data of elements", &content.cell_data),
+        ];
+        is_lost.then(names).into_iter().chain(filled.into_iter().flatten()).collect()
     }
 
     /// Returns a line on regions with the tag 0, if the format cannot give this tag to a group.
@@ -410,14 +414,4 @@ fn group_names<'g>(groups: impl Iterator<Item = &'g ContentGroup>) -> String {
         })
         .collect();
     join_first(&names.iter().map(String::as_str).collect::<Vec<_>>())
-}
-
-/// Joins the first 8 names by commas, and counts the rest.
-pub(crate) fn join_first(names: &[&str]) -> String {
-    const MAX_NAMES: usize = 8;
-    let told = names[..names.len().min(MAX_NAMES)].join(", ");
-    match names.len().saturating_sub(MAX_NAMES) {
-        0 => told,
-        more => format!("{told} and {more} more"),
-    }
 }

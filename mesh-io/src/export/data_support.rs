@@ -1,7 +1,7 @@
 //! The data arrays that a format can store.
 
-use super::capabilities::join_first;
 use super::content::DataArray;
+use crate::text::token::join_first;
 
 /// The data arrays that a format can store.
 #[derive(Clone, Copy, PartialEq)]
@@ -47,14 +47,16 @@ impl DataSupport {
         if self == DataSupport::Unnamed && !kept.is_empty() {
             lost.push(format!("names of {what}: {}", join_first(&kept)));
         }
+    }
+
+    /// Returns a line on arrays whose tuples the format fills up with zeros. `what` names the data.
+    pub(crate) fn filled(self, what: &str, data: &[DataArray]) -> Option<String> {
         let is_padded = |data: &&DataArray| data.padded_components() != data.components;
         let padded: Vec<&str> =
             data.iter().filter(is_padded).map(|data| data.name.as_str()).collect();
-        if self == DataSupport::Padded && !padded.is_empty() {
+        (self == DataSupport::Padded && !padded.is_empty()).then(|| {
             let names = join_first(&padded);
-            lost.push(format!(
-                "numbers of components of {what}, which zeros fill up to 3 or 9: {names}"
-            ));
-        }
+            format!("numbers of components of {what}, which zeros fill up to 3 or 9: {names}")
+        })
     }
 }

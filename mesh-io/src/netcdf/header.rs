@@ -39,7 +39,7 @@ pub(super) enum Content {
     /// Classic formats: the offset of record 0, and the distance from each record to the next in bytes.
     Bytes { begin: usize, stride: usize },
     /// NetCDF-4: a dataset of the HDF5 file.
-    Dataset(Dataset),
+    Dataset(Box<Dataset>),
 }
 
 impl Variable {

@@ -58,7 +58,7 @@ pub(super) fn read(source: &Source) -> Result<Header<'_>, ReadError> {
         });
         let attributes = attributes.collect();
         let name = name.to_vec();
-        let content = Content::Dataset(dataset);
+        let content = Content::Dataset(Box::new(dataset));
         variables.push(Variable {
             name,
             shape,

@@ -20,6 +20,16 @@ pub(crate) fn on_one_line(text: &[u8], most: usize) -> String {
     shown
 }
 
+/// Joins the first 8 names by commas, and counts the rest.
+pub(crate) fn join_first(names: &[&str]) -> String {
+    const MAX_NAMES: usize = 8;
+    let told = names[..names.len().min(MAX_NAMES)].join(", ");
+    match names.len().saturating_sub(MAX_NAMES) {
+        0 => told,
+        more => format!("{told} and {more} more"),
+    }
+}
+
 /// Returns the offset of the next number, on this line or a later line. Blanks, comments, commas, semicolons and
 /// backslashes are skipped: some formats have separators or line breaks between x and y.
 #[inline]

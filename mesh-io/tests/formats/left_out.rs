@@ -265,3 +265,21 @@ fn surfaces_of_nodes_and_faces_of_abaqus_are_listed() {
         assert_eq!(losses, expected, "{kind}{surface}");
     }
 }
+
+/// Sides 1 and 2 of a shell are its faces, which no other format has.
+#[test]
+fn faces_of_shells_in_side_sets_of_exodus_are_listed() {
+    let exodus = |side: i32| {
+        let mut file = NetCdf::new(1);
+        for (name, numbers) in [("coordx", [0., 1., 0.]), ("coordy", [0., 0., 1.])] {
+            file.reals(name, Precision::Double, &["num_nodes"], &numbers);
+        }
+        file.ints("connect1", &["one", "three"], &[1, 2, 3]);
+        file.attribute("elem_type", Attribute::Text("SHELL3"));
+        file.ints("elem_ss1", &["one"], &[1]);
+        file.ints("side_ss1", &["one"], &[side]);
+        file.build(&[("num_nodes", 3), ("one", 1), ("three", 3)], 0).bytes
+    };
+    assert_lost("a.exo", exodus(3), "");
+    assert_lost("a.exo", exodus(2), "sides of side sets that are no edges");
+}

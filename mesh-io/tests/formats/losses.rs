@@ -316,7 +316,8 @@ fn filled_components_of_gmsh_are_listed() {
                      numbers of components of data of elements, which zeros fill up to 3 or 9: c"
                 }
             };
-            assert_eq!(conversion.losses().join("; "), expected);
+            assert_eq!(conversion.losses(), [""; 0]);
+            assert_eq!(conversion.omissions().join("; "), expected);
             let content = file("a.msh", conversion.bytes().unwrap()).content().unwrap();
             assert_eq!(content.unsupported(), [""; 0]);
             let data = &content.point_data()[0];
@@ -389,4 +390,48 @@ fn polylines_and_sets_of_points_that_are_divided_are_listed() {
         let expected = if count(ends) > 3 { lines } else { "" };
         assert_eq!(losses("a.obj", text, Format::Obj), expected);
     }
+}
+
+/// A former defect: whole numbers that some lines lack were left out at all lines.
+#[test]
+fn numbers_of_some_lines_are_written_as_xdmf() {
+    let piece = |data: &str| {
+        format!(
+            "<Piece NumberOfPoints=\"3\" NumberOfCells=\"2\"><CellData>{data}</CellData><Points>\n\
+             <DataArray type=\"Float64\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0</DataArray></Points><Cells>\n\
+             <DataArray type=\"Int32\" Name=\"connectivity\">0 1 2 0 1</DataArray>\n\
+             <DataArray type=\"Int32\" Name=\"offsets\">3 5</DataArray>\n\
+             <DataArray type=\"UInt8\" Name=\"types\">5 3</DataArray></Cells></Piece>\n"
+        )
+    };
+    let array = "<DataArray type=\"Int32\" Name=\"n\">4 5</DataArray>";
+    let vtu = format!(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>\n{}{}</UnstructuredGrid></VTKFile>",
+        piece(array),
+        piece("")
+    );
+    let conversion = conversion("a.vtu", vtu, Format::Xdmf);
+    assert_eq!(conversion.losses(), [""; 0]);
+    let content = file("a.xdmf", conversion.bytes().unwrap()).content().unwrap();
+    let [n] = content.cell_data() else { panic!("{} arrays", content.cell_data().len()) };
+    let lines =
+        content.cells().zip(n.values()).filter(|(cell, _)| cell.kind == mesh_io::CellKind::Line);
+    let given: Vec<f64> = lines.map(|(_, value)| *value).filter(|value| !value.is_nan()).collect();
+    assert_eq!(given, [5.0]);
+}
+
+/// A former defect: numbers of nodes were lost without a word.
+#[test]
+fn numbers_of_nodes_of_med_are_listed() {
+    let bytes = std::fs::read(made("gmsh.med")).unwrap();
+    assert_eq!(losses("a.med", &bytes[..], Format::Med), "");
+    // NUM has the numbers of the 30 nodes. There are more elements.
+    let numbers: Vec<u8> = (1..=30_i64).flat_map(i64::to_le_bytes).collect();
+    let next = 31_i64.to_le_bytes();
+    let is_list = |at: &usize| {
+        bytes[*at..].starts_with(&numbers) && !bytes[at + numbers.len()..].starts_with(&next)
+    };
+    let at = (0..bytes.len()).find(is_list).unwrap();
+    let changed = [&bytes[..at], &77_i64.to_le_bytes(), &bytes[at + 8..]].concat();
+    assert_eq!(losses("a.med", changed, Format::Med), "numbers of nodes (NUM)");
 }

@@ -1,6 +1,7 @@
 //! Arrays of data in VTK's two formats: their types, lengths and names.
 
 use super::Folder;
+use super::facts::remarks;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use mesh_io::{Content, Conversion, Format};
@@ -349,10 +350,39 @@ fn data_of_a_legacy_vtk_from_a_damaged_attribute_on_are_listed() {
         let expected =
             format!("data from the attribute `{keyword}` on, which is damaged or not known");
         let read = folder.read("a.vtk");
-        let notes: Vec<_> = read.remarks().iter().map(ToString::to_string).collect();
-        assert_eq!(notes, [format!("the file has {expected}: they are not read")]);
+        assert_eq!(remarks(&read), [format!("the file has {expected}: they are not read")]);
         let (_, losses) = converted("a.vtk", &text, Format::Vtu);
         assert_eq!(losses, expected);
+    }
+}
+
+/// Note on regions that cannot be read.
+const UNREAD: &str =
+    "the cell data `region` number no regions, as not all are finite numbers that can be read";
+
+/// Vertices between regions stay, so a reader must not drop regions without a word.
+#[test]
+fn regions_that_cannot_be_read_are_a_note() {
+    for (numbers, notes) in [("1 2", &[][..]), ("1 none", &[UNREAD])] {
+        let array = format!("<DataArray type=\"Int32\" Name=\"region\">{numbers}</DataArray>");
+        let xdmf = format!(
+            "<Xdmf><Domain><Grid><Topology TopologyType=\"Triangle\"><DataItem NumberType=\"Int\">0 1 2 0 2 3\
+             </DataItem></Topology><Geometry GeometryType=\"XY\"><DataItem>0 0 1 0 1 1 0 1</DataItem></Geometry>\
+             <Attribute Name=\"region\" Center=\"Cell\"><DataItem NumberType=\"Int\">{numbers}</DataItem></Attribute>\
+             </Grid></Domain></Xdmf>"
+        );
+        let vtu = vtu(&format!("<CellData>{array}</CellData>"));
+        let (head, piece) = vtu.split_once("<Piece").unwrap();
+        let (piece, tail) = piece.split_once("</Piece>").unwrap();
+        let first = piece.replace(numbers, "1 2");
+        let pieces = format!("{head}<Piece{first}</Piece><Piece{piece}</Piece>{tail}");
+        let folder = Folder::new(&[("a.vtu", &vtu), ("a.xdmf", &xdmf), ("pieces.vtu", &pieces)]);
+        for name in ["a.vtu", "a.xdmf", "pieces.vtu"] {
+            let file = folder.read(name);
+            assert_eq!(remarks(&file), notes, "{name}");
+            let has_regions = notes.is_empty() || name == "pieces.vtu";
+            assert_eq!(file.regions().is_some(), has_regions, "{name}");
+        }
     }
 }
 
@@ -363,8 +393,7 @@ fn regions_that_are_not_finite_hide_no_later_array() {
     let folder = Folder::new(&[("a.vtk", &legacy_text(data))]);
     let file = folder.read("a.vtk");
     assert_eq!(file.regions(), Some(&[0, 1][..]));
-    let notes: Vec<_> = file.remarks().iter().map(ToString::to_string).collect();
-    assert_eq!(notes, ["the cell data `region` are not finite numbers, so they number no regions"]);
+    assert_eq!(remarks(&file), [UNREAD]);
     let content = file.content().unwrap();
     let names: Vec<_> = cell_data(&content).iter().map(|data| data.0).collect();
     assert_eq!(names, ["region", "n"]);

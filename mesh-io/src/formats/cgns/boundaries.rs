@@ -3,8 +3,8 @@
 use super::file::{File, labeled};
 use crate::content::decoded::decoded;
 use crate::content::group_label::GroupLabel;
-use crate::export::capabilities::join_first;
 use crate::hdf5::Object;
+use crate::text::token::join_first;
 use crate::visit::items::GroupScope;
 use crate::visit::visitor::MeshVisitor;
 use std::cell::RefCell;

@@ -39,12 +39,14 @@ impl File<'_> {
                     let problem = format!("side set {number} has side {side} of element {element}");
                     return Err(cursor.error(problem, "There is no such side: correct the set"));
                 };
-                if let Some([a, b]) = ends {
-                    let (kind, nodes) = (CellKind::Line, [a, b, 0, 0]);
-                    // Sides have no number of their own.
-                    let line = Element { id: 0, kind, region: [NO_BLOCK, 0], nodes };
-                    visitor.element(&cursor, &line)?;
-                }
+                let Some([a, b]) = ends else {
+                    visitor.unsupported("sides of side sets that are no edges");
+                    continue;
+                };
+                let (kind, nodes) = (CellKind::Line, [a, b, 0, 0]);
+                // Sides have no number of their own.
+                let line = Element { id: 0, kind, region: [NO_BLOCK, 0], nodes };
+                visitor.element(&cursor, &line)?;
             }
         }
         visitor.group_scopes(&[]);

@@ -129,6 +129,18 @@ impl<'a> File<'a> {
             self.elements(name, object, &families, visitor)?;
         }
         visitor.group_scopes(&[]);
+        if visitor.asks_for_data() {
+            let numbers = self.hdf5.child(self.step, b"NOE/NUM");
+            let numbers = numbers.and_then(|own| self.hdf5.integers(own)).unwrap_or_default();
+            if !numbers.iter().copied().eq(1..=numbers.len() as i64) {
+                visitor.unsupported("numbers of nodes (NUM)");
+            }
+            for (name, what) in [(&b"EQS"[..], "equivalences (EQS)"), (b"JNT", "joints (JNT)")] {
+                if self.hdf5.child(self.mesh, name).is_some() {
+                    visitor.unsupported(what);
+                }
+            }
+        }
         if self.hdf5.find(b"CHA").is_some() {
             let text = "its fields (CHA) are kept as they are, and do not fit nodes that move";
             visitor.remark(Remark::Text(text.into()));

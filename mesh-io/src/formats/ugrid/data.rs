@@ -6,9 +6,9 @@ use super::mesh::Mesh;
 use super::table::Table;
 use crate::content::decoded::decoded;
 use crate::content::remark::Remark;
-use crate::export::capabilities::join_first;
 use crate::formats::netcdf_points::{PointData, RecordParts};
 use crate::netcdf::{NumberType, Variable};
+use crate::text::token::join_first;
 use crate::visit::visitor::MeshVisitor;
 
 /// Start of the names of the variables of edges in older nets of Delft3D FM.

@@ -1,5 +1,7 @@
 //! Arrays of cell data that number the regions of a mesh, in VTK's formats and in XDMF.
 
+use crate::content::remark::Remark;
+use crate::text::token::quoted;
 use crate::visit::records::Region;
 
 /// Limit on the region arrays of a file. Further ones are read as plain cell data.
@@ -31,6 +33,14 @@ const NAMES: [&[u8]; 18] = [
 /// Returns whether cell data of this name, in any case, number regions.
 pub(crate) fn names_regions(name: &[u8]) -> bool {
     NAMES.contains(&name.to_ascii_lowercase().as_slice())
+}
+
+/// Makes the remark that an array with a usual name of regions cannot be read.
+pub(crate) fn unread_regions(name: &[u8]) -> Remark {
+    Remark::Text(format!(
+        "the cell data `{}` number no regions, as not all are finite numbers that can be read",
+        quoted(name)
+    ))
 }
 
 /// Region numbers of all cells of a list, array by array. A cell beyond the end of an array has the number 0.

@@ -107,6 +107,11 @@ impl Array {
         matches!(&self.numbers, ArrayValues::Whole(numbers) if numbers.iter().all(|&number| number == 0))
     }
 
+    /// Returns whether all numbers are missing, as those of lines in data of triangles.
+    pub(crate) fn is_missing(&self) -> bool {
+        matches!(&self.numbers, ArrayValues::Real(numbers) if numbers.iter().all(|x| x.is_nan()))
+    }
+
     pub(crate) fn whole(name: &str, numbers: Vec<i64>) -> Array {
         Array { name: name.to_owned(), components: 1, numbers: ArrayValues::Whole(numbers) }
     }

@@ -7,7 +7,7 @@ use crate::binary::byte_order::IntegerType;
 use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::cells::Cell;
-use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
+use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions, unread_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::text::token::quoted;
@@ -86,12 +86,15 @@ impl<'a> File<'a> {
         let (mut of_regions, mut regions): (Vec<&Item>, Vec<Vec<i64>>) = (Vec::new(), Vec::new());
         for own in self.attributes("cell").filter(is_region) {
             let known = of_regions.iter().any(|other| other.name == own.name);
-            if regions.len() < MAX_ARRAYS
-                && !known
-                && let Ok(numbers) = self.integers(own)
-            {
-                of_regions.push(own);
-                regions.push(numbers);
+            if regions.len() == MAX_ARRAYS || known {
+                continue;
+            }
+            match self.integers(own) {
+                Ok(numbers) => {
+                    of_regions.push(own);
+                    regions.push(numbers);
+                }
+                Err(_) => visitor.remark(unread_regions(own.name.as_bytes())),
             }
         }
         let mut attributes: Vec<_> = of_regions
@@ -209,10 +212,11 @@ impl<'a> File<'a> {
         for item in self.attributes("cell") {
             let is_region = regions.iter().any(|own| own.at == item.at);
             let (is_real, components) = (self.is_real(item), item.components(cells));
-            if !is_region && visitor.cell_array(item.name.as_bytes(), components, is_real) {
-                if let Ok(numbers) = self.numbers(item) {
-                    visitor.cell_numbers(numbers.numbers, Some((0..cells).collect()));
-                }
+            if !is_region
+                && visitor.cell_array(item.name.as_bytes(), components, is_real)
+                && let Ok(numbers) = self.numbers(item)
+            {
+                visitor.cell_numbers(numbers.numbers, Some((0..cells).collect()));
             }
         }
         let is_other = |item: &&Item| !matches!(item.center.as_str(), "node" | "cell");

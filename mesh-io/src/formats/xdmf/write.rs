@@ -18,8 +18,12 @@ pub(crate) fn write_xdmf(input: &WriterInput<'_>) -> String {
         .to_owned();
     geometry(input, &mut out);
     let is_of_triangles = input.cells().count() == points.len() + lines.len() + triangles.len();
-    // Mesh tags have whole numbers alone.
-    let are_tags = || of_cells(input, &[]).iter().all(Array::is_of_tags);
+    // Mesh tags have whole numbers alone, for all lines or for none.
+    let fits = |cells: &[usize]| {
+        of_cells(input, cells).iter().all(|array| array.is_of_tags() || array.is_missing())
+    };
+    let are_tags =
+        || of_cells(input, &[]).iter().all(Array::is_of_tags) && fits(&lines) && fits(&points);
     let has_tags = is_of_triangles && (points.is_empty() && lines.is_empty() || are_tags());
     let cells = if has_tags { triangles } else { input.cells().collect() };
     match has_tags {

@@ -7,7 +7,7 @@ use crate::content::remark::Remark;
 use crate::edit::numbers::{NumberEncoding, Offsets};
 use crate::formats::vtk::bits_and_texts::{bits, lost_text};
 use crate::formats::vtk::legacy::skip::{array_name, size_at, skip_metadata, skip_section, take};
-use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions};
+use crate::formats::vtk::regions::{MAX_ARRAYS, names_regions, unread_regions};
 use crate::precision::Precision;
 use crate::text::cursor::Cursor;
 use crate::text::token::quoted;
@@ -212,10 +212,7 @@ impl Data<'_> {
             }
             // Numbers such as NaN are no regions, but must hide no later array.
             *cursor = start;
-            self.visitor.remark(Remark::Text(format!(
-                "the cell data `{}` are not finite numbers, so they number no regions",
-                quoted(name)
-            )));
+            self.visitor.remark(unread_regions(name));
         }
         if self.of_cells
             && of_all

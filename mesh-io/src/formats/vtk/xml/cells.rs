@@ -6,7 +6,7 @@ use crate::binary::int_array::IntArray;
 use crate::error::ReadError;
 use crate::formats::vtk::bits_and_texts::lost_text;
 use crate::formats::vtk::cells::{BulkBackoff, Cell, Triangles};
-use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions};
+use crate::formats::vtk::regions::{MAX_ARRAYS, RegionNumbers, names_regions, unread_regions};
 use crate::formats::vtk::types;
 use crate::text::cursor::{CORRECT, Cursor};
 use crate::visit::items::RegionAttribute;
@@ -32,7 +32,7 @@ struct List<'a> {
 impl File<'_> {
     /// Visits the cells of all pieces, and their cell data if the visitor asks for data.
     pub(super) fn cells(&self, visitor: &mut dyn MeshVisitor) -> Result<(), ReadError> {
-        let regions = self.region_names();
+        let regions = self.region_names(visitor);
         visitor
             .region_attributes(regions.iter().map(|name| RegionAttribute::tags(name, 0)).collect());
         let (mut first_point, mut first_cell) = (0, 0);
@@ -45,7 +45,7 @@ impl File<'_> {
             }
             visitor.expect_elements(count);
             let of_cells: RegionNumbers =
-                regions.iter().map(|name| self.regions(piece, name)).collect();
+                regions.iter().map(|name| self.regions(piece, name, visitor)).collect();
             let mut index = 0;
             let mut points: Vec<u64> = Vec::new();
             for List { connectivity, offsets, types, at } in &lists {
@@ -158,27 +158,38 @@ impl File<'_> {
         Ok(lists)
     }
 
-    /// Returns the names of the first [`MAX_ARRAYS`] region arrays. Damaged arrays are ignored, as the mesh does not
-    /// depend on regions.
-    fn region_names(&self) -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
+    /// Returns the names of the first [`MAX_ARRAYS`] region arrays of whole numbers. A damaged array yields a remark, as
+    /// the mesh itself does not depend on regions.
+    fn region_names(&self, visitor: &mut dyn MeshVisitor) -> Vec<String> {
+        let (mut names, mut damaged): (Vec<String>, Vec<&str>) = Default::default();
         for array in self.document.arrays.iter().filter(|array| is_region_array(array)) {
-            if names.len() < MAX_ARRAYS
-                && !names.contains(&array.name)
-                && self.signed_integers(array).is_ok()
-            {
-                names.push(array.name.clone());
+            let is_known = names.contains(&array.name) || damaged.contains(&&*array.name);
+            if names.len() == MAX_ARRAYS || is_known || precision_of(array).is_some() {
+                continue;
+            }
+            match self.signed_integers(array) {
+                Ok(_) => names.push(array.name.clone()),
+                Err(_) => {
+                    damaged.push(&array.name);
+                    visitor.remark(unread_regions(array.name.as_bytes()));
+                }
             }
         }
         names
     }
 
     /// Reads the region numbers of a piece's cells from the array called `name`. A missing or damaged array yields an
-    /// empty list.
-    fn regions(&self, piece: usize, name: &str) -> Vec<i64> {
+    /// empty list, a damaged one also a remark.
+    fn regions(&self, piece: usize, name: &str, visitor: &mut dyn MeshVisitor) -> Vec<i64> {
         let mut arrays = self.document.arrays_of(piece).iter();
         let array = arrays.find(|array| is_region_array(array) && array.name == name);
-        array.and_then(|array| self.signed_integers(array).ok()).unwrap_or_default()
+        let numbers = array.map(|array| self.signed_integers(array)).transpose();
+        numbers
+            .unwrap_or_else(|_| {
+                visitor.remark(unread_regions(name.as_bytes()));
+                None
+            })
+            .unwrap_or_default()
     }
 
     /// Visits the arrays of point data that the visitor wants. Damaged arrays are skipped, as the mesh does not depend
