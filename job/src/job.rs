@@ -45,6 +45,12 @@ impl<'f> Job<'f> {
         Ok(Self::with(file, domain))
     }
 
+    /// Prepares the mesh of a file in x and y. Third coordinates are data, such as the depth of water, and may be those of a
+    /// curved surface.
+    pub fn in_xy(file: &'f MeshFile) -> Self {
+        Self::with(file, Domain::of_elements(file))
+    }
+
     /// Prepares the mesh of a file whose x and y are longitude and latitude in degrees. Runs move vertices on the sphere, with
     /// lengths in degrees of latitude. Third coordinates are data.
     ///
@@ -85,7 +91,7 @@ impl<'f> Job<'f> {
 
     /// Adds the options of the mesh by the words that the command line and the Python package share, such as `slide`. A target is
     /// set before its options. The options of the run are in [`Settings::run`], which [`options`](Self::options) takes; the
-    /// surface is chosen by [`on_sphere`](Self::on_sphere).
+    /// surface is chosen by [`on_sphere`](Self::on_sphere), and the meaning of third coordinates by [`in_xy`](Self::in_xy).
     ///
     /// # Errors
     /// [`JobError::Smooth`] with `only-bad` if the mesh cannot be smoothed.

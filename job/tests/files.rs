@@ -174,10 +174,19 @@ fn a_mesh_in_another_plane_is_smoothed_there_and_a_curved_one_is_refused() {
     assert_ne!(written.mesh().points, smoothed.job().mesh().points);
 
     let curved: Vec<_> = flat.iter().map(|&[x, y]| [x, y, 1e-3 * x * x]).collect();
-    let error =
-        Job::of_file(&read("curved.bdf", nastran(&curved, &triangles()).into())).err().unwrap();
+    let file = read("curved.bdf", nastran(&curved, &triangles()).into());
+    let error = Job::of_file(&file).err().unwrap();
     assert!(matches!(error, JobError::Plane(PlaneError::NotPlanar { .. })), "{error}");
     assert!(error.to_string().starts_with("curved.bdf:"), "{error}");
+    // Third coordinates that are data stay.
+    Job::in_xy(&file).smooth(&Options::default(), &Backend::Cpu).unwrap().write(&out).unwrap();
+    let written = MeshFile::read(&out).unwrap();
+    assert_ne!(written.points(), file.points());
+    let z = [&written, &file].map(|file| {
+        let fields = file.point_fields(Some(&["z".into()])).unwrap();
+        fields[0].values().to_vec()
+    });
+    assert_eq!(z[0], z[1]);
 }
 
 /// Returns an SU2 file of a flat wall with a layer of ten rows, and nine rows of noisy triangles above. With
