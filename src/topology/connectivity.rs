@@ -310,17 +310,28 @@ mod tests {
         };
         let triangles = (0..(n - 1) * (n - 1)).flat_map(cell).collect();
         let mesh = Mesh { points, triangles, ..Mesh::default() };
-        let mut topology = Topology::new(&mesh).unwrap();
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(6).build().unwrap();
-        for _ in 0..100 {
-            topology.forget_stars();
-            let of_vertices = pool.install(|| {
-                crate::parallel::map_ranges(mesh.points.len(), 64, |range| {
-                    range.map(|v| topology.star(v as u32).len()).sum::<usize>()
-                })
-            });
-            assert_eq!(of_vertices.iter().sum::<usize>(), 3 * mesh.triangles.len());
-        }
+        let search = move || {
+            let mut topology = Topology::new(&mesh).unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(6).build().unwrap();
+            for _ in 0..100 {
+                topology.forget_stars();
+                let of_vertices = pool.install(|| {
+                    crate::parallel::map_ranges(mesh.points.len(), 64, |range| {
+                        range.map(|v| topology.star(v as u32).len()).sum::<usize>()
+                    })
+                });
+                assert_eq!(of_vertices.iter().sum::<usize>(), 3 * mesh.triangles.len());
+            }
+        };
+        // A thread that waits for itself would wait without end.
+        let (done, ends) = std::sync::mpsc::channel();
+        let searching = std::thread::spawn(move || {
+            search();
+            done.send(()).unwrap();
+        });
+        let wait = ends.recv_timeout(std::time::Duration::from_secs(120));
+        assert_ne!(wait, Err(std::sync::mpsc::RecvTimeoutError::Timeout), "threads wait");
+        searching.join().unwrap();
     }
 
     #[test]
