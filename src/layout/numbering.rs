@@ -58,18 +58,32 @@ pub(super) fn rings(
 /// least. Vertices of equal elements in another order then have equal patterns.
 fn turned(topology: &Topology<'_>, vertex: u32) -> Vec<(u32, bool)> {
     let mut around: Vec<(u32, bool)> = topology.around(vertex).collect();
-    // All turns of a pattern without marks are equal.
-    if around.iter().all(|&(_, is_opposite)| !is_opposite) {
-        return around;
-    }
-    let marks = |turn: usize| {
-        let (before, after) = around.split_at(turn);
-        after.iter().chain(before).map(|&(_, is_opposite)| is_opposite)
-    };
-    let neighbors = (0..around.len()).filter(|&turn| !around[turn].1);
-    let least = neighbors.min_by(|&a, &b| marks(a).cmp(marks(b))).unwrap_or(0);
+    // The least pattern begins without a mark, and so at a neighbor.
+    let least = least_turn(&around, |&(_, is_opposite)| is_opposite);
     around.rotate_left(least);
     around
+}
+
+/// Returns the first place from which the marks of a ring are least, in a time proportional to the length of the ring (after
+/// Shiloach, Fast canonization of circular strings, J. Algorithms 2, 1981).
+fn least_turn<X>(ring: &[X], mark: impl Fn(&X) -> bool) -> usize {
+    let count = ring.len();
+    let at = |turn: usize, k: usize| mark(&ring[(turn + k) % count]);
+    // No place before either candidate, but for the other, is the first least.
+    let (mut one, mut other, mut equal) = (0, 1, 0);
+    while one < count && other < count && equal < count {
+        match (at(one, equal), at(other, equal)) {
+            (true, false) => one += equal + 1,
+            (false, true) => other += equal + 1,
+            _ => {
+                equal += 1;
+                continue;
+            }
+        }
+        other += usize::from(one == other);
+        equal = 0;
+    }
+    one.min(other)
 }
 
 /// Returns the length of the list of a free vertex in the rings, and its pattern: a bit for each of its first 64 entries, 1 for
@@ -195,4 +209,24 @@ pub(super) fn order(
     }
     ranges.truncate(colors);
     (vertices, ranges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_turn_is_the_first_of_all_turns_that_are_least() {
+        for count in 1..14 {
+            for pattern in 0..1_u32 << count {
+                let ring: Vec<bool> = (0..count).map(|k| pattern >> k & 1 == 1).collect();
+                let turned = |turn: usize| {
+                    let (before, after) = ring.split_at(turn);
+                    [after, before].concat()
+                };
+                let expected = (0..ring.len()).min_by_key(|&turn| turned(turn));
+                assert_eq!(Some(least_turn(&ring, |&mark| mark)), expected, "{ring:?}");
+            }
+        }
+    }
 }
