@@ -116,10 +116,11 @@ fn ascending<const N: usize>(elements: &[[u32; N]]) -> Vec<[u32; N]> {
     elements
 }
 
-/// Returns the vertices fixed by the file, ascending.
+/// Returns the vertices fixed by the file, ascending. Vertices of quadrilaterals count only if materials, lines or points fix
+/// them, because all of them would be equal in meshes with other materials and lines.
 fn fixed(file: &MeshFile) -> Vec<u32> {
-    let mut fixed = file.constraints().vertices.clone();
-    fixed.extend(file.interface_vertices());
+    let mut fixed = file.constraints_beside_quadrilaterals().vertices;
+    fixed.extend(file.interfaces_of_elements().0);
     fixed.sort_unstable();
     fixed.dedup();
     fixed

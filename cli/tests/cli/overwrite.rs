@@ -62,6 +62,47 @@ fn a_mesh_with_other_fixed_vertices_is_another_mesh() {
     refused.refused(&["b.msh: holds another mesh than a.msh: its fixed vertices are others"]);
 }
 
+/// Returns a square of four times four quadrilaterals as gmsh 2.2. `group` is the physical group of a column of
+/// quadrilaterals, and `lines` have the numbers of their nodes.
+fn quadrilaterals(group: impl Fn(usize) -> usize, lines: &[[usize; 2]]) -> String {
+    let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n25\n");
+    for v in 0..25 {
+        let off = if v == 12 { 0.2 } else { 0.0 };
+        text += &format!("{} {} {} 0\n", v + 1, (v % 5) as f64 + off, v / 5);
+    }
+    text += &format!("$EndNodes\n$Elements\n{}\n", 16 + lines.len());
+    for k in 0..16 {
+        let a = k / 4 * 5 + k % 4 + 1;
+        let group = group(k % 4);
+        text += &format!("{} 3 2 {group} 1 {a} {} {} {}\n", k + 1, a + 1, a + 6, a + 5);
+    }
+    for (k, [a, b]) in lines.iter().enumerate() {
+        text += &format!("{} 1 2 9 9 {a} {b}\n", k + 17);
+    }
+    text + "$EndElements\n"
+}
+
+#[test]
+fn quadrilaterals_of_other_materials_or_with_other_lines_are_another_mesh() {
+    let meshes = [
+        ("in.msh", quadrilaterals(|_| 1, &[])),
+        ("materials.msh", quadrilaterals(|column| 1 + column / 2, &[])),
+        ("lines.msh", quadrilaterals(|_| 1, &[[7, 12], [12, 17]])),
+    ];
+    let folder = Folder::new(&meshes.each_ref().map(|(name, text)| (*name, &**text)));
+    let before = folder.content();
+    for (out, _) in &meshes[1..] {
+        let told = format!("{out}: holds another mesh than in.msh: its fixed vertices are others");
+        folder.line(&format!("in.msh {out} --engine cpu")).refused(&[&told, "--force"]);
+        assert!(folder.content() == before, "files have changed");
+    }
+    for (input, _) in &meshes {
+        for _ in 0..2 {
+            folder.line(&format!("{input} out_{input} --engine cpu -q")).clean();
+        }
+    }
+}
+
 #[test]
 fn a_file_that_is_no_mesh_is_replaced_by_force_only() {
     let folder = small();
