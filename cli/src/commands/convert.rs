@@ -57,7 +57,7 @@ fn check_overwrite(
 ) -> Result<(), CliError> {
     // Conversions write joined vertices. Other vertices at one place, such as those of a crack, stay apart.
     let reading = ReadRequest { weld: false, ..reading };
-    let found = overwrite::check(file, written, reading.options_of_output(), Likeness::Elements);
+    let found = overwrite::check(file, written, &reading, Likeness::Elements);
     let Err(error) = found else { return Ok(()) };
     // A format may renumber vertices. Equal bytes then identify an earlier result of this conversion.
     let is_same = |path: &PathBuf, new: Vec<u8>| fs::read(path).is_ok_and(|old| old == new);

@@ -33,6 +33,5 @@ pub(crate) fn check(
         // Conversions write joined vertices. Other vertices at one place, such as those of a crack, stay apart.
         Some(_) => (ReadRequest { weld: false, ..reading.clone() }, Likeness::Elements),
     };
-    overwrite::check(file, &written, reading.options_of_output(), likeness)
-        .map_err(|error| error.with_remedy(remedy))
+    overwrite::check(file, &written, &reading, likeness).map_err(|error| error.with_remedy(remedy))
 }

@@ -4,10 +4,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mesh_io::{MeshFile, ReadError, ReadOptions, atomic};
+use mesh_io::{MeshFile, ReadError, atomic};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
+use crate::request::ReadRequest;
 use crate::terminal::numbers::elements;
 
 /// Properties in which a written mesh must equal the existing mesh that is replaced.
@@ -20,7 +21,7 @@ pub(crate) enum Likeness {
 }
 
 /// Checks that the files `written`, the main file first, are empty or hold the input mesh or an earlier state of the
-/// mesh. Devices and pipes count as empty. `options` are the options by which the mesh was read.
+/// mesh. Devices and pipes count as empty. `reading` tells how the mesh was read.
 ///
 /// # Errors
 /// Returns an error of kind [`Output`](crate::error::ErrorKind::Output) if a file holds another mesh, or has content
@@ -28,7 +29,7 @@ pub(crate) enum Likeness {
 pub(crate) fn check(
     file: &LoadedMesh,
     written: &[PathBuf],
-    options: ReadOptions,
+    reading: &ReadRequest,
     likeness: Likeness,
 ) -> Result<(), CliError> {
     let Some(main) = written.first() else { return Ok(()) };
@@ -50,7 +51,7 @@ pub(crate) fn check(
     // A read from a pipe would block until a writer appears.
     let is_readable = written.iter().all(|path| !path.exists() || path.is_file());
     let old = match is_readable {
-        true => read(main, options).map_err(|error| match error {
+        true => read(main, reading).map_err(|error| match error {
             // The remedy of a damaged mesh is none for a file that is no mesh.
             ReadError::Content { path, location, problem, .. } => {
                 format!("{}{location}: {problem}", path.display())
@@ -69,10 +70,13 @@ pub(crate) fn check(
     Err(CliError::output(text))
 }
 
-/// Reads an existing mesh. An STL is joined to vertices, independent of the format of the input.
-fn read(path: &Path, options: ReadOptions) -> Result<MeshFile, ReadError> {
+/// Reads an existing mesh. An STL is joined to vertices, independent of the format of the input. If the mesh lacks the cell
+/// data that number the regions of the input, its regions are those of the reader's choice.
+fn read(path: &Path, reading: &ReadRequest) -> Result<MeshFile, ReadError> {
+    let options = reading.options();
     match options.clone().read(path) {
-        Err(ReadError::Unwelded { .. }) => options.weld(true).read(path),
+        Err(ReadError::Unwelded { .. }) => options.weld(true).regions(None).read(path),
+        Err(_) if reading.regions.is_some() => options.regions(None).read(path),
         read => read,
     }
 }

@@ -51,11 +51,6 @@ impl ReadRequest {
     pub(crate) fn has_elements_of(&self, file: &MeshFile) -> bool {
         self.takes_quadrilaterals || self.takes_quadrilaterals_alone && file.triangles().is_empty()
     }
-
-    /// Returns the options by which a file is read that a command may replace. Its cell data may have other names.
-    pub(crate) fn options_of_output(&self) -> ReadOptions {
-        self.options().regions(None)
-    }
 }
 
 impl From<&ReadArgs> for ReadRequest {

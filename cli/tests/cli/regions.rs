@@ -363,6 +363,33 @@ fn an_option_chooses_the_cell_data_of_regions() {
     }
 }
 
+#[test]
+fn a_run_with_chosen_regions_replaces_its_own_result() {
+    let mesh = disturbed();
+    let m = mesh.triangles.len();
+    let parts = |size: usize| (0..m).map(|t| (1 + t / size) as f64).collect::<Vec<_>>();
+    let arrays = [("region", false, parts(m / 2)), ("zone", true, parts(m / 4))];
+    let files = with_cell_data(&mesh, &arrays);
+    let moved =
+        with_cell_data(&mesh, &[("region", false, parts(m / 2)), ("zone", true, parts(m / 8))]);
+    let other = with_cell_data(&mesh, &arrays[..1]);
+    let other = [("other.vtk", &*moved[0].1), ("without.vtk", &*other[0].1)];
+    let folder = Folder::new(&[(files[0].0, &files[0].1), other[0], other[1]]);
+    std::fs::create_dir(folder.path("results")).unwrap();
+    for out in ["out.vtk", "--out-dir results"] {
+        let line = format!("in.vtk {out} --engine cpu --regions zone");
+        for run in 0..2 {
+            let run = (run, folder.line(&line));
+            assert_eq!(run.1.code, Some(0), "{} {}", run.0, run.1.err);
+        }
+    }
+    // Files with other regions, or without the chosen cell data, are still other meshes.
+    for (name, _) in other {
+        let told = format!("{name}: holds another mesh than in.vtk: its fixed vertices are others");
+        folder.line(&format!("in.vtk {name} --engine cpu --regions zone")).refused(&[&told]);
+    }
+}
+
 /// Numbers that cannot be read hide no later array, whether the later array has a usual name or not.
 #[test]
 fn regions_are_found_behind_cell_data_that_are_damaged() {
