@@ -434,8 +434,8 @@ impl Domain {
     }
 
     /// Finds the boundary layers that `keep` names. Walls are the boundary, the lines, and edges between regions, or the
-    /// vertices `walls` if given. `faces` are the elements of layers that are no triangles, as lists of vertices. The layers have
-    /// all vertices if [`keeps_all`](Self::keeps_all) holds.
+    /// vertices `walls` if given. `faces` are the [`faces_beside_mesh`](Self::faces_beside_mesh). The layers have all
+    /// vertices if [`keeps_all`](Self::keeps_all) holds.
     ///
     /// # Errors
     /// [`MeshError`] if `walls` has a vertex that does not exist.
@@ -451,16 +451,14 @@ impl Domain {
             let vertices = (0..points.len() as u32).collect();
             return Ok(Layers { vertices, ..Layers::default() });
         }
-        // Quadrilaterals that move are elements of the topology.
-        let kept: Vec<Vec<u32>>;
-        let faces = match self.moves_quadrilaterals {
-            true => {
-                kept = faces.iter().filter(|face| face.len() != 4).cloned().collect();
-                &kept
-            }
-            false => faces,
-        };
         keep.find(&Elements { topology, points, faces, lines }, walls)
+    }
+
+    /// Returns the quadrilaterals and polygons of a file that are no elements of the mesh, as lists of vertices: all
+    /// [`other_faces`](MeshFile::other_faces), without the quadrilaterals if their vertices move.
+    pub fn faces_beside_mesh(&self, file: &MeshFile) -> Vec<Vec<u32>> {
+        let is_beside = |face: &&[u32]| !(self.moves_quadrilaterals && face.len() == 4);
+        file.other_faces().filter(is_beside).map(<[u32]>::to_vec).collect()
     }
 
     /// Returns the curves along which vertices slide, with the vertices at `points`, by the topology of the

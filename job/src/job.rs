@@ -156,7 +156,7 @@ impl<'f> Job<'f> {
     /// [`MeshError`] if the mesh cannot be smoothed; see [`Topology::new`].
     pub fn layers(&self) -> Result<Layers, MeshError> {
         let Self { file, domain, .. } = self;
-        let faces: Vec<Vec<u32>> = file.other_faces().map(<[u32]>::to_vec).collect();
+        let faces = domain.faces_beside_mesh(file);
         domain.layers(&Topology::new(domain.mesh())?, self.keep_layers, None, &faces)
     }
 

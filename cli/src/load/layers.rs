@@ -66,7 +66,7 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
             Some(named.iter().flat_map(|(_, group)| group.vertices()).copied().collect::<Vec<_>>())
         }
     };
-    let faces: Vec<Vec<u32>> = file.source.other_faces().map(<[u32]>::to_vec).collect();
+    let faces = file.domain.faces_beside_mesh(&file.source);
     let layers = file.domain.layers(topology, kept.keep, walls.as_deref(), &faces);
     let layers = layers.map_err(|error| explain::mesh_error(file, &error))?;
     let is_asked = kept.groups.is_some() || kept.keep != KeepLayers::Auto;

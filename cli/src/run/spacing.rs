@@ -19,7 +19,7 @@ pub(super) fn at_walls(
     after: &[[f64; 2]],
     is_reported: bool,
 ) -> Result<Vec<SpacingReport>, CliError> {
-    let faces: Vec<Vec<u32>> = file.source.other_faces().map(<[u32]>::to_vec).collect();
+    let faces = file.domain.faces_beside_mesh(&file.source);
     let points = &file.mesh().points;
     let elements = Elements { topology, points, faces: &faces, lines: &[] };
     let edges = wall_edges(file, topology);

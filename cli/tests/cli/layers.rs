@@ -176,3 +176,55 @@ fn walls_with_flat_triangles_and_no_layer_are_named() {
         assert_holds(&run.err, &[part]);
     }
 }
+
+/// Returns a mesh of quadrilaterals and, in the first three columns, of triangles on a flat wall, as gmsh 2.2. Its lines are
+/// the physical groups 1 (`wall`, the first two columns of entity 11, the others of entity 12) and 2 (all other sides).
+fn mixed() -> String {
+    let mut text = String::from(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"wall\"\n$EndPhysicalNames\n$Nodes\n84\n",
+    );
+    for v in 0..84 {
+        let (i, j) = (v % 12, v / 12);
+        let is_inside = (1..11).contains(&i) && (1..6).contains(&j);
+        let noise = if is_inside { 0.05 * ((7 * i + 3 * j) as f64).sin() } else { 0.0 };
+        let height = 0.1 * (j * j) as f64;
+        writeln!(text, "{} {} {} 0", v + 1, i as f64 + noise, height * (1.0 + noise)).unwrap();
+    }
+    let mut elements = Vec::new();
+    for i in 0..11 {
+        let entity = if i < 2 { 11 } else { 12 };
+        elements.push(format!("1 2 1 {entity} {} {}", i + 1, i + 2));
+        elements.push(format!("1 2 2 2 {} {}", 73 + i, 74 + i));
+    }
+    for j in 0..6 {
+        elements.extend([1, 12].map(|i| format!("1 2 2 2 {} {}", 12 * j + i, 12 * (j + 1) + i)));
+        for i in 0..11 {
+            let a = 12 * j + i + 1;
+            let [b, c, d] = [a + 1, a + 13, a + 12];
+            match i < 3 {
+                true => elements
+                    .extend([format!("2 2 5 1 {a} {b} {c}"), format!("2 2 5 1 {a} {c} {d}")]),
+                false => elements.push(format!("3 2 5 1 {a} {b} {c} {d}")),
+            }
+        }
+    }
+    writeln!(text, "$EndNodes\n$Elements\n{}", elements.len()).unwrap();
+    for (k, element) in (1..).zip(elements) {
+        writeln!(text, "{k} {element}").unwrap();
+    }
+    text + "$EndElements\n"
+}
+
+#[test]
+fn the_spacing_at_walls_counts_the_vertices_of_quadrilaterals_that_move() {
+    let folder = Folder::new(&[("in.msh", &mixed())]);
+    for quadrilaterals in ["move", "keep"] {
+        let run = folder.line(&format!(
+            "in.msh out.msh --force --engine cpu --keep-layers none --report r.json --quadrilaterals {quadrilaterals}"
+        ));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let walls = folder.json("r.json")["spacing"].as_array().unwrap().clone();
+        let wall = walls.iter().find(|wall| wall["wall"] == "wall").unwrap();
+        assert_eq!(wall["count"], 10, "{quadrilaterals}: {wall}");
+    }
+}
