@@ -23,8 +23,8 @@ pub enum KeepLayers {
 
 impl KeepLayers {
     /// Finds the layers whose vertices a run must keep in place: a caller lists the vertices in
-    /// [`Mesh::fixed`](crate::Mesh::fixed). `walls` are the vertices of the walls above which layers are searched; with
-    /// `None`, layers are searched above all walls at which layers may begin. Vertices of inverted and flat triangles and of
+    /// [`Mesh::fixed`](crate::Mesh::fixed). `walls` are the vertices of the walls above which layers are searched; `None`
+    /// stands for all walls at which layers may begin. Vertices of inverted and flat triangles and of
     /// quadrilaterals that are not convex are left out, so that the elements can be untangled.
     ///
     /// # Errors

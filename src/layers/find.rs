@@ -37,7 +37,8 @@ impl Elements<'_> {
     }
 
     /// Returns the first `count` rows above walls, whatever their heights. Where a column ends, rings of neighbors count as
-    /// rows. `walls` are the vertices of the walls; `None` stands for the walls at which layers may begin.
+    /// rows. `walls` are the vertices of the walls; `None` stands for each wall, from corner to corner, with a vertex at
+    /// which a layer may begin. At corners, the elements have an angle below 120 degrees.
     ///
     /// # Errors
     /// Those of [`layers`](Self::layers).
@@ -72,7 +73,7 @@ impl Elements<'_> {
     }
 
     /// Returns the vertices within a distance of walls, in the unit of the points. `walls` are the vertices of the walls;
-    /// `None` stands for the walls at which layers may begin.
+    /// `None` stands for the walls of [`rows`](Self::rows).
     ///
     /// # Errors
     /// Those of [`layers`](Self::layers).
@@ -99,7 +100,7 @@ impl Elements<'_> {
         let sectors = Sectors::new(self, self.lines);
         let seeds = front::seeds(&sectors);
         let front = match walls {
-            None => front::front(&sectors, &seeds),
+            None => front::walls(&sectors, &seeds),
             Some(walls) => on_walls(&sectors, walls),
         };
         (sectors, seeds, front)

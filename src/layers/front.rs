@@ -53,6 +53,24 @@ pub(super) fn front(sectors: &Sectors, seeds: &[bool]) -> Vec<bool> {
     front
 }
 
+/// Returns the nodes of the walls that have a seed. A wall goes from corner to corner. A corner belongs to the walls on both
+/// sides, so that a seed at a corner alone would make walls of inlets; it does not count.
+pub(super) fn walls(sectors: &Sectors, seeds: &[bool]) -> Vec<bool> {
+    let is_corner = |node: u32| sectors.fluid[node as usize] < CORNER;
+    let is_start = |node: &u32| seeds[*node as usize] && !is_corner(*node);
+    let mut open: Vec<u32> = (0..sectors.len() as u32).filter(is_start).collect();
+    let mut walls = vec![false; sectors.len()];
+    open.iter().for_each(|&node| walls[node as usize] = true);
+    while let Some(node) = open.pop() {
+        for other in sectors.wall[node as usize].into_iter().filter(|other| *other != NONE) {
+            if !std::mem::replace(&mut walls[other as usize], true) && !is_corner(other) {
+                open.push(other);
+            }
+        }
+    }
+    walls
+}
+
 /// Closes the gaps among `candidates` between marked nodes: gaps of at most two nodes, and gaps whose heights are within
 /// `ratio` of those at their ends. `may_close` allows a node in a gap.
 pub(super) fn close<B: AsRef<[u32]>>(

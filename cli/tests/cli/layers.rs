@@ -228,3 +228,32 @@ fn the_spacing_at_walls_counts_the_vertices_of_quadrilaterals_that_move() {
         assert_eq!(wall["count"], 10, "{quadrilaterals}: {wall}");
     }
 }
+
+#[test]
+fn all_vertices_near_a_wall_with_flat_elements_stay() {
+    // At the right half of the wall, edges are less than twice as long as the elements are high.
+    let (mesh, points) = layer(8);
+    let mut lines: Vec<String> = mesh.lines().map(str::to_owned).collect();
+    let first = lines.iter().position(|line| line.starts_with("NPOIN")).unwrap() + 1;
+    let half = COLUMNS as f64 / 2.0;
+    let mut moved = points.clone();
+    for (v, [x, y]) in moved.iter_mut().enumerate() {
+        let column = (v % (COLUMNS + 1)) as f64;
+        let noise = *x - column;
+        *x = column;
+        *y = if *x < half { *y } else { 0.7 * (v / (COLUMNS + 1)) as f64 - 0.25 * noise };
+        lines[first + v] = format!("{x} {y}");
+    }
+    let folder = Folder::new(&[("in.su2", &lines.join("\n"))]);
+    for (option, limit) in [("within=1.3", 1.3), ("within=1.3,wall", 1.3)] {
+        let run = folder
+            .line(&format!("in.su2 out.su2 --force --engine cpu --slide --keep-layers {option}"));
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        let after = folder.mesh("out.su2").points;
+        let near = (0..moved.len()).filter(|&v| moved[v][1] <= limit);
+        let slid: Vec<usize> = near.filter(|&v| after[v] != moved[v]).collect();
+        assert!(slid.is_empty(), "{option}: {slid:?}");
+        assert!(after != moved);
+        assert_holds(&run.err, &["within 1.3 of wall stay"]);
+    }
+}
