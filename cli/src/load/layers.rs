@@ -1,14 +1,19 @@
 //! Boundary layers of a mesh that stay.
 
+use std::collections::HashSet;
+
 use gpu_smooth::layers::{KeepLayers, Layers};
 use gpu_smooth::{DetachedTopology, Topology};
 use gpu_smooth_job::{is_at_wall, overlooks_boundary, overlooks_wall, vertices_in_rows};
+use mesh_io::Group;
 
 use crate::error::CliError;
 use crate::kept_layers::KeptLayers;
 use crate::load::named::{named, refusal};
 use crate::load::walls::name;
 use crate::load::{LoadedMesh, explain};
+
+const OPTION: &str = "--keep-layers";
 
 /// Number of groups that a note names.
 const NAMED: usize = 4;
@@ -57,12 +62,10 @@ pub(super) fn keep_layers(
 
 /// Finds the layers that an option keeps.
 fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result<Layers, CliError> {
-    const OPTION: &str = "--keep-layers";
     let walls = match &kept.groups {
         None => None,
         Some(text) => {
-            let groups = file.groups()?;
-            let named = named(file, groups, OPTION, text)?;
+            let named = named(file, file.groups()?, OPTION, text)?;
             Some(named.iter().flat_map(|(_, group)| group.vertices()).copied().collect::<Vec<_>>())
         }
     };
@@ -87,13 +90,20 @@ fn find(file: &LoadedMesh, topology: &Topology<'_>, kept: &KeptLayers) -> Result
 /// Returns the line on the layers that stay.
 fn note(file: &LoadedMesh, kept: &KeptLayers, layers: &Layers) -> Result<String, CliError> {
     let inner = vertices_in_rows(layers);
-    let mut names = Vec::new();
-    for group in file.groups_of_lines()? {
-        if is_at_wall(layers, group.vertices()) {
-            names.push(name(group));
+    let is_below = |group: &Group| is_at_wall(layers, group.vertices());
+    let names = match &kept.groups {
+        None => distinct(file.groups_of_lines()?.into_iter().filter(|group| is_below(group))),
+        Some(text) => {
+            // Rows and distances count from all walls of the option, found layers perhaps from some.
+            let is_meant = |group: &Group| kept.keep != KeepLayers::Auto || is_below(group);
+            let named = named(file, file.groups()?, OPTION, text)?.into_iter();
+            let mut names: Vec<String> =
+                named.filter(|(_, group)| is_meant(group)).map(|(name, _)| name.into()).collect();
+            // Several groups may share a name.
+            names.dedup();
+            names
         }
-    }
-    names.dedup();
+    };
     let at = match names.len() {
         0 => "the boundary".to_owned(),
         n if n > NAMED => format!("{} and {} other groups", names[..NAMED].join(", "), n - NAMED),
@@ -132,7 +142,17 @@ fn overlooked(
     }
     let found =
         lines.into_iter().filter(|group| overlooks_wall(layers, kept.keep, group.vertices()));
-    let mut names: Vec<String> = found.map(name).collect();
-    names.dedup();
+    let names = distinct(found);
     Ok(names.iter().take(NAMED).map(|name| note(name, &format!(",{name}"))).collect())
+}
+
+/// Returns the names of walls. A group whose vertices are all in earlier groups has no name of its own: entities of a model are
+/// parts of physical groups, which precede them.
+fn distinct<'g>(walls: impl Iterator<Item = &'g Group>) -> Vec<String> {
+    let mut known = HashSet::new();
+    let is_new = |group: &&Group| {
+        // All vertices become known.
+        group.vertices().iter().filter(|vertex| known.insert(**vertex)).count() > 0
+    };
+    walls.filter(is_new).map(name).collect()
 }

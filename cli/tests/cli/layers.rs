@@ -230,6 +230,24 @@ fn the_spacing_at_walls_counts_the_vertices_of_quadrilaterals_that_move() {
 }
 
 #[test]
+fn a_note_on_layers_names_the_groups_of_the_option_or_each_wall_once() {
+    let folder = Folder::new(&[("in.msh", &mixed())]);
+    for (option, walls) in [
+        ("within=0.4,wall", "wall"),
+        ("within=0.4,physical:1", "physical:1"),
+        ("within=0.4,entity:11", "entity:11"),
+        ("within=0.4,wall,physical:2", "wall, physical:2"),
+        // The entities have no vertices beside those of the physical groups.
+        ("within=0.4", "wall"),
+    ] {
+        let line = format!("in.msh out.msh --force --engine cpu --keep-layers {option}");
+        let run = folder.line(&line);
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.err, &[&format!(" within 0.4 of {walls} stay (--keep")]);
+    }
+}
+
+#[test]
 fn all_vertices_near_a_wall_with_flat_elements_stay() {
     // At the right half of the wall, edges are less than twice as long as the elements are high.
     let (mesh, points) = layer(8);
