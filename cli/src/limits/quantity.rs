@@ -16,7 +16,8 @@ pub(crate) enum Quantity {
     HoleEdges,
     /// Number of elements at a vertex; inside the mesh, also the number of its neighbors along edges.
     Neighbors,
-    /// Least altitude of a triangle over the speed of long waves, in seconds. Only wet triangles have the quantity.
+    /// Least altitude of a triangle, or of the corner triangles of a quadrilateral, over the speed of long waves, in seconds.
+    /// Only wet elements have the quantity.
     TimeStep,
 }
 
@@ -64,7 +65,10 @@ impl Quantity {
 
     /// Returns whether quadrilaterals have the quantity themselves, not only their edges and vertices.
     pub(crate) fn is_of_quadrilaterals(self) -> bool {
-        self.measure().is_some_and(|measure| measure.of_quadrilateral() && !measure.is_of_edges())
+        match self {
+            Self::Measure(measure) => measure.of_quadrilateral() && !measure.is_of_edges(),
+            _ => self == Self::TimeStep,
+        }
     }
 
     /// Returns the measure; `None` for other quantities.

@@ -26,7 +26,8 @@ pub(crate) struct Profile {
 #[serde(try_from = "GivenLimit")]
 pub(crate) struct Limit {
     pub(crate) quantity: Quantity,
-    /// The elements that a limit of elements concerns. Limits of edges concern edges of all elements.
+    /// The elements that a limit of elements concerns. Limits of edges concern edges of all elements, and listed quantities all
+    /// elements.
     pub(crate) elements: Elements,
     /// Values of which users should know.
     pub(crate) warn: Option<Threshold>,
@@ -34,6 +35,13 @@ pub(crate) struct Limit {
     pub(crate) fail: Option<Threshold>,
     /// The document or the source file that states the limit.
     pub(crate) source: String,
+}
+
+impl Limit {
+    /// Returns whether the quantity has no limit. Its worst value is then that of all parts of the mesh.
+    pub(crate) fn is_listed(&self) -> bool {
+        self.warn.is_none() && self.fail.is_none()
+    }
 }
 
 /// A kind of elements, as other values are good for quadrilaterals than for triangles.
@@ -111,9 +119,7 @@ fn metric<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Metric>, 
 impl Profile {
     /// Returns the quantities that have limits.
     pub(crate) fn limited(&self) -> impl Iterator<Item = Quantity> + '_ {
-        let limits =
-            self.limits.iter().filter(|limit| limit.warn.is_some() || limit.fail.is_some());
-        limits.map(|limit| limit.quantity)
+        self.limits.iter().filter(|limit| !limit.is_listed()).map(|limit| limit.quantity)
     }
 
     /// Returns whether depths are necessary for a limit or a listed quantity.

@@ -65,8 +65,9 @@ impl ProfileReport {
                 limit: limit.clone(),
                 warn: limit.warn.as_ref().map(found),
                 fail: limit.fail.as_ref().map(found),
-                listed: (limit.warn.is_none() && limit.fail.is_none())
-                    .then(|| found(&Threshold::none(limit.quantity))),
+                listed: limit
+                    .is_listed()
+                    .then(|| quantities.finding(&Threshold::none(limit.quantity))),
             }
         };
         let is_of_elements = |limit: &Limit| limit.quantity.part() == Part::Triangle;
@@ -74,7 +75,8 @@ impl ProfileReport {
         let judges_quadrilaterals = profile.limits.iter().any(judges);
         // A mesh of one kind of elements needs no limits of the other kind.
         let concerns = |limit: &&Limit| {
-            !(judges_quadrilaterals && is_of_elements(limit))
+            limit.is_listed()
+                || !(judges_quadrilaterals && is_of_elements(limit))
                 || quantities.count(limit.elements) > 0
         };
         // A listed quantity that no part has, such as the time step without depths, has no line.
@@ -286,22 +288,20 @@ impl LimitReport {
     }
 
     fn json(&self) -> Value {
-        let Limit { quantity, elements, warn, fail, source } = &self.limit;
+        let Limit { quantity, warn, fail, source, .. } = &self.limit;
         let worst = self.worst().map(|Worst { place, value }| {
             let mut object = place.json();
             object.insert("value".into(), json!(value));
             object
         });
-        let total = self.finding().map(|finding| finding.total);
-        let parts = match elements {
-            Elements::Triangles => quantity.part().noun(false),
-            Elements::Quadrilaterals => elements.name(),
-        };
-        json!({
+        let mut object = json!({
             "quantity": quantity.name(), "warn": range(warn), "fail": range(fail), "source": source,
-            parts: total, "warned": self.warned(), "failed": self.failed(),
-            "verdict": self.judged(), "worst": worst,
-        })
+            "warned": self.warned(), "failed": self.failed(), "verdict": self.judged(), "worst": worst,
+        });
+        if let Some(Finding { parts, total, .. }) = self.finding() {
+            object[*parts] = json!(total);
+        }
+        object
     }
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use gpu_smooth::Element;
-use gpu_smooth::measure::{InnerEdge, Measure, Measured, WhyLarge};
+use gpu_smooth::measure::{InnerEdge, Measured, WhyLarge};
 use gpu_smooth::topology::signed_area;
 
 use crate::error::CliError;
@@ -100,6 +100,20 @@ impl<'m> Quantities<'m> {
         }
     }
 
+    /// Checks that the mesh has elements with a quantity of elements. Meshes without edges or vertices inside satisfy each threshold
+    /// of edges or vertices.
+    ///
+    /// # Errors
+    /// Returns an input error for a quantity of triangles if the mesh has quadrilaterals alone.
+    pub(crate) fn check_elements(&self, quantity: Quantity) -> Result<(), CliError> {
+        if quantity.part() != Part::Triangle || !self.elements(quantity, Among::All).is_empty() {
+            return Ok(());
+        }
+        let path = self.file.source.path().display();
+        let problem = format!("{path}: no element is a triangle, which {quantity} needs");
+        Err(CliError::input(problem).with_remedy("Leave out the threshold"))
+    }
+
     /// Counts the elements, or other parts, with a value in the range of a threshold, and locates the worst part.
     pub(crate) fn finding(&self, threshold: &Threshold) -> Finding {
         self.find(threshold, Among::All)
@@ -119,10 +133,14 @@ impl<'m> Quantities<'m> {
         }
     }
 
-    /// Returns the range of the visited elements that have a measure. Triangles come first.
-    fn range_with(&self, measure: Measure, among: Among) -> Range<usize> {
-        let all = self.measured.count_with(measure);
+    /// Returns the range of the visited elements that may have a quantity of elements. Triangles come first.
+    fn elements(&self, quantity: Quantity, among: Among) -> Range<usize> {
         let triangles = self.count(Elements::Triangles);
+        let all = match quantity {
+            Quantity::Measure(measure) => self.measured.count_with(measure),
+            Quantity::TimeStep => self.measured.count(),
+            _ => triangles,
+        };
         match among {
             Among::All => 0..all,
             Among::Only(Elements::Triangles) => 0..triangles,
@@ -133,10 +151,11 @@ impl<'m> Quantities<'m> {
     /// Counts the parts beyond a threshold, and locates the worst part.
     fn find(&self, threshold: &Threshold, among: Among) -> Finding {
         let (count, total, worst);
-        let of_elements = threshold.quantity.measure().filter(|measure| !measure.is_of_edges());
-        let is_of_all =
-            |m: &Measure| self.range_with(*m, among) == (0..self.measured.count_with(*m));
-        if let Some(measure) = of_elements.filter(is_of_all) {
+        let quantity = threshold.quantity;
+        let is_of_elements = quantity.part() == Part::Triangle;
+        let elements = self.elements(quantity, among);
+        let is_of_all = elements == self.elements(quantity, Among::All);
+        if let Some(measure) = quantity.measure().filter(|_| is_of_elements && is_of_all) {
             // Measures of all elements need no list of values.
             count = self.measured.count_where(measure, |value| threshold.is_met(value)).0;
             total = self.measured.count_with(measure);
@@ -153,15 +172,14 @@ impl<'m> Quantities<'m> {
             worst = values.into_iter().reduce(worse);
         }
         let worst = worst.map(|Valued { index, value }| {
-            let place = self.place(threshold.quantity.part(), index);
+            let place = self.place(quantity.part(), index);
             Worst { place, value }
         });
-        let triangles = self.count(Elements::Triangles);
-        let has_others = of_elements.is_some_and(|m| self.range_with(m, among).end > triangles);
+        let has_others = is_of_elements && elements.end > self.count(Elements::Triangles);
         let parts = match among {
             Among::Only(Elements::Quadrilaterals) => Elements::Quadrilaterals.name(),
             _ if has_others => "elements",
-            _ => threshold.quantity.part().noun(false),
+            _ => quantity.part().noun(false),
         };
         Finding { threshold: threshold.clone(), parts, count, total, worst }
     }
@@ -177,7 +195,7 @@ impl<'m> Quantities<'m> {
                 values.enumerate().map(valued).collect()
             }
             Quantity::Measure(measure) => {
-                let range = self.range_with(measure, among);
+                let range = self.elements(threshold.quantity, among);
                 let values = self.measured.values(measure).into_iter().enumerate();
                 values.take(range.end).skip(range.start).map(valued).collect()
             }
@@ -198,10 +216,11 @@ impl<'m> Quantities<'m> {
                 let Some(depths) = &self.depths else { return Vec::new() };
                 let in_degrees = self.file.chart().is_some() || degrees(self.file).is_some();
                 let points = self.measured.points();
-                let steps = topology.triangles().iter().enumerate().map(|(t, corners)| {
+                let steps = self.elements(threshold.quantity, among).map(|index| {
+                    let corners = self.file.corners(self.measured.element(index));
                     let depth = corners.iter().map(|&v| depths[v as usize]).fold(0.0, f64::max);
-                    let corners = corners.map(|v| points[v as usize]);
-                    (t, altitude(corners, in_degrees) / (GRAVITY * depth).sqrt())
+                    let corners: Vec<_> = corners.iter().map(|&v| points[v as usize]).collect();
+                    (index, least_altitude(&corners, in_degrees) / (GRAVITY * depth).sqrt())
                 });
                 steps.filter(|(_, step)| step.is_finite()).map(valued).collect()
             }
@@ -250,6 +269,18 @@ const GRAVITY: f64 = 9.81;
 
 /// Length of a degree of latitude in meters, on a sphere of the Earth's mean radius of 6,371 km.
 const DEGREE: f64 = 6_371_000.0 * PI / 180.0;
+
+/// Returns the least altitude of a triangle, or of the four corner triangles of a quadrilateral, as [`altitude`] does.
+fn least_altitude(corners: &[[f64; 2]], in_degrees: bool) -> f64 {
+    let count = corners.len();
+    let of_corner = |k: usize| {
+        let [before, after] = [(k + count - 1) % count, (k + 1) % count];
+        altitude([corners[before], corners[k], corners[after]], in_degrees)
+    };
+    // Each corner triangle of a triangle is the triangle itself.
+    let triangles = if count == 3 { 1..2 } else { 0..count };
+    triangles.map(of_corner).fold(f64::INFINITY, f64::min)
+}
 
 /// Returns the least altitude of a triangle in the unit of its corners, without a sign; in meters if the corners are
 /// longitudes and latitudes in degrees.

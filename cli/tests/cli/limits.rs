@@ -247,6 +247,55 @@ fn the_time_step_is_the_altitude_over_the_speed_of_waves_at_the_largest_depth() 
     assert!((number(&of_degrees["worst"]["value"]) * 9.81 / meters - 1.0).abs() < 1e-4);
 }
 
+/// A rectangle with sides of 30 and 40, whose corner triangles have an altitude of 24.
+const BASIN: &str =
+    "basin\n1 4\n1 0 0 9.81\n2 30 0 0\n3 30 40 -1\n4 0 40 -3\n1 4 1 2 3 4\n0\n0\n0\n0\n";
+
+#[test]
+fn the_time_step_of_a_quadrilateral_is_by_the_least_altitude_of_its_corner_triangles() {
+    let folder = Folder::new(&[("in.14", BASIN)]);
+    let run = quality(&folder, &["--threshold", "time-step<3", "--summary"]);
+    assert_eq!(run.code, Some(1));
+    let told = "in.14: failed: 1 of 1 elements have time-step<3; the worst is quadrilateral 1 (in.14:7), time-step 2.4465 s";
+    assert_holds(&run.out, &[told]);
+    for profile in ["adcirc", "schism"] {
+        let json = quality(&folder, &["--for", profile, "--json"]).out;
+        let told: Value = serde_json::from_str(&json).unwrap();
+        let limits = told["profile"]["limits"].as_array().unwrap();
+        let listed = limits.iter().find(|limit| limit["quantity"] == "time-step").unwrap();
+        assert_eq!(listed["elements"], 1, "{profile}: {listed}");
+        assert_eq!(listed["worst"]["quadrilateral"], 1);
+        assert!((number(&listed["worst"]["value"]) * 9.81 / 24.0 - 1.0).abs() < 1e-12);
+    }
+    let own = "name = \"ours\"\n[[limits]]\nquantity = \"time-step\"\nelements = \"quadrilaterals\"\nfail = \"< 3\"\n";
+    std::fs::write(folder.path("own.toml"), own).unwrap();
+    let run = quality(&folder, &["--for", "own.toml", "--summary"]);
+    assert_eq!(run.code, Some(1));
+    assert_holds(
+        &run.out,
+        &["1 of 1 quadrilaterals have time-step<3; the worst is quadrilateral 1"],
+    );
+    // The wave is slow on the triangle at the upper edge, at a depth of 0.0981.
+    let mixed =
+        BASIN.replace("1 4\n", "2 5\n").replace("\n4 0 40 -3", "\n4 0 40 0.0981\n5 0 400 -1");
+    let mixed = mixed.replace("\n1 4 1 2 3 4", "\n1 3 4 3 5\n2 4 1 2 3 4");
+    std::fs::write(folder.path("in.14"), mixed).unwrap();
+    let run = quality(&folder, &["--threshold", "time-step<3", "--summary"]);
+    assert_holds(&run.out, &["1 of 2 elements have time-step<3; the worst is quadrilateral 2"]);
+}
+
+#[test]
+fn a_threshold_of_triangles_is_refused_for_a_mesh_without_triangles() {
+    let folder = Folder::new(&[("in.14", BASIN)]);
+    for (threshold, name) in
+        [("boundary-corners>=3", "boundary-corners"), ("schism-skewness>9", "schism-skewness")]
+    {
+        let told = format!("in.14: no element is a triangle, which {name} needs");
+        quality(&folder, &["--threshold", threshold, "--summary"]).refused(&[&told]);
+    }
+    quality(&folder, &["--threshold", "edge-ratio>2", "--summary"]).clean();
+}
+
 #[test]
 fn a_mesh_without_depths_has_no_time_step() {
     let folder = small();

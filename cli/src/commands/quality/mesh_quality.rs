@@ -153,6 +153,7 @@ impl MeshQuality {
         let depths = if needs_depths { depths(&file, &[])? } else { None };
         let quantities = Quantities::new(&file, &measured, depths);
         limited.iter().try_for_each(|&quantity| quantities.check(quantity))?;
+        args.threshold.iter().try_for_each(|limit| quantities.check_elements(limit.quantity))?;
         let listed = if args.json { usize::MAX } else { explain::TOLD };
         let [of_triangles, of_corners] = [bad.len(), bad_corners.len()].map(|n| n.min(listed));
         Ok(Self {
