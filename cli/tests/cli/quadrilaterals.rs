@@ -368,9 +368,8 @@ fn measures_of_triangles_alone_have_no_value() {
     let folder = Folder::new(&[("q.vtk", &vtk(4, |_| false, |_| 1))]);
     let json = folder.line("quality q.vtk --json");
     let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
-    let measure = &json["measures"]["schism-skewness"];
-    assert!(measure["min"].is_null() && measure["mean"].is_null(), "{measure}");
-    assert!(json["measures"]["shape"]["min"].is_number());
+    let measures = json["measures"].as_object().unwrap();
+    assert!(!measures.contains_key("schism-skewness") && measures["shape"]["min"].is_number());
     let csv = folder.line("quality q.vtk --csv").out;
     assert_holds(&csv, &["\nq.vtk,,schism-skewness,0,,,,,,,"]);
     folder.line("quality q.vtk q.vtk --html pages.html --quiet").clean();
@@ -378,6 +377,27 @@ fn measures_of_triangles_alone_have_no_value() {
     for page in ["page.html", "pages.html"] {
         assert!(!folder.text(page).contains(">NaN<"), "{page}");
     }
+}
+
+#[test]
+fn a_table_has_a_dash_for_a_measure_that_a_mesh_or_region_lacks() {
+    let mixed = vtk(4, |k| k < 8, |k| 1 + k / 8);
+    let folder = Folder::new(&[("q.vtk", &vtk(4, |_| false, |_| 1)), ("t.vtk", &mixed)]);
+    let row = |text: &str, at: usize| -> Vec<String> {
+        let mut rows = text.lines().skip_while(|line| !line.starts_with("schism-skewness"));
+        let line = rows.nth(at).unwrap_or_else(|| panic!("{text}"));
+        line.split_whitespace().map(str::to_owned).collect()
+    };
+    let table = folder.line("quality t.vtk q.vtk -m schism-skewness").out;
+    assert_eq!(row(&table, 2)[1..], ["-"; 7], "{table}");
+    let table = folder.line("quality t.vtk -m schism-skewness --by-region").out;
+    assert!(!table.contains("NaN") && table.matches(" -").count() >= 7, "{table}");
+    let json = folder.line("quality t.vtk --json --by-region").out;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let has = |k: usize| {
+        json["regions"][k]["measures"].as_object().unwrap().contains_key("schism-skewness")
+    };
+    assert_eq!([has(0), has(1)], [true, false]);
 }
 
 /// A quadrilateral that lists a vertex twice is no element, and has no place among the elements.

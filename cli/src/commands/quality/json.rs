@@ -63,20 +63,16 @@ fn object(quality: &MeshQuality) -> Result<Value, serde_json::Error> {
     Ok(value)
 }
 
+/// Converts statistics to JSON. Measures that no element has are left out, as null stands for infinite numbers.
 fn measures(statistics: &[Statistics]) -> Value {
     let one = |s: &Statistics| {
         let [low, median, high] = s.quantiles.map(|quantile| quantile as f32);
-        if s.count == 0 {
-            let none = ["min", "p5", "p50", "mean", "p95", "max", "sd"]
-                .map(|name| (name.to_owned(), Value::Null));
-            return (s.measure.name().to_owned(), Value::from_iter(none));
-        }
         let numbers = json!({
             "min": s.min, "p5": low, "p50": median, "mean": s.mean, "p95": high, "max": s.max, "sd": s.deviation,
         });
         (s.measure.name().to_owned(), numbers)
     };
-    Value::Object(statistics.iter().map(one).collect())
+    Value::Object(statistics.iter().filter(|s| s.count > 0).map(one).collect())
 }
 
 /// Converts a histogram to JSON. The last edge is null if the last bin is unbounded.

@@ -74,7 +74,6 @@ fn table(qualities: &[MeshQuality], is_usual: bool, style: &Style) -> String {
     if is_usual {
         shown.retain(|measure| !matches!(measure, Measure::Metric(_)));
     }
-    // Quadrilaterals lack some measures.
     let has_value = |i: usize| qualities.iter().any(|quality| quality.statistics[i].count > 0);
     let is_shown = |&(i, measure): &(usize, &Measure)| shown.contains(measure) && has_value(i);
     let shown = measures.iter().enumerate().filter(is_shown);
@@ -104,8 +103,11 @@ fn head(style: &Style) -> String {
 }
 
 fn row(name: &str, statistics: &Statistics, style: &Style) -> String {
-    let Statistics { min, mean, max, deviation, quantiles: [low, median, high], .. } = statistics;
-    line(name, [min, low, median, mean, high, max, deviation].map(|number| fit8(*number)), style)
+    let Statistics { count, min, mean, max, deviation, quantiles, .. } = statistics;
+    let [low, median, high] = quantiles;
+    // Quadrilaterals lack some measures.
+    let field = |number: &f64| if *count == 0 { "-".to_owned() } else { fit8(*number) };
+    line(name, [min, low, median, mean, high, max, deviation].map(field), style)
 }
 
 fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
