@@ -48,9 +48,12 @@ fn with_effect(remark: &Remark, moves: bool, slides: bool) -> String {
         Remark::OtherElements { name, .. } if moves && name.starts_with("quadrilateral") => {
             format!("{remark}, whose vertices may move")
         }
-        Remark::OtherElements { count, .. } => {
+        Remark::OtherElements { count, name } => {
             let their = if *count == 1 { "its" } else { "their" };
-            let slide = if slides { ", or slide along lines" } else { "" };
+            let slide = match slides && is_of_lines(name) {
+                true => ", or slide along lines",
+                false => "",
+            };
             format!("{remark}: {their} vertices stay fixed{slide}")
         }
         Remark::AllOnModelCurves => {
@@ -70,6 +73,12 @@ fn with_effect(remark: &Remark, moves: bool, slides: bool) -> String {
         }
         _ => remark.to_string(),
     }
+}
+
+/// Returns whether elements that are no triangles are lines, to judge by their name in a remark. Vertices of quadrilaterals, of
+/// ghosts and of elements that constrain nodes stay where they are.
+fn is_of_lines(name: &str) -> bool {
+    ["edge", "node", "segment"].iter().any(|line| name.starts_with(line))
 }
 
 /// Returns the remark on an adapted mesh.

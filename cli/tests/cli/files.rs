@@ -1,6 +1,6 @@
 //! Preservation of the input file in each format.
 
-use super::{Folder, assert_smoothed, disturbed};
+use super::{Folder, assert_holds, assert_smoothed, disturbed};
 use gpu_smooth::Mesh;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -301,6 +301,8 @@ fn vertices_on_poly_segments_stay_and_the_poly_is_written_along() {
         );
         assert_middle_row_held(&folder.mesh("in"), &folder.mesh("out"));
         assert_eq!((folder.text("out.ele"), folder.text("out.poly")), (files[1].clone(), poly));
+        let slides = folder.line("in out --slide --force --engine cpu").err;
+        assert_holds(&slides, &[&format!("{note}, or slide along lines\n")]);
     }
 }
 

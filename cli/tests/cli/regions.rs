@@ -423,7 +423,7 @@ fn vertices_that_pieces_of_a_mesh_have_in_common_stay() {
         let mut moved = Vec::new();
         for (piece, ghosts) in ["0.vtk", "1.vtk"].into_iter().zip([half..2 * half, 0..half]) {
             folder.line(&format!("convert {piece} {piece}.vtu --quiet")).clean();
-            let told = "80 ghost elements: their vertices stay fixed";
+            let told = "80 ghost elements: their vertices stay fixed\n";
             for piece in [piece.to_owned(), format!("{piece}.vtu")] {
                 for options in ["", "--slide"] {
                     let run =
