@@ -64,8 +64,10 @@ pub(crate) fn area(text: &str) -> Result<[[f64; 2]; 2], String> {
 
 /// Parses the names of two groups with a comma between them.
 pub(crate) fn two_names(text: &str) -> Result<[String; 2], String> {
-    match text.split_once(',').map(|(a, b)| [a.trim(), b.trim()]) {
-        Some([a, b]) if !a.is_empty() && !b.is_empty() => Ok([a.to_owned(), b.to_owned()]),
+    match text.split_once(',') {
+        Some((a, b)) if !a.trim().is_empty() && !b.trim().is_empty() => {
+            Ok([a.to_owned(), b.to_owned()])
+        }
         _ => Err("the names or tags of two groups are needed, with a comma between them".into()),
     }
 }

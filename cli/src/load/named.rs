@@ -25,7 +25,12 @@ pub(super) fn named<'t, 'g>(
         return Ok(vec![(text, group)]);
     }
     let mut found = Vec::new();
-    for name in text.split(',').map(str::trim) {
+    for given in text.split(',') {
+        // The name in the file may begin or end with blanks.
+        let name = match groups.find(given) {
+            Err(GroupError::Unknown { .. }) => given.trim(),
+            _ => given,
+        };
         match groups.find(name) {
             Ok(group) => found.push((name, group)),
             Err(error) => match of_one_name(groups, &error) {

@@ -100,6 +100,23 @@ fn names_that_groups_share_are_listed_and_name_all_of_them() {
         .refused(&["no group is called 'inn'", "Did you mean in?"]);
 }
 
+#[test]
+fn names_with_blanks_at_their_ends_are_found_as_they_are_listed() {
+    let mesh = TWO_OF_A_NAME
+        .replace("1 1 \"out\"", "1 1 \" lead\"")
+        .replace("1 4 \"out\"", "1 4 \"trail \"");
+    let folder = Folder::new(&[("in.msh", &mesh)]);
+    for name in [" lead", "trail ", " lead,trail ", "in, lead", " in,trail ", "trail , in "] {
+        let run = folder.run(["in.msh", "out.msh", "--force", "--engine", "cpu", "--fix", name]);
+        assert_eq!(run.code, Some(0), "{name}: {}", run.err);
+    }
+    let sides = ["--slide", "--periodic", " lead,trail "];
+    let run = folder.run(["in.msh", "out.msh", "--force", "--engine", "cpu"].iter().chain(&sides));
+    assert!(!run.err.contains("no group is called"), "{}", run.err);
+    let run = folder.run(["in.msh", "out.msh", "--fix", "lead"]);
+    run.refused(&["no group is called 'lead'", "Did you mean  lead?"]);
+}
+
 /// The cell data under a usual name and under a name that the command line gives are groups alike.
 #[test]
 fn regions_that_an_option_names_are_groups() {
