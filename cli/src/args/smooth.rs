@@ -86,7 +86,7 @@ pub(crate) struct SmoothArgs {
     pub(crate) dry_run: bool,
     /// Replace OUT even if OUT holds another mesh than IN, or no mesh. Without --force, OUT must be new or empty, be IN
     /// itself, or hold a mesh with the triangles and the fixed vertices of IN, and reports, pages and pictures replace
-    /// files of their own kind only
+    /// those of earlier runs only
     #[arg(long, help_heading = "Output")]
     pub(crate) force: bool,
     /// Write a JSON report with the history of every sweep and a certificate: the written mesh is read again, the

@@ -4,6 +4,7 @@
 pub(crate) mod checks;
 mod command_line;
 mod conflicts;
+mod earlier_output;
 mod form;
 pub(crate) mod mistyped;
 mod movable;
@@ -17,6 +18,7 @@ mod tests;
 mod trial;
 
 pub(crate) use command_line::command_line;
+pub(crate) use earlier_output::{PAGE_MARK, PNG_MARK, SVG_MARK};
 pub(crate) use form::FormRequest;
 pub(crate) use movable::{FieldsRequest, MovableRequest, NearBad, SlideRequest};
 pub(crate) use outputs::{MeshOutput, Outputs};

@@ -11,6 +11,7 @@ use mesh_io::{Format, atomic};
 use crate::args::{PictureArgs, SmoothArgs};
 use crate::color_scale::ColorScale;
 use crate::error::{CliError, ErrorKind};
+use crate::request::earlier_output;
 use crate::request::picture::{self, PictureRequest};
 use crate::request::target::TargetRequest;
 
@@ -307,14 +308,13 @@ impl Outputs {
 }
 
 impl Role {
-    /// Returns whether a file with these first bytes may be an earlier output of this role. An empty file may be.
+    /// Returns whether a file with these first bytes is an earlier output of this role, or empty.
     fn may_replace(self, head: &[u8]) -> bool {
-        let first = head.trim_ascii_start();
         match self {
-            _ if first.is_empty() => true,
-            Self::Report => first.starts_with(b"{"),
-            Self::Page => first.starts_with(b"<"),
-            Self::Picture => first.starts_with(b"<") || first.starts_with(b"\x89PNG"),
+            _ if head.trim_ascii().is_empty() => true,
+            Self::Report => earlier_output::is_report(head),
+            Self::Page => earlier_output::is_page(head),
+            Self::Picture => earlier_output::is_picture(head),
             // Checkpoints of a run replace those of this run alone.
             Self::Checkpoint => false,
         }
@@ -328,7 +328,7 @@ impl Role {
             Self::Picture => "a picture",
             Self::Checkpoint => "a checkpoint",
         };
-        format!("{}: exists and is not {kind}", path.display())
+        format!("{}: exists and is not {kind} of gpu-smooth", path.display())
     }
 
     /// Returns the error for an output at the path of a mesh file, or with the extension of a mesh format.

@@ -4,6 +4,9 @@ use super::files::{Layout, gmsh_text, middle_row, triangle_files, triangle_folde
 use super::{Folder, assert_holds, disturbed, number, small};
 use std::fs;
 
+/// The beginning of a report of any version.
+const OLD_REPORT: &str = "{\"schema_version\": 3, \"program\": \"gpu-smooth 0.1.0\"}";
+
 #[test]
 fn a_mesh_is_replaced_in_place() {
     let folder = small();
@@ -74,7 +77,7 @@ fn destinations_that_cannot_work_are_refused_before_anything_is_written() {
     fs::write(folder.path("old.node"), "old").unwrap();
     fs::write(folder.path("locked.ele"), "old").unwrap();
     fs::create_dir(folder.path("dir")).unwrap();
-    fs::write(folder.path("locked.json"), "{}").unwrap();
+    fs::write(folder.path("locked.json"), OLD_REPORT).unwrap();
     for name in ["locked.ele", "locked.json"] {
         let mut permissions = fs::metadata(folder.path(name)).unwrap().permissions();
         permissions.set_readonly(true);
@@ -160,7 +163,7 @@ fn files_that_are_read_or_hold_a_mesh_are_not_replaced_by_other_files() {
         ("--html kept.html", "kept.html: the file is a mesh (gmsh). Give --html another"),
         (
             "--report list.json",
-            "list.json: exists and is not a report. Give --report another name, or",
+            "list.json: exists and is not a report of gpu-smooth. Give --report another name, or",
         ),
         ("--picture list.svg", "list.svg: exists and is not a picture"),
     ] {
@@ -181,6 +184,37 @@ fn files_that_are_read_or_hold_a_mesh_are_not_replaced_by_other_files() {
     assert!(!run.refused(&["list.svg: exists and is not a picture"]).err.contains("--force"));
     folder.line("in out --engine cpu --report list.json --force").clean();
     assert!(folder.text("list.json").starts_with('{'));
+}
+
+#[test]
+fn files_beside_the_mesh_replace_earlier_outputs_and_no_foreign_json_xml_or_picture() {
+    let folder = small();
+    let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\0\0\0\0";
+    let drawing = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"></svg>\n";
+    let page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Notes</title>\n";
+    let mesh = "{ \"type\": \"FeatureCollection\", \"program\": \"gpu-smooth\" }\n";
+    let febio = "<?xml version=\"1.0\"?>\n<febio_spec><Mesh name=\"plate\"/></febio_spec>\n";
+    for (option, name, foreign) in [
+        ("--report", "a.json", [mesh.as_bytes(), b"{\"schema_version\": 3, \"meshes\": []}"]),
+        ("--html", "a.html", [page.as_bytes(), febio.as_bytes()]),
+        ("--picture", "a.svg", [drawing.as_bytes(), febio.as_bytes()]),
+        ("--picture", "a.png", [&png[..], drawing.as_bytes()]),
+    ] {
+        let line = format!("in out --engine cpu -q {option} {name}");
+        for foreign in foreign {
+            fs::write(folder.path(name), foreign).unwrap();
+            folder.line(&line).refused(&[&format!("{name}: exists and is not a "), "--force"]);
+            assert!(fs::read(folder.path(name)).unwrap() == foreign);
+        }
+        folder.line(&format!("{line} --force")).clean();
+        folder.line(&line).clean();
+    }
+    // A report whose blanks another program has changed is still a report.
+    let compact: String = folder.text("a.json").split_whitespace().collect();
+    fs::write(folder.path("a.json"), compact).unwrap();
+    folder.line("in out --engine cpu -q --report a.json").clean();
+    folder.line("quality in --html q.html -q").clean();
+    folder.line("quality in --html q.html -q").clean();
 }
 
 /// Formats without a first word, and compressed meshes.
@@ -261,12 +295,12 @@ fn a_report_does_not_replace_the_mesh_under_another_spelling_or_through_a_link()
 #[test]
 fn a_report_takes_the_place_of_an_old_one_only_once_it_is_whole() {
     let folder = small();
-    fs::write(folder.path("r.json"), "{}").unwrap();
+    fs::write(folder.path("r.json"), OLD_REPORT).unwrap();
     // A hard link keeps the old content if the file is replaced, and shows the new content if the file is
     // overwritten.
     fs::hard_link(folder.path("r.json"), folder.path("kept")).unwrap();
     folder.line("in out --engine cpu --report r.json").clean();
-    assert_eq!(folder.text("kept"), "{}");
+    assert_eq!(folder.text("kept"), OLD_REPORT);
     assert!(number(&folder.json("r.json")["sweeps"]) > 0.0);
     assert_eq!(folder.content().len(), 6);
 }

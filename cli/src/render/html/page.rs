@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use crate::request::PAGE_MARK;
+
 const STYLE: &str = include_str!("page.css");
 /// The script of every page: hover texts of charts, and tables that sort.
 const SCRIPT: &str = include_str!("page.js");
@@ -130,7 +132,7 @@ impl Page {
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta name=\"color-scheme\" content=\"light dark\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n{PAGE_MARK}\n\
              <title>{title} - gpu-smooth</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</main>\n{scripts}</body>\n</html>\n"
         )
     }

@@ -10,6 +10,7 @@ use crate::render::picture::clip::clipped;
 use crate::render::picture::color::{BAD, BLACK, Color, NEUTRAL, WHITE, of_goodness};
 use crate::render::picture::font::Font;
 use crate::render::picture::raster::Raster;
+use crate::request::PNG_MARK;
 
 /// Number of steps from bad to good in a palette, which also has three other colors.
 const SCALE: u8 = 253;
@@ -79,11 +80,18 @@ pub(crate) fn encode(raster: &Raster) -> Result<Vec<u8>, CliError> {
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(palette.concat());
     encoder.set_trns(&[0][..]);
-    let failed = |error: png::EncodingError| CliError::run(error.to_string());
-    let mut writer = encoder.write_header().map_err(failed)?;
-    writer.write_image_data(&pixels).map_err(failed)?;
-    writer.finish().map_err(failed)?;
+    write(encoder, &pixels)?;
     Ok(bytes)
+}
+
+fn write(encoder: png::Encoder<'_, &mut Vec<u8>>, pixels: &[u8]) -> Result<(), CliError> {
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(pixels).map_err(failed)?;
+    writer.finish().map_err(failed)
+}
+
+fn failed(error: png::EncodingError) -> CliError {
+    CliError::run(error.to_string())
 }
 
 impl Canvas for Png {
@@ -195,6 +203,13 @@ impl Canvas for Png {
     }
 
     fn finish(self: Box<Self>) -> Result<Vec<u8>, CliError> {
-        self.pixels.encode_png().map_err(|error| CliError::run(error.to_string()))
+        let (width, height) = (self.pixels.width(), self.pixels.height());
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, width, height);
+        encoder.set_color(png::ColorType::Rgba);
+        let [keyword, text] = PNG_MARK.map(str::to_owned);
+        encoder.add_text_chunk(keyword, text).map_err(failed)?;
+        write(encoder, &self.pixels.take_demultiplied())?;
+        Ok(bytes)
     }
 }

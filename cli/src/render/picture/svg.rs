@@ -12,6 +12,7 @@ use crate::render::picture::color::{Color, of_goodness};
 use crate::render::picture::font::Font;
 use crate::render::picture::png;
 use crate::render::picture::raster::Raster;
+use crate::request::SVG_MARK;
 
 /// Largest number of triangles drawn as shapes, which take some megabytes of text.
 const MOST_TRIANGLES: usize = 50_000;
@@ -31,7 +32,7 @@ impl Svg {
         let _ = writeln!(
             text,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>"
+             {SVG_MARK}\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>"
         );
         Ok(Self { text, font: Font::new()?, problem: None })
     }
