@@ -29,7 +29,7 @@ pub(crate) fn check(
         return Ok(());
     }
     let (reading, likeness) = match conversion {
-        None => (reading.clone(), Likeness::Mesh),
+        None => (reading.clone(), Likeness::Mesh { slides: request.slide.is_some() }),
         // Conversions write joined vertices. Other vertices at one place, such as those of a crack, stay apart.
         Some(_) => (ReadRequest { weld: false, ..reading.clone() }, Likeness::Elements),
     };

@@ -4,7 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mesh_io::{MeshFile, ReadError, atomic};
+use gpu_smooth::Topology;
+use mesh_io::{MeshFile, PointField, ReadError, atomic};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
@@ -14,8 +15,8 @@ use crate::terminal::numbers::elements;
 /// Properties in which a written mesh must equal the existing mesh that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Likeness {
-    /// The elements and the fixed vertices.
-    Mesh,
+    /// The elements and the fixed vertices, with their positions and data unless vertices slide.
+    Mesh { slides: bool },
     /// The elements. A conversion may lose groups, and with them the constraints that fix vertices.
     Elements,
 }
@@ -62,7 +63,13 @@ pub(crate) fn check(
         false => Err("one of its files is no regular file".to_owned()),
     };
     let (path, read) = (first.display(), file.source.path().display());
-    let text = match old.map(|old| difference(&file.source, &old, likeness)) {
+    let difference = |old: MeshFile| {
+        difference(&file.source, &old, likeness).or_else(|| match likeness {
+            Likeness::Mesh { slides } => difference_of_vertices(file, &old, slides),
+            Likeness::Elements => None,
+        })
+    };
+    let text = match old.map(difference) {
         Ok(None) => return Ok(()),
         Ok(Some(difference)) => format!("{path}: holds another mesh than {read}: {difference}"),
         Err(problem) => format!("{path}: exists, and cannot be read as a mesh: {problem}"),
@@ -104,8 +111,42 @@ fn difference(new: &MeshFile, old: &MeshFile, likeness: Likeness) -> Option<Stri
     if have_other_triangles || ascending(&of_new) != ascending(&of_old) {
         return Some("the vertices of its elements are others".to_owned());
     }
-    (likeness == Likeness::Mesh && fixed(new) != fixed(old))
+    (likeness != Likeness::Elements && fixed(new) != fixed(old))
         .then(|| "its fixed vertices are others".to_owned())
+}
+
+/// Describes the first difference between the vertices that stay in a mesh with equal elements, and those of `old`: their places
+/// and data. `None` if these are no reason to keep `old`. An earlier run may have let a part of the vertices slide. If `slides`, it
+/// may have moved all of them.
+fn difference_of_vertices(new: &LoadedMesh, old: &MeshFile, slides: bool) -> Option<String> {
+    let names = old.data_names();
+    if let Some(name) = names.iter().find(|name| !new.source.data_names().contains(name)) {
+        return Some(format!("it has data of vertices that would be lost: `{name}`"));
+    }
+    // A run refuses a mesh without a topology.
+    let topology = Topology::new(new.mesh()).ok().filter(|_| !slides)?;
+    let points = [new.source.points(), old.points()];
+    let stay: Vec<usize> = (0..points[0].len()).filter(|&v| !topology.free()[v]).collect();
+    if !stay.is_empty() && stay.iter().all(|&v| points[0][v] != points[1][v]) {
+        return Some("its fixed vertices are elsewhere".to_owned());
+    }
+    if names.is_empty() {
+        return None;
+    }
+    // Whatever is wrong with data, a run that needs them says so.
+    let fields = [&new.source, old].map(|file| file.point_fields(Some(names)));
+    let [Ok(of_new), Ok(of_old)] = fields else { return None };
+    let has_places = new.source.has_third_coordinates();
+    let other = of_new.iter().zip(&of_old).find(|(new, old)| {
+        let each = new.components();
+        let values = |field: &PointField, v: usize| {
+            let own = field.values().get(v * each..(v + 1) * each);
+            own.map(|own| own.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
+        };
+        let is_place = new.is_third_of_points() && has_places;
+        !is_place && stay.iter().any(|&v| values(new, v) != values(old, v))
+    });
+    other.map(|(field, _)| format!("its data of fixed vertices are others: `{}`", field.name()))
 }
 
 /// Returns elements sorted, with sorted corners, independent of the order in the file.

@@ -62,6 +62,43 @@ fn a_mesh_with_other_fixed_vertices_is_another_mesh() {
     refused.refused(&["b.msh: holds another mesh than a.msh: its fixed vertices are others"]);
 }
 
+#[test]
+fn a_mesh_of_another_place_or_with_other_data_is_another_mesh() {
+    let mesh = disturbed();
+    let text = |scale: f64, depth: f64, corner: f64| {
+        let nodes = (1..).zip(&mesh.points).map(|(id, [x, y])| {
+            let depth = if id == 1 { corner } else { depth + x };
+            format!("ND {id} {} {} {depth}\n", scale * x + 10.0 * (scale - 1.0), scale * y)
+        });
+        let triangles = (1..).zip(&mesh.triangles).map(|(id, t)| {
+            let [a, b, c] = t.map(|v| v + 1);
+            format!("E3T {id} {a} {b} {c} 1\n")
+        });
+        format!("MESH2D\n{}{}", triangles.collect::<String>(), nodes.collect::<String>())
+    };
+    let folder = Folder::new(&[
+        ("in.2dm", &text(1.0, 5.0, 5.0)),
+        ("elsewhere.2dm", &text(2.0, 5.0, 5.0)),
+        ("deeper.2dm", &text(1.0, 7.0, 7.0)),
+        ("corner.2dm", &text(1.0, 5.0, 6.0)),
+    ]);
+    let before = folder.content();
+    for (out, told) in [
+        ("elsewhere.2dm", "its fixed vertices are elsewhere"),
+        ("deeper.2dm", "its data of fixed vertices are others: `z`"),
+        ("corner.2dm", "its data of fixed vertices are others: `z`"),
+    ] {
+        let told = format!("{out}: holds another mesh than in.2dm: {told}");
+        folder.line(&format!("in.2dm {out} --engine cpu")).refused(&[&told, "--force"]);
+        assert!(folder.content() == before, "files have changed");
+    }
+    // Results of runs replace each other, whether vertices slide and data are interpolated or not.
+    for words in ["", "--slide", "--interpolate z", "--slide --interpolate z", "--slide", ""] {
+        let run = folder.line(&format!("in.2dm out.2dm --engine cpu -q {words}"));
+        assert_eq!(run.code, Some(0), "{words}: {}", run.err);
+    }
+}
+
 /// Returns a square of four times four quadrilaterals as gmsh 2.2. `group` is the physical group of a column of
 /// quadrilaterals, and `lines` have the numbers of their nodes.
 fn quadrilaterals(group: impl Fn(usize) -> usize, lines: &[[usize; 2]]) -> String {
