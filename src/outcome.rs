@@ -159,6 +159,8 @@ pub struct LargeAngles {
     /// Number of triangles that can move and have an angle above 87.1 degrees: after the last sweep, and in
     /// [`Outcome::points`].
     pub triangles: [usize; 2],
+    /// Number of these triangles that are obtuse, likewise.
+    pub obtuse: [usize; 2],
     /// f by the base metric, after the last sweep and in [`Outcome::points`].
     pub f: [f64; 2],
 }

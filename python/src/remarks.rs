@@ -198,12 +198,15 @@ impl<'a> Remarks<'a> {
                 cost(f)
             ));
         }
-        if let Some(LargeAngles { moved, triangles: [before, after], f, .. }) = outcome.large_angles
+        if let Some(LargeAngles { moved, triangles, obtuse: [were, are], f, .. }) =
+            outcome.large_angles
         {
+            let [before, after] = triangles;
             let (triangles, cost) = (numbered(before, "triangle", "triangles"), cost(f));
             let vertices = numbered(moved, "vertex", "vertices");
             self.add(format!(
-                "the sweeps left {triangles} with an angle above 87.1°. {vertices} moved on to end with {after}, which {cost}"
+                "the sweeps left {triangles} with an angle above 87.1°, {were} of them obtuse. {vertices} moved on to \
+                 end with {after} and {are}, which {cost}"
             ));
         }
         if let Some(improved) = &outcome.improved {

@@ -35,9 +35,10 @@ impl EdgeLimits {
     }
 }
 
-/// The edges that solvers refuse, and the triangles with a large angle.
+/// The edges that solvers refuse, the triangles that are obtuse, and all triangles with a large angle.
 struct Failing {
     edges: usize,
+    obtuse: usize,
     triangles: usize,
 }
 
@@ -46,12 +47,19 @@ impl Failing {
         let edges = inner_edges(movable.surface, points, &movable.smoother.topology);
         let edges = edges.iter().filter(|edge| REFUSED.are_broken_by(edge)).count();
         let triangles = movable.chosen(points, |corner| aim.is_beyond(corner)).await.len();
-        Self { edges, triangles }
+        // Right angles are not obtuse by rounding.
+        const OBTUSE: f64 = -1e-9;
+        let is_obtuse =
+            |corner: PlacedCorner<'_>| !corner.is_right && corner.least_cotangent() < OBTUSE;
+        let obtuse = movable.chosen(points, is_obtuse).await.len();
+        Self { edges, obtuse, triangles }
     }
 
-    /// Returns whether solvers refuse fewer edges than `before`, or as many with fewer large angles.
+    /// Returns whether solvers refuse fewer edges than `before`, or as many with fewer large angles, where obtuse angles count
+    /// twice.
     fn is_better_than(&self, before: &Self) -> bool {
-        (self.edges, self.triangles) < (before.edges, before.triangles)
+        let score = |of: &Self| (of.edges, of.triangles + of.obtuse);
+        score(self) < score(before)
     }
 }
 
@@ -154,7 +162,8 @@ impl Smoother<'_> {
             return Ok(None);
         }
         let moved = points.iter().zip(&swept).filter(|(to, from)| to != from).count();
-        let triangles = [before, now].map(|failing| failing.triangles);
-        Ok(Some(LargeAngles { moved, triangles, f: [0.0; 2] }))
+        let triangles = [&before, &now].map(|failing| failing.triangles);
+        let obtuse = [before, now].map(|failing| failing.obtuse);
+        Ok(Some(LargeAngles { moved, triangles, obtuse, f: [0.0; 2] }))
     }
 }
