@@ -69,7 +69,7 @@ fn numbers_of_triangles_are_no_groups_and_fix_no_vertex() {
     assert!(told.ends_with("the file names no groups\n"), "{told}");
     let run = folder.line("in.msh out.msh --engine cpu");
     assert_eq!(run.code, Some(0), "{}", run.err);
-    assert!(run.err.contains("count triangles, and are no regions"), "{}", run.err);
+    assert!(run.err.contains("count elements, and are no regions"), "{}", run.err);
     assert!(folder.text("in.msh") != folder.text("out.msh"));
 }
 

@@ -1,7 +1,7 @@
-//! Regions of triangles, and the vertices at which regions meet.
+//! Regions of elements, and the vertices at which regions meet.
 //!
-//! Formats identify the region of a triangle by tags, groups or attributes. An [`Interner`] numbers the identifiers of
-//! any format, and [`TriangleRegions`] stores the numbers.
+//! Formats identify the region of an element by tags, groups or attributes. An [`Interner`] numbers the identifiers of
+//! any format.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -36,49 +36,6 @@ impl<N: Clone + Eq + Hash> Interner<N> {
         let number = *self.numbers.entry(name.clone()).or_insert(next);
         self.last = Some((name, number));
         number
-    }
-}
-
-/// The region of each triangle, stored only if there are several regions.
-#[derive(Default)]
-pub(crate) struct TriangleRegions {
-    triangles: usize,
-    /// The region of each triangle; empty while all triangles are in region 0.
-    numbers: Vec<u32>,
-}
-
-impl TriangleRegions {
-    /// Appends a triangle in a region. The first triangle must have region 0.
-    #[inline]
-    pub(crate) fn push(&mut self, region: u32) {
-        if region != 0 && self.numbers.is_empty() {
-            self.numbers = vec![0; self.triangles];
-        }
-        if !self.numbers.is_empty() {
-            self.numbers.push(region);
-        }
-        self.triangles += 1;
-    }
-
-    /// Replaces the region of the last triangle by the region that `next` returns for it.
-    pub(crate) fn replace_last(&mut self, next: impl FnOnce(u32) -> u32) {
-        if self.numbers.is_empty() {
-            self.numbers = vec![0; self.triangles];
-        }
-        if let Some(region) = self.numbers.last_mut() {
-            *region = next(*region);
-        }
-    }
-
-    /// Returns the region of each element.
-    pub(crate) fn into_numbers(self) -> Vec<u32> {
-        if self.numbers.is_empty() { vec![0; self.triangles] } else { self.numbers }
-    }
-
-    /// Returns the region of each triangle; `None` if all triangles have equal regions.
-    pub(crate) fn finish(self) -> Option<Vec<u32>> {
-        let first = self.numbers.first()?;
-        self.numbers.iter().any(|region| region != first).then_some(self.numbers)
     }
 }
 
@@ -161,30 +118,6 @@ mod tests {
         let mut numbering = Interner::default();
         let numbers = [7, 7, -1, 7, 3, -1, 3].map(|name| numbering.intern(name));
         assert_eq!(numbers, [0, 0, 1, 0, 2, 1, 2]);
-    }
-
-    #[test]
-    fn one_region_takes_no_memory() {
-        let of = |numbers: &[u32]| {
-            let mut regions = TriangleRegions::default();
-            numbers.iter().for_each(|&number| regions.push(number));
-            regions.finish()
-        };
-        assert_eq!(of(&[0, 0, 0]), None);
-        assert_eq!(of(&[0, 0, 1, 0]), Some(vec![0, 0, 1, 0]));
-        let mut replaced = TriangleRegions::default();
-        for region in [0, 0, 2] {
-            replaced.push(region);
-            replaced.replace_last(|region| region + 1);
-        }
-        assert_eq!(replaced.finish(), Some(vec![1, 1, 3]));
-        let mut same = TriangleRegions::default();
-        same.push(0);
-        same.replace_last(|_| 1);
-        assert_eq!(same.finish(), None);
-        let mut regions = TriangleRegions::default();
-        (0..1000).for_each(|_| regions.push(0));
-        assert_eq!(regions.numbers.capacity(), 0);
     }
 
     /// Two squares side by side, each with a vertex in its middle, and a vertex in the middle of their common edge.

@@ -28,19 +28,19 @@ pub enum Remark {
         /// The name of the file's list of nodes, such as `$Nodes`.
         list: String,
     },
-    /// The regions of the triangles are those of cell data under a name that is not usual for regions.
+    /// The regions of the elements are those of cell data under a name that is not usual for regions.
     RegionArray {
         /// Name of the array.
         array: String,
         /// Names of further arrays that look like regions, in file order.
         others: Vec<String>,
     },
-    /// The regions of the triangles are those of the format, or of cell data under a usual name. Cell data under other
+    /// The regions of the elements are those of the format, or of cell data under a usual name. Cell data under other
     /// names, which look like regions too, divide these regions further.
     FurtherRegionArrays(Vec<String>),
-    /// Numbers in the place of regions differ for nearly every triangle. The numbers count triangles, and are neither
-    /// regions nor groups.
-    CountedTriangles,
+    /// Numbers in the place of regions differ for nearly every element. The numbers count elements, and are neither regions
+    /// nor groups.
+    CountedElements,
     /// The file lists edges and no faces (UGRID and nets of Delft3D FM), so cells were found from the edges. An island of
     /// three to six edges counts as a cell.
     CellsOfEdges {
@@ -77,8 +77,8 @@ impl fmt::Display for Remark {
             Remark::FurtherRegionArrays(names) => {
                 write!(f, "the cell data `{}` divide the regions further", names.join("`, `"))
             }
-            Remark::CountedTriangles => f.write_str(
-                "numbers that differ for nearly every triangle count triangles, and are no regions",
+            Remark::CountedElements => f.write_str(
+                "numbers that differ for nearly every element count elements, and are no regions",
             ),
             Remark::CellsOfEdges { islands } => {
                 f.write_str("cells were found from edges, as the file lists no faces, and an island of three to six edges counts as a cell")?;

@@ -1,7 +1,7 @@
 //! Removes groups whose numbers count triangles from a content.
 
 use super::content::{Content, ContentGroup};
-use crate::content::numbering::counts_triangles;
+use crate::content::numbering::counts_elements;
 use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 
@@ -9,7 +9,7 @@ impl Content {
     /// Removes the unnamed groups of surfaces of each kind whose numbers count triangles. Returns the kinds.
     pub(crate) fn remove_counters(&mut self) -> HashSet<String> {
         let triangles = self.cells.kinds.iter().filter(|kind| **kind == CellKind::Triangle).count();
-        if !counts_triangles(self.groups.len(), triangles) {
+        if !counts_elements(self.groups.len(), triangles) {
             return HashSet::new();
         }
         let kinds = self.counting_kinds(triangles);
@@ -51,7 +51,7 @@ impl Content {
                 *numbers.entry(&group.kind).or_insert(0) += 1;
             }
         }
-        numbers.retain(|_, count| counts_triangles(*count, triangles));
+        numbers.retain(|_, count| counts_elements(*count, triangles));
         numbers.into_keys().map(str::to_owned).collect()
     }
 }

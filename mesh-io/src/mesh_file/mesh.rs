@@ -21,10 +21,10 @@ use std::path::Path;
 /// back byte for byte.
 ///
 /// # Regions
-/// Triangles with equal entries in the file form a region. Entries are the material of an SMS 2dm, the reference of
+/// Elements with equal entries in the file form a region. Entries are the material of an SMS 2dm, the reference of
 /// Medit, the physical group and the entity of gmsh 2.2, and others. Attributes in the `.ele` of Triangle are compared
-/// as numbers. Entries that differ for nearly every triangle count triangles, and are left out. In formats without
-/// entries, all triangles form one region. The table of formats in `docs/formats.md` of
+/// as numbers. Entries that differ for nearly every element count elements, and are left out. In formats without
+/// entries, all elements form one region. The table of formats in `docs/formats.md` of
 /// the repository lists the entries of each format.
 ///
 /// [`interface_vertices`](Self::interface_vertices) returns the vertices between triangles of different regions. Two

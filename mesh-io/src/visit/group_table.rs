@@ -3,7 +3,7 @@
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;
 use crate::content::group_label::GroupLabel;
-use crate::content::numbering::counts_triangles;
+use crate::content::numbering::counts_elements;
 use crate::visit::items::CellKind;
 use std::collections::HashMap;
 
@@ -121,7 +121,7 @@ impl GroupTable {
                 *numbers.entry(group.kind.clone()).or_insert(0) += 1;
             }
         }
-        numbers.retain(|_, count| counts_triangles(*count, triangles));
+        numbers.retain(|_, count| counts_elements(*count, triangles));
         groups.retain(|GroupMembers { group, .. }| {
             !(numbers.contains_key(&group.kind) && is_numbered(group))
         });

@@ -4,13 +4,12 @@ use crate::content::constraints::{Constraints, PeriodicPairs};
 use crate::content::decoded::decoded;
 use crate::content::faces::Faces;
 use crate::content::id_index::IdIndexBuilder;
-use crate::content::numbering::{earlier, further_name, joined_regions};
-use crate::content::regions::{Interner, TriangleRegions};
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::edit::numbers::{Offsets, OffsetsBuilder};
 use crate::error::ReadError;
 use crate::text::cursor::{CORRECT, Cursor};
+use crate::visit::element_regions::{ElementRegions, Regions};
 use crate::visit::ghosts::vtk_ghosts;
 use crate::visit::items::{CellKind, Element, PeriodicNodes};
 use crate::visit::locate::{ItemList, ItemLocation, locate};
@@ -51,7 +50,7 @@ pub(crate) fn parse_by(
     let (has_z, has_data_named_z) = (assembler.has_z, assembler.has_data_named_z);
     let MeshBuilder { mut points, triangles, x_offsets: x_at, regions, constraints, .. } =
         assembler;
-    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, region_names, .. } = assembler;
+    let MeshBuilder { quadrilaterals, mut remarks, data, on_lower, .. } = assembler;
     let MeshBuilder { cell_arrays, fractional, other_faces, .. } = assembler;
     let ghost_array = assembler.ghost_array.filter(|_| !assembler.has_ghosts);
     let mut constraints = constraints;
@@ -77,20 +76,10 @@ pub(crate) fn parse_by(
             return Err(source.error_at(location, problem, CORRECT));
         }
     }
-    let mut regions = regions.finish();
-    let region_names = region_names.into_names();
-    let mut quadrilateral_regions = in_names(
-        &region_names,
-        &assembler.quadrilateral_names.into_names(),
-        assembler.quadrilateral_regions.into_numbers(),
-    );
-    if let Some(own) = &regions
-        && let Some(joined) = joined_regions(own, &region_names)
-    {
-        // Numbers that count elements are no regions of quadrilaterals either.
-        quadrilateral_regions.fill(0);
-        remarks.push(Remark::CountedTriangles);
-        regions = Some(joined).filter(|joined| joined.iter().any(|region| *region != joined[0]));
+    let Regions { triangles: regions, quadrilaterals: quadrilateral_regions, has_counter } =
+        regions.finish();
+    if has_counter {
+        remarks.push(Remark::CountedElements);
     }
     let (x_at, owners) = match copies {
         None => (x_at.finish(), None),
@@ -127,24 +116,6 @@ pub(crate) fn parse_by(
     })
 }
 
-/// Numbers the regions of quadrilaterals as those of triangles are numbered. `names` are the names of the regions of triangles,
-/// `own` those of quadrilaterals, and `numbers` has the index in `own` for each quadrilateral. Further names have further
-/// numbers.
-fn in_names(names: &[[i64; 2]], own: &[[i64; 2]], mut numbers: Vec<u32>) -> Vec<u32> {
-    let mut all: HashMap<[i64; 2], u32> = names.iter().copied().zip(0..).collect();
-    let mut in_all: Vec<u32> = Vec::with_capacity(own.len());
-    for &name in own {
-        let name = match earlier(name) {
-            Some(before) => further_name(in_all[before as usize], name[1]),
-            None => name,
-        };
-        let next = all.len() as u32;
-        in_all.push(*all.entry(name).or_insert(next));
-    }
-    numbers.iter_mut().for_each(|number| *number = in_all[*number as usize]);
-    numbers
-}
-
 /// Visitor that builds a [`ParsedMesh`].
 #[derive(Default)]
 struct MeshBuilder {
@@ -154,13 +125,10 @@ struct MeshBuilder {
     triangles: Vec<[u32; 3]>,
     x_offsets: OffsetsBuilder,
     ids: IdIndexBuilder,
-    region_names: Interner<[i64; 2]>,
-    regions: TriangleRegions,
+    regions: ElementRegions,
     constraints: Constraints,
     other_faces: Faces,
     quadrilaterals: Vec<[u32; 4]>,
-    quadrilateral_names: Interner<[i64; 2]>,
-    quadrilateral_regions: TriangleRegions,
     remarks: Vec<Remark>,
     /// Names of the arrays of real numbers on vertices besides x and y, each once.
     data: Vec<String>,
@@ -427,25 +395,19 @@ impl MeshVisitor for MeshBuilder {
     }
 
     fn triangle_records(&mut self, records: &TriangleRecords<'_>) -> usize {
-        let Self { ids, allows_parallel: true, triangles, regions, region_names, .. } = self else {
+        let Self { ids, allows_parallel: true, triangles, regions, .. } = self else {
             return 0;
         };
         let Some(map) = ids.map() else { return 0 };
-        records.read(map, triangles, |region, count| {
-            let number = region_names.intern(region);
-            (0..count).for_each(|_| regions.push(number));
-        })
+        records.read(map, triangles, |region, count| regions.triangles.push(region, count))
     }
 
     fn further_region(&mut self, kind: CellKind, region: [i64; 2]) {
-        let (regions, names) = match kind {
-            CellKind::Triangle => (&mut self.regions, &mut self.region_names),
-            CellKind::Quadrilateral => {
-                (&mut self.quadrilateral_regions, &mut self.quadrilateral_names)
-            }
-            _ => return,
-        };
-        regions.replace_last(|before| names.intern(further_name(before, region[0])));
+        match kind {
+            CellKind::Triangle => self.regions.triangles.extend_last(region[0]),
+            CellKind::Quadrilateral => self.regions.quadrilaterals.extend_last(region[0]),
+            _ => {}
+        }
     }
 
     #[inline]
@@ -465,7 +427,7 @@ impl MeshVisitor for MeshBuilder {
             }
             CellKind::Triangle => {
                 self.triangles.push([a, b, c]);
-                self.regions.push(self.region_names.intern(region));
+                self.regions.triangles.push(region, 1);
                 Ok(())
             }
             CellKind::Point | CellKind::Polygon | CellKind::Line => {
@@ -479,8 +441,7 @@ impl MeshVisitor for MeshBuilder {
             }
             CellKind::Quadrilateral => {
                 self.quadrilaterals.push(vertices);
-                let number = self.quadrilateral_names.intern(region);
-                self.quadrilateral_regions.push(number);
+                self.regions.quadrilaterals.push(region, 1);
                 self.other_faces.push(&vertices);
                 Ok(())
             }

@@ -2,6 +2,7 @@
 //! items.
 
 pub(crate) mod cell_values;
+pub(crate) mod element_regions;
 pub(crate) mod field;
 pub(crate) mod ghosts;
 pub(crate) mod group_table;

@@ -27,6 +27,7 @@ mod long;
 mod losses;
 mod made;
 mod mesh_tags;
+mod mixed;
 mod names;
 mod nastran;
 mod nets;

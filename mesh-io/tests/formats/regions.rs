@@ -130,7 +130,7 @@ fn numbers_that_count_triangles_are_neither_regions_nor_groups() {
         let folder = folder(&files);
         let file = folder.read(files[0].0);
         let format = file.format();
-        assert_eq!(file.remarks(), [Remark::CountedTriangles], "{format}");
+        assert_eq!(file.remarks(), [Remark::CountedElements], "{format}");
         // In this version of gmsh's format, the entity alone identifies a region.
         let has_halves = !matches!(format, Format::Gmsh41 | Format::Gmsh41Binary);
         assert_eq!(file.regions(), has_halves.then_some(&halves[..]), "{format}");
