@@ -125,9 +125,8 @@ impl ContentBuilder {
         };
         let mut lost: Vec<String> = counters.into_iter().filter(is_lost).collect();
         lost.sort_unstable();
-        let lost = lost
-            .iter()
-            .map(|kind| format!("numbers that differ for nearly every triangle: {kind}"));
+        let lost =
+            lost.iter().map(|kind| format!("numbers that differ for nearly every element: {kind}"));
         content.unsupported.extend(lost);
         let first = content.z_values.first().copied();
         if content.z_values.iter().all(|&z| Some(z) == first) {

@@ -1,18 +1,22 @@
-//! Removes groups whose numbers count triangles from a content.
+//! Removes groups whose numbers count elements from a content.
 
 use super::content::{Content, ContentGroup};
 use crate::content::numbering::counts_elements;
 use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 
+/// Kinds of elements that numbers may count.
+const KINDS: [CellKind; 2] = [CellKind::Triangle, CellKind::Quadrilateral];
+
 impl Content {
-    /// Removes the unnamed groups of surfaces of each kind whose numbers count triangles. Returns the kinds.
+    /// Removes the unnamed groups of surfaces of each kind whose numbers count elements. Returns the kinds.
     pub(crate) fn remove_counters(&mut self) -> HashSet<String> {
-        let triangles = self.cells.kinds.iter().filter(|kind| **kind == CellKind::Triangle).count();
-        if !counts_elements(self.groups.len(), triangles) {
+        let elements = self.cells.kinds.iter().filter(|kind| KINDS.contains(kind)).count();
+        // Each group has at most a number of triangles and a number of quadrilaterals.
+        if !counts_elements(KINDS.len() * self.groups.len(), elements) {
             return HashSet::new();
         }
-        let kinds = self.counting_kinds(triangles);
+        let kinds = self.counting_kinds(elements);
         let is_counter =
             |group: &ContentGroup| is_numbered(group) && kinds.contains(group.kind.as_str());
         let (mut left, mut numbers) = (Vec::new(), Vec::with_capacity(self.groups.len()));
@@ -37,21 +41,22 @@ impl Content {
         kinds
     }
 
-    /// Returns the kinds of groups whose numbers count triangles.
-    fn counting_kinds(&self, triangles: usize) -> HashSet<String> {
-        let mut has_triangles = vec![false; self.groups.len()];
+    /// Returns the kinds of groups whose numbers count elements.
+    fn counting_kinds(&self, elements: usize) -> HashSet<String> {
+        let mut has_elements = vec![[false; 2]; self.groups.len()];
         for (kind, &set) in self.cells.kinds.iter().zip(&self.cells.sets) {
-            if *kind == CellKind::Triangle {
-                self.sets[set as usize].iter().for_each(|&own| has_triangles[own as usize] = true);
+            if let Some(place) = KINDS.iter().position(|own| own == kind) {
+                let own = self.sets[set as usize].iter();
+                own.for_each(|&group| has_elements[group as usize][place] = true);
             }
         }
         let mut numbers: HashMap<&str, usize> = HashMap::new();
-        for (group, _) in self.groups.iter().zip(has_triangles).filter(|(_, has)| *has) {
-            if is_numbered(group) {
-                *numbers.entry(&group.kind).or_insert(0) += 1;
-            }
+        let numbered = self.groups.iter().zip(has_elements).filter(|(group, _)| is_numbered(group));
+        for (group, has_elements) in numbered {
+            let kinds = has_elements.iter().filter(|has| **has).count();
+            *numbers.entry(&group.kind).or_insert(0) += kinds;
         }
-        numbers.retain(|_, count| counts_elements(*count, triangles));
+        numbers.retain(|_, count| counts_elements(*count, elements));
         numbers.into_keys().map(str::to_owned).collect()
     }
 }

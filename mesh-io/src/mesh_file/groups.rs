@@ -43,7 +43,7 @@ impl MeshFile {
     ///
     /// Points, lines and surfaces with equal tags are separate groups. The tag 0 is no group where programs write 0 for
     /// untagged items, as in gmsh and for markers and references of vertices. Tags without names that differ for nearly
-    /// every triangle count triangles, and are no groups.
+    /// every element count elements, and are no groups.
     ///
     /// # Errors
     /// [`ReadError`] if the description of groups is damaged, such as gmsh's `$Entities`, which [`read`](Self::read)
@@ -53,7 +53,8 @@ impl MeshFile {
         if let Some(array) = self.region_array() {
             add_regions(&mut table, &self.content()?, array);
         }
-        Ok(table.finish(self.triangles(), self.points().len()))
+        let quadrilaterals = self.quadrilaterals().len();
+        Ok(table.finish(self.triangles(), quadrilaterals, self.points().len()))
     }
 
     /// Returns whether [`groups`](Self::groups) may have a group of lines, without parsing the bytes of the file again.

@@ -104,8 +104,9 @@ impl GroupTable {
         self.keys.set_name(kind, dimension, tag, name);
     }
 
-    /// Removes the unnamed groups of surfaces of each kind whose numbers count triangles.
-    fn remove_counters(&mut self, triangles: usize) {
+    /// Removes the unnamed groups of surfaces of each kind whose numbers count elements. `elements` is the number of triangles
+    /// and quadrilaterals.
+    fn remove_counters(&mut self, elements: usize) {
         let Self { groups, keys } = self;
         let is_numbered = |Group { kind, dimension, name, tag, .. }: &Group| {
             let is_unnamed = |tag| keys.name_of(kind, 2, &GroupLabel::Tag(tag)).is_none();
@@ -117,20 +118,27 @@ impl GroupTable {
         };
         let mut numbers: HashMap<String, usize> = HashMap::new();
         for GroupMembers { group, .. } in &*groups {
-            if is_numbered(group) && !group.triangles.is_empty() {
-                *numbers.entry(group.kind.clone()).or_insert(0) += 1;
+            if is_numbered(group) {
+                let members = [group.triangles.len(), group.quadrilaterals.len()];
+                let kinds = members.iter().filter(|count| **count > 0).count();
+                *numbers.entry(group.kind.clone()).or_insert(0) += kinds;
             }
         }
-        numbers.retain(|_, count| counts_elements(*count, triangles));
+        numbers.retain(|_, count| counts_elements(*count, elements));
         groups.retain(|GroupMembers { group, .. }| {
             !(numbers.contains_key(&group.kind) && is_numbered(group))
         });
     }
 
-    /// Completes the groups of a mesh with the given triangles and vertex count. Groups whose numbers count triangles are
-    /// left out.
-    pub(crate) fn finish(mut self, triangles: &[[u32; 3]], vertices: usize) -> Groups {
-        self.remove_counters(triangles.len());
+    /// Completes the groups of a mesh with the given triangles, number of quadrilaterals and number of vertices. Groups whose
+    /// numbers count elements are left out.
+    pub(crate) fn finish(
+        mut self,
+        triangles: &[[u32; 3]],
+        quadrilaterals: usize,
+        vertices: usize,
+    ) -> Groups {
+        self.remove_counters(triangles.len() + quadrilaterals);
         // Maps each kind to its position in the order of first use, by which groups are sorted.
         let mut order: HashMap<String, usize> = HashMap::new();
         for GroupMembers { group, .. } in &self.groups {

@@ -167,11 +167,11 @@ fn whole_numbers_beyond_the_precision_of_doubles_are_listed() {
     assert_eq!(losses("a.vtk", &text[..], Format::Off), "data of elements: small, id");
 }
 
-/// A former defect: conversions left out the numbers of an array of regions that differ for nearly every triangle.
+/// A former defect: conversions left out the numbers of an array of regions that differ for nearly every element.
 #[test]
 fn numbers_of_regions_that_count_triangles_are_listed() {
     let text = vtk(&[("region", &|k| k)]);
-    let lost = "numbers that differ for nearly every triangle: region";
+    let lost = "numbers that differ for nearly every element: region";
     for to in [Format::Vtu, Format::Gmsh22, Format::Su2] {
         assert_eq!(losses("a.vtk", &text[..], to), lost, "{to}");
     }

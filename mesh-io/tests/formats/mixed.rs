@@ -1,6 +1,6 @@
 //! Regions, groups, ghosts and conversions of meshes with quadrilaterals.
 
-use mesh_io::{MeshFile, ReadOptions, Remark};
+use mesh_io::{Conversion, Format, MeshFile, ReadOptions, Remark};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -75,6 +75,10 @@ fn read(name: &str, text: &str) -> MeshFile {
     options().from_bytes(Path::new(name), text.as_bytes().to_vec()).unwrap()
 }
 
+fn converted(file: &MeshFile, to: Format) -> Conversion {
+    Conversion::new(file, to).unwrap().unwrap()
+}
+
 /// Returns the remarks on a file except the one on its quadrilaterals.
 fn other_remarks(file: &MeshFile) -> Vec<Remark> {
     let is_count = |remark: &Remark| matches!(remark, Remark::OtherElements { .. });
@@ -90,6 +94,29 @@ fn regions_of_both_kinds_remain_if_another_number_counts_elements() {
         let file = read("in.msh", &text);
         assert_eq!(file.interfaces_of_elements().0, middle());
         assert_eq!(other_remarks(&file), [Remark::CountedElements]);
+    }
+}
+
+/// A former defect: numbers of quadrilaterals that count elements were regions, so that no vertex could move, and groups.
+#[test]
+fn numbers_that_count_triangles_and_quadrilaterals_are_neither_regions_nor_groups() {
+    for cells in grids() {
+        // Programs number all elements, or each kind of elements from 1.
+        let is_triangle = |(corners, _): &Cell| corners.len() == 3;
+        let of_kind = |k: usize, cell: &Cell| {
+            let before = cells[..k].iter();
+            1 + before.filter(|other| is_triangle(other) == is_triangle(cell)).count()
+        };
+        for count in [&|k: usize, _: &Cell| k + 1, &of_kind as &dyn Fn(usize, &Cell) -> usize] {
+            let file = read("in.msh", &msh(&cells, |k, cell| [count(k, cell), 1]));
+            assert_eq!(file.interfaces_of_elements().0, [0; 0]);
+            assert_eq!(other_remarks(&file), [Remark::CountedElements]);
+            let groups = file.groups().unwrap();
+            assert!(groups.iter().all(|group| group.kind == "entity"));
+            let conversion = converted(&file, Format::Vtu);
+            let lost = "numbers that differ for nearly every element: physical";
+            assert_eq!(conversion.losses(), [lost]);
+        }
     }
 }
 
