@@ -58,10 +58,10 @@ impl ReadOptions {
         ReadOptions { allows_quadrilaterals_alone: allows, ..self }
     }
 
-    /// Sets the cell data that number the regions of the triangles, in place of those that the reader finds. The data
-    /// must be whole numbers, stored as integers or as real numbers, with a number per triangle. `None` by default:
-    /// regions are then the entries of the format, or else the first array of whole numbers that form few connected
-    /// regions.
+    /// Sets the cell data that number the regions of the elements, in place of those that the reader finds. The data
+    /// must be whole numbers, stored as integers or as real numbers, with a number per triangle and quadrilateral. `None`
+    /// by default: regions are then the entries of the format, or else the first array of whole numbers that form few
+    /// connected regions.
     #[must_use]
     pub fn regions(self, array: Option<String>) -> ReadOptions {
         ReadOptions { regions: array, ..self }

@@ -5,7 +5,6 @@ use crate::disk::source::Source;
 use crate::error::ReadError;
 use crate::visit::cell_values::cell_values;
 use crate::visit::ghosts::vtk_ghosts;
-use crate::visit::items::CellKind;
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
 
@@ -20,17 +19,14 @@ pub(super) fn constrain(
 ) -> Result<(), ReadError> {
     let Some(name) = parsed.ghost_array.take() else { return Ok(()) };
     let Some(is_ghost) = vtk_ghosts(name.as_bytes()) else { return Ok(()) };
-    let names = [name];
-    let values = cell_values(reader, source, &names, CellKind::Triangle)?.pop().unwrap_or_default();
-    let marked = parsed.triangles.iter().zip(values).filter(|&(_, value)| is_ghost(value));
+    let values = cell_values(reader, source, &[name])?.concat();
+    let of_quadrilaterals = values.get(parsed.triangles.len()..).unwrap_or_default();
+    let marked = parsed.triangles.iter().zip(&values).filter(|&(_, &value)| is_ghost(value));
     let ghosts: Vec<[u32; 3]> = marked.map(|(&corners, _)| corners).collect();
-    if !parsed.quadrilaterals.is_empty() {
-        // Vertices of quadrilaterals are constrained anyway, unless a program lets them move.
-        let values = cell_values(reader, source, &names, CellKind::Quadrilateral)?.pop();
-        let marked = parsed.quadrilaterals.iter().zip(values.unwrap_or_default());
-        let marked = marked.filter(|&(_, value)| is_ghost(value));
-        parsed.held.extend(marked.flat_map(|(corners, _)| corners));
-    }
+    // Vertices of quadrilaterals are constrained anyway, unless a program lets them move.
+    let marked = parsed.quadrilaterals.iter().zip(of_quadrilaterals);
+    let marked = marked.filter(|&(_, &value)| is_ghost(value));
+    parsed.held.extend(marked.flat_map(|(corners, _)| corners));
     if !ghosts.is_empty() {
         parsed.constraints.vertices.extend(ghosts.iter().flatten());
         parsed.constraints.anchored.extend(ghosts.iter().flatten());

@@ -145,17 +145,11 @@ impl MeshFile {
     /// such elements, both ascending. Triangles and quadrilaterals are elements; [`interface_vertices`](Self::interface_vertices)
     /// and [`interface_edges`](Self::interface_edges) know triangles alone.
     pub fn interfaces_of_elements(&self) -> (Vec<u32>, Vec<[u32; 2]>) {
-        let ParsedMesh { triangles, quadrilaterals, regions, quadrilateral_regions, .. } =
-            &self.parsed;
-        if regions.is_none() && quadrilaterals.is_empty() {
+        let parsed = &self.parsed;
+        if parsed.regions.is_none() && parsed.quadrilaterals.is_empty() {
             return (Vec::new(), Vec::new());
         }
-        let region = |t: usize| regions.as_ref().map_or(0, |regions| regions[t]);
-        let of_triangles =
-            triangles.iter().enumerate().map(|(t, corners)| (&corners[..], region(t)));
-        let others = quadrilaterals.iter().zip(quadrilateral_regions);
-        let all = of_triangles.chain(others.map(|(corners, &region)| (&corners[..], region)));
-        interfaces(all, self.parsed.points.len())
+        interfaces(parsed.elements().zip(parsed.element_regions()), parsed.points.len())
     }
 
     /// Lists the corners of each quadrilateral and of each polygon of five or more corners, as vertex indices in the order

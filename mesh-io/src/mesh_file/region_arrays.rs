@@ -3,8 +3,8 @@
 use crate::content::remark::Remark;
 use crate::disk::source::Source;
 use crate::error::ReadError;
+use crate::format::Format;
 use crate::visit::cell_values::cell_values;
-use crate::visit::items::CellKind;
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
 use std::collections::HashMap;
@@ -26,18 +26,18 @@ pub(super) fn find(
     reader: &ReaderFunctions,
     source: &Source,
 ) -> Result<(), ReadError> {
+    let triangles = parsed.triangles.len();
     if let Some(name) = &source.options.regions {
-        let (values, of_quadrilaterals) = both(parsed, reader, source, name)?;
-        if values.is_empty() && of_quadrilaterals.is_empty() {
+        let values = cell_values(reader, source, std::slice::from_ref(name))?.concat();
+        if values.is_empty() {
             return Err(source.error(format!("it has no cell data `{name}`"), known(parsed)));
         }
-        let Some((regions, others)) = numbered_both(&values, &of_quadrilaterals) else {
+        let is_complete = !values.iter().any(|value| value.is_nan());
+        let Some(numbers) = numbered(&values, triangles).filter(|_| is_complete) else {
             let problem = format!("the cell data `{name}` are not a whole number for each element");
             return Err(source.error(problem, known(parsed)));
         };
-        parsed.regions = regions.iter().any(|&region| region != 0).then_some(regions);
-        parsed.region_array = Some(name.clone());
-        parsed.quadrilateral_regions = others;
+        set(parsed, name, numbers);
         return Ok(());
     }
     let is_whole = |name: &&String| !parsed.fractional.contains(*name);
@@ -45,92 +45,58 @@ pub(super) fn find(
     if names.is_empty() {
         return Ok(());
     }
-    if parsed.triangles.is_empty() {
-        return find_alone(parsed, reader, source, names);
-    }
-    let all = cell_values(reader, source, &names, CellKind::Triangle)?;
+    let all = cell_values(reader, source, &names)?;
     let mut found = names.into_iter().zip(all).filter_map(|(name, values)| {
-        let regions = numbered(&values)?;
-        looks_like_regions(&regions, &parsed.triangles).then_some((name, regions))
+        let numbers = numbered(&values, triangles)?;
+        looks_like_regions(&numbers, parsed.elements()).then_some((name, numbers))
     });
-    if let Some(own) = &parsed.regions {
-        let divides = |(_, regions): &(String, Vec<u32>)| divides(regions, own, &parsed.triangles);
-        let others: Vec<_> = found.filter(divides).map(|(name, _)| name).collect();
+    if let Some(own) = own_regions(parsed) {
+        let divides = |(_, numbers): &(_, Vec<u32>)| divides(numbers, &own, parsed.elements());
+        let others: Vec<String> = found.filter(divides).map(|(name, _)| name).collect();
         if !others.is_empty() {
             parsed.remarks.push(Remark::FurtherRegionArrays(others));
         }
-    } else if let Some((array, regions)) = found.next() {
+    } else if let Some((array, numbers)) = found.next() {
         let others = found.map(|(name, _)| name).collect();
-        let (values, of_quadrilaterals) = both(parsed, reader, source, &array)?;
-        if let Some((_, numbers)) = numbered_both(&values, &of_quadrilaterals) {
-            parsed.quadrilateral_regions = numbers;
-        }
-        parsed.regions = Some(regions);
-        parsed.region_array = Some(array.clone());
+        set(parsed, &array, numbers);
         parsed.remarks.push(Remark::RegionArray { array, others });
     }
     Ok(())
 }
 
-/// Sets the regions of a mesh of quadrilaterals alone by the first of the named arrays that looks like regions, unless elements
-/// have regions under a usual name.
-fn find_alone(
-    parsed: &mut ParsedMesh,
-    reader: &ReaderFunctions,
-    source: &Source,
-    names: Vec<String>,
-) -> Result<(), ReadError> {
-    let own = &parsed.quadrilateral_regions;
-    if own.iter().any(|region| *region != own[0]) {
-        return Ok(());
-    }
-    let all = cell_values(reader, source, &names, CellKind::Quadrilateral)?;
-    let mut found = names.into_iter().zip(all).filter_map(|(name, values)| {
-        let regions = numbered(&values)?;
-        looks_like_regions(&regions, &parsed.quadrilaterals).then_some((name, regions))
-    });
-    if let Some((array, regions)) = found.next() {
-        let others = found.map(|(name, _)| name).collect();
-        parsed.quadrilateral_regions = regions;
-        parsed.region_array = Some(array.clone());
-        parsed.remarks.push(Remark::RegionArray { array, others });
-    }
-    Ok(())
-}
-
-/// Returns the values of an array at the triangles and at the quadrilaterals.
-fn both(
-    parsed: &ParsedMesh,
-    reader: &ReaderFunctions,
-    source: &Source,
-    name: &str,
-) -> Result<(Vec<f64>, Vec<f64>), ReadError> {
-    let wanted = [name.to_owned()];
-    let of = |kind| cell_values(reader, source, &wanted, kind).map(|all| all.concat());
-    let of_quadrilaterals = match parsed.quadrilaterals.is_empty() {
-        true => Vec::new(),
-        false => of(CellKind::Quadrilateral)?,
+/// Returns the region of each element; `None` if the file has no regions under a usual name.
+fn own_regions(parsed: &ParsedMesh) -> Option<Vec<u32>> {
+    let regions: Vec<u32> = parsed.element_regions().collect();
+    let differ = |regions: &[u32]| regions.iter().any(|region| *region != regions[0]);
+    let (triangles, quadrilaterals) = regions.split_at(parsed.triangles.len());
+    let is_divided = match parsed.format {
+        // A block or section has elements of one kind, so that one for each kind is no division by the user.
+        Format::Exodus | Format::Cgns => differ(triangles) || differ(quadrilaterals),
+        _ => differ(&regions),
     };
-    Ok((of(CellKind::Triangle)?, of_quadrilaterals))
+    is_divided.then_some(regions)
 }
 
-/// Numbers the values of triangles and then of quadrilaterals by first occurrence, from 0. `None` if a value is not a whole
-/// number.
-fn numbered_both(triangles: &[f64], quadrilaterals: &[f64]) -> Option<(Vec<u32>, Vec<u32>)> {
-    let mut numbers = numbered(&[triangles, quadrilaterals].concat())?;
-    let of_quadrilaterals = numbers.split_off(triangles.len());
-    Some((numbers, of_quadrilaterals))
+/// Sets the regions of a mesh to the numbers of the cell data `array`, those of triangles first.
+fn set(parsed: &mut ParsedMesh, array: &str, mut numbers: Vec<u32>) {
+    parsed.quadrilateral_regions = numbers.split_off(parsed.triangles.len());
+    parsed.regions = Some(numbers).filter(|all| all.iter().any(|&region| region != 0));
+    parsed.region_array = Some(array.to_owned());
 }
 
-/// Returns whether two triangles with a common edge have one region of `regions`, but two different numbers.
-fn divides(numbers: &[u32], regions: &[u32], triangles: &[[u32; 3]]) -> bool {
+/// Returns whether two elements with a common edge have one region of `regions`, but two different numbers.
+fn divides<'e>(
+    numbers: &[u32],
+    regions: &[u32],
+    elements: impl Iterator<Item = &'e [u32]> + Clone,
+) -> bool {
     let mut both: HashMap<[u32; 2], u32> = HashMap::new();
     let pairs = numbers.iter().zip(regions).map(|(&number, &region)| {
         let next = both.len() as u32;
         *both.entry([number, region]).or_insert(next)
     });
     let together: Vec<u32> = pairs.collect();
-    connected_parts(&together, triangles) > connected_parts(regions, triangles)
+    connected_parts(&together, elements.clone()) > connected_parts(regions, elements)
 }
 
 /// Returns the remedy that lists the cell data of a mesh.
@@ -141,32 +107,42 @@ fn known(parsed: &ParsedMesh) -> String {
     }
 }
 
-/// Numbers the values of triangles by first occurrence, from 0. `None` if a value is not a whole number.
-fn numbered(values: &[f64]) -> Option<Vec<u32>> {
-    let mut numbers: HashMap<i64, u32> = HashMap::new();
-    let number = |&value: &f64| {
-        // Whole numbers up to 2^53 are exact.
-        let is_whole = value.fract() == 0.0 && value.abs() <= 9.0e15;
-        let next = numbers.len() as u32;
-        is_whole.then(|| *numbers.entry(value as i64).or_insert(next))
-    };
-    (!values.is_empty()).then(|| values.iter().map(number).collect())?
+/// Numbers the values of elements by first occurrence, from 0; the first `triangles` values are those of triangles. If all
+/// elements of one kind lack values, they have a number of their own. `None` if another value is not a whole number.
+fn numbered(values: &[f64], triangles: usize) -> Option<Vec<u32>> {
+    let (of_triangles, of_quadrilaterals) = values.split_at_checked(triangles)?;
+    let mut numbers: HashMap<Option<i64>, u32> = HashMap::new();
+    let mut all = Vec::with_capacity(values.len());
+    for values in [of_triangles, of_quadrilaterals] {
+        // Exodus and gmsh may have values for the elements of one kind alone.
+        let is_missing = values.iter().all(|value| value.is_nan());
+        for value in values {
+            // Whole numbers up to 2^53 are exact.
+            let is_whole = value.fract() == 0.0 && value.abs() <= 9.0e15;
+            if !is_whole && !is_missing {
+                return None;
+            }
+            let next = numbers.len() as u32;
+            all.push(*numbers.entry(is_whole.then_some(*value as i64)).or_insert(next));
+        }
+    }
+    Some(all)
 }
 
 /// Returns whether numbers of elements look like regions: several numbers, but few, whose elements are connected in large
 /// parts.
-fn looks_like_regions<const N: usize>(regions: &[u32], elements: &[[u32; N]]) -> bool {
-    let count = regions.iter().max().map_or(0, |&most| most as usize + 1);
-    let is_few = (2..=MAX_REGIONS).contains(&count) && count * 2 <= regions.len();
+fn looks_like_regions<'e>(numbers: &[u32], elements: impl Iterator<Item = &'e [u32]>) -> bool {
+    let count = numbers.iter().max().map_or(0, |&most| most as usize + 1);
+    let is_few = (2..=MAX_REGIONS).contains(&count) && count * 2 <= numbers.len();
     is_few && {
-        let parts = connected_parts(regions, elements);
-        parts == count || parts * MIN_PART <= regions.len()
+        let parts = connected_parts(numbers, elements);
+        parts == count || parts * MIN_PART <= numbers.len()
     }
 }
 
 /// Returns the number of parts of elements that are connected across edges and have equal regions.
-fn connected_parts<const N: usize>(regions: &[u32], elements: &[[u32; N]]) -> usize {
-    let mut parent: Vec<u32> = (0..elements.len() as u32).collect();
+fn connected_parts<'e>(regions: &[u32], elements: impl Iterator<Item = &'e [u32]>) -> usize {
+    let mut parent: Vec<u32> = (0..regions.len() as u32).collect();
     fn root(parent: &mut [u32], mut t: u32) -> u32 {
         while parent[t as usize] != t {
             parent[t as usize] = parent[parent[t as usize] as usize];
@@ -174,11 +150,12 @@ fn connected_parts<const N: usize>(regions: &[u32], elements: &[[u32; N]]) -> us
         }
         t
     }
-    let mut parts = elements.len();
-    let mut edges: HashMap<[u32; 2], u32> = HashMap::with_capacity(elements.len() * N / 2);
+    let mut parts = regions.len();
+    // A triangle has one and a half edges of its own, a quadrilateral two.
+    let mut edges: HashMap<[u32; 2], u32> = HashMap::with_capacity(regions.len() * 3 / 2);
     for (t, element) in (0..).zip(elements) {
-        for k in 0..N {
-            let (p, q) = (element[k], element[(k + 1) % N]);
+        for (k, &p) in element.iter().enumerate() {
+            let q = element[(k + 1) % element.len()];
             let other = *edges.entry([p.min(q), p.max(q)]).or_insert(t);
             if regions[other as usize] == regions[t as usize] {
                 let (one, two) = (root(&mut parent, other), root(&mut parent, t));
@@ -196,39 +173,61 @@ fn connected_parts<const N: usize>(regions: &[u32], elements: &[[u32; N]]) -> us
 mod tests {
     use super::*;
 
-    /// A strip of `count` triangles.
-    fn strip(count: u32) -> Vec<[u32; 3]> {
-        (0..count).map(|t| [t, t + 1, t + 2]).collect()
+    /// A strip of `count` elements, of which every other one is a quadrilateral.
+    fn strip(count: u32) -> Vec<Vec<u32>> {
+        let (mut end, mut next) = ([0, 1], 2);
+        let element = |t: u32| {
+            let ([a, b], new) = (end, next);
+            if t % 2 == 0 {
+                (end, next) = ([b, new], new + 1);
+                vec![a, b, new]
+            } else {
+                (end, next) = ([new, new + 1], new + 2);
+                vec![a, b, new + 1, new]
+            }
+        };
+        (0..count).map(element).collect()
     }
 
     #[test]
     fn few_whole_numbers_in_large_parts_look_like_regions() {
         let looks = |number: &dyn Fn(u32) -> f64, count| {
             let values: Vec<f64> = (0..count).map(number).collect();
-            numbered(&values).is_some_and(|regions| looks_like_regions(&regions, &strip(count)))
+            let strip = strip(count);
+            numbered(&values, 7).is_some_and(|numbers| {
+                looks_like_regions(&numbers, strip.iter().map(Vec::as_slice))
+            })
         };
         assert!(looks(&|t| f64::from(t / 20), 40));
         assert!(looks(&|t| f64::from(t / 10 % 2) - 5.0, 40), "two regions of two parts");
-        assert!(looks(&|t| f64::from(t / 2), 4), "small but connected");
-        assert!(!looks(&|t| f64::from(t), 40), "a number of its own for each triangle");
-        assert!(!looks(&|t| f64::from(t % 2), 40), "flags of single triangles");
+        assert!(looks(&|t| f64::from(t / 4), 8), "small but connected");
+        assert!(!looks(&|t| f64::from(t), 40), "a number of its own for each element");
+        assert!(!looks(&|t| f64::from(t % 2), 40), "flags of single elements");
         assert!(!looks(&|_| 3.0, 40), "one region");
         assert!(!looks(&|t| 0.5 + f64::from(t / 20), 40), "fractions");
         assert!(!looks(&|t| if t < 20 { 1.0 } else { f64::NAN }, 40), "missing values");
+        assert!(looks(&|t| if t < 7 { 1.0 } else { f64::NAN }, 40), "no values of one kind");
     }
 
     #[test]
     fn numbers_divide_regions_that_they_cut() {
         let strip = strip(40);
         let by = |size: u32| (0..40).map(|t| t / size).collect::<Vec<u32>>();
-        assert!(divides(&by(10), &by(20), &strip) && !divides(&by(20), &by(10), &strip));
-        assert!(!divides(&by(20), &by(20), &strip) && divides(&by(8), &by(20), &strip));
+        let divides = |numbers: u32, regions: u32| {
+            divides(&by(numbers), &by(regions), strip.iter().map(Vec::as_slice))
+        };
+        assert!(divides(10, 20) && !divides(20, 10));
+        assert!(!divides(20, 20) && divides(8, 20));
     }
 
     #[test]
     fn parts_are_connected_across_edges() {
-        assert_eq!(connected_parts(&[0; 5], &strip(5)), 1);
-        assert_eq!(connected_parts(&[0, 0, 1, 0, 0], &strip(5)), 3);
-        assert_eq!(connected_parts(&[0, 0], &[[0, 1, 2], [2, 3, 4]]), 2, "a common vertex alone");
+        let parts = |regions: &[u32], elements: &[Vec<u32>]| {
+            connected_parts(regions, elements.iter().map(Vec::as_slice))
+        };
+        assert_eq!(parts(&[0; 5], &strip(5)), 1);
+        assert_eq!(parts(&[0, 0, 1, 0, 0], &strip(5)), 3);
+        let apart = [vec![0, 1, 2], vec![2, 3, 4, 5]];
+        assert_eq!(parts(&[0, 0], &apart), 2, "a common vertex alone");
     }
 }

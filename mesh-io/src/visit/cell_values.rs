@@ -1,4 +1,4 @@
-//! Reads arrays of cell data, one value for each element of a kind.
+//! Reads arrays of cell data, one value for each triangle and each quadrilateral.
 
 use crate::content::decoded::decoded;
 use crate::content::regions::Interner;
@@ -10,9 +10,9 @@ use crate::visit::reader::ReaderFunctions;
 use crate::visit::visitor::MeshVisitor;
 use std::collections::HashMap;
 
-/// Reads the cell data of these names. Returns for each name the value of each element of a kind, NaN for an element without
-/// a value. The list is empty for a name that the file lacks. Region arrays of usual names, which readers pass as regions of
-/// elements, yield numbers by first occurrence, from 0.
+/// Reads the cell data of these names. Returns for each name the value of each triangle and then of each quadrilateral, NaN
+/// for an element without a value. The list is empty for a name that the file lacks. Region arrays of usual names, which
+/// readers pass as regions of elements, yield numbers, equal ones for equal regions.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -20,18 +20,17 @@ pub(crate) fn cell_values(
     reader: &ReaderFunctions,
     source: &Source,
     names: &[String],
-    kind: CellKind,
 ) -> Result<Vec<Vec<f64>>, ReadError> {
     let parts = names.iter().map(|_| Vec::new()).collect();
     let columns = Default::default();
-    let mut visitor =
-        ValueVisitor { names, kind, parts, columns, announced: None, ids: Vec::new() };
+    let ids = Default::default();
+    let mut visitor = ValueVisitor { names, parts, columns, announced: None, ids };
     (reader.visit)(source, &mut visitor)?;
     let ValueVisitor { parts, columns, ids, .. } = visitor;
     let mut of_columns: Vec<Vec<f64>> = names.iter().map(|_| Vec::new()).collect();
     for Column { array, numbers, .. } in columns {
         if let Some(array) = array {
-            of_columns[array] = numbers;
+            of_columns[array] = numbers.concat();
         }
     }
     let of_elements = |(parts, of_column): (Vec<Part>, Vec<f64>)| {
@@ -45,7 +44,8 @@ pub(crate) fn cell_values(
                 None => values.extend((0..).zip(numbers)),
             }
         }
-        ids.iter().map(|id| values.get(id).copied().unwrap_or(f64::NAN)).collect()
+        let value = |id| values.get(id).copied().unwrap_or(f64::NAN);
+        ids.iter().flatten().map(value).collect()
     };
     Ok(parts.into_iter().zip(of_columns).map(of_elements).collect())
 }
@@ -63,20 +63,20 @@ struct Column {
     /// Index of the wanted array whose numbers the integers are; `None` for an array that is not wanted.
     array: Option<usize>,
     met: Interner<i64>,
-    /// Number of the integer of each element.
-    numbers: Vec<f64>,
+    /// Number of the integer of each triangle, and of each quadrilateral.
+    numbers: [Vec<f64>; 2],
 }
 
-/// Visitor that collects cell data and the ids of all elements of a kind.
+/// Visitor that collects cell data and the ids of all triangles and quadrilaterals.
 struct ValueVisitor<'n> {
     names: &'n [String],
-    kind: CellKind,
     /// Parts of each wanted array, in file order.
     parts: Vec<Vec<Part>>,
     columns: [Column; 2],
     /// Index of the array whose numbers come next.
     announced: Option<usize>,
-    ids: Vec<u64>,
+    /// Ids of the triangles, and of the quadrilaterals.
+    ids: [Vec<u64>; 2],
 }
 
 impl MeshVisitor for ValueVisitor<'_> {
@@ -87,12 +87,15 @@ impl MeshVisitor for ValueVisitor<'_> {
     fn node(&mut self, _: &Cursor<'_>, _: u64, _: u64, _: usize, _: [f64; 2]) {}
 
     fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
-        if element.kind == self.kind {
-            self.ids.push(element.id);
-            for (column, region) in self.columns.iter_mut().zip(element.region) {
-                if column.array.is_some() {
-                    column.numbers.push(column.met.intern(region).into());
-                }
+        let kind = match element.kind {
+            CellKind::Triangle => 0,
+            CellKind::Quadrilateral => 1,
+            _ => return Ok(()),
+        };
+        self.ids[kind].push(element.id);
+        for (column, region) in self.columns.iter_mut().zip(element.region) {
+            if column.array.is_some() {
+                column.numbers[kind].push(column.met.intern(region).into());
             }
         }
         Ok(())

@@ -62,3 +62,18 @@ pub(crate) struct ParsedMesh {
     /// Another array with bytes of the points, in messages; `None` if the points have bytes of their own.
     pub(crate) shared_with: Option<String>,
 }
+
+impl ParsedMesh {
+    /// Lists the corners of each triangle, and then of each quadrilateral.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = &[u32]> + Clone {
+        let triangles = self.triangles.iter().map(<[u32; 3]>::as_slice);
+        triangles.chain(self.quadrilaterals.iter().map(<[u32; 4]>::as_slice))
+    }
+
+    /// Lists the region of each element in the order of [`elements`](Self::elements).
+    pub(crate) fn element_regions(&self) -> impl Iterator<Item = u32> + Clone {
+        let of_triangle = |t: usize| self.regions.as_ref().map_or(0, |regions| regions[t]);
+        let of_triangles = (0..self.triangles.len()).map(of_triangle);
+        of_triangles.chain(self.quadrilateral_regions.iter().copied())
+    }
+}

@@ -67,6 +67,35 @@ fn msh(cells: &[Cell], tags: impl Fn(usize, &Cell) -> [usize; 2]) -> String {
     text + "$EndElements\n"
 }
 
+/// A named array of cell data, with the number of each element.
+type Array<'a> = (&'a str, &'a dyn Fn(usize, &Cell) -> usize);
+
+/// Returns a legacy VTK file with cell data.
+fn vtk(cells: &[Cell], arrays: &[Array<'_>]) -> String {
+    let mut text =
+        "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 81 double\n"
+            .to_owned();
+    for vertex in 0..(N + 1) * (N + 1) {
+        writeln!(text, "{} {} 0", vertex % (N + 1), vertex / (N + 1)).unwrap();
+    }
+    let size: usize = cells.iter().map(|(corners, _)| corners.len() + 1).sum();
+    writeln!(text, "CELLS {} {size}", cells.len()).unwrap();
+    for (corners, _) in cells {
+        writeln!(text, "{} {}", corners.len(), joined(corners, 0)).unwrap();
+    }
+    writeln!(text, "CELL_TYPES {}", cells.len()).unwrap();
+    cells.iter().for_each(|(own, _)| text += if own.len() == 3 { "5\n" } else { "9\n" });
+    writeln!(text, "CELL_DATA {}", cells.len()).unwrap();
+    for (name, number) in arrays {
+        writeln!(text, "SCALARS {name} int 1\nLOOKUP_TABLE default").unwrap();
+        cells
+            .iter()
+            .enumerate()
+            .for_each(|(k, cell)| writeln!(text, "{}", number(k, cell)).unwrap());
+    }
+    text
+}
+
 fn options() -> ReadOptions {
     ReadOptions::new().allow_quadrilaterals_alone(true)
 }
@@ -141,4 +170,80 @@ fn elements_of_equal_groups_are_one_region_whatever_their_kind() {
     assert_eq!((file.triangles().len(), file.quadrilaterals().len()), (64, 32));
     assert_eq!(file.interfaces_of_elements().0, [0; 0]);
     assert_eq!(file.groups().unwrap().find("11").unwrap().quadrilaterals().len(), 32);
+}
+
+/// A former defect: cell data were judged at the triangles alone, so that regions of meshes with quadrilaterals were missed.
+#[test]
+fn cell_data_that_look_like_regions_are_judged_at_all_elements() {
+    for cells in grids() {
+        let file = read("in.vtk", &vtk(&cells, &[("prop", &|_, cell| 1 + half(cell))]));
+        assert_eq!(file.interfaces_of_elements().0, middle());
+        let array = Remark::RegionArray { array: "prop".into(), others: Vec::new() };
+        assert_eq!(other_remarks(&file), [array]);
+        assert_eq!(file.groups().unwrap().iter().count(), 2);
+        let flags = read("in.vtk", &vtk(&cells, &[("flag", &|_, (_, [i, j])| (i + j) % 2)]));
+        assert_eq!(other_remarks(&flags), []);
+        assert_eq!(flags.interfaces_of_elements().0, [0; 0]);
+    }
+}
+
+/// A former defect: the note on dividing cell data was missing if quadrilaterals alone have the regions.
+#[test]
+fn cell_data_that_divide_regions_of_quadrilaterals_are_named() {
+    for cells in grids() {
+        let rows = |_: usize, (_, [_, row]): &Cell| 2 * row / N;
+        let arrays: [Array<'_>; 2] = [("MaterialIDs", &|_, cell| 5 + half(cell)), ("prop", &rows)];
+        let file = read("in.vtk", &vtk(&cells, &arrays));
+        assert_eq!(file.interfaces_of_elements().0, middle());
+        assert_eq!(other_remarks(&file), [Remark::FurtherRegionArrays(vec!["prop".into()])]);
+    }
+}
+
+/// A former defect: a region array of a usual name, given by name, numbered triangles and quadrilaterals apart.
+#[test]
+fn a_named_region_array_has_equal_numbers_for_both_kinds() {
+    for cells in grids() {
+        let text = vtk(&cells, &[("MaterialIDs", &|_, cell| 5 + half(cell))]);
+        let options = options().regions(Some("MaterialIDs".into()));
+        let file = options.from_bytes(Path::new("in.vtk"), text.into_bytes()).unwrap();
+        assert_eq!(file.interfaces_of_elements().0, middle());
+    }
+}
+
+/// meshio writes a block for each kind of elements, whatever their regions.
+#[test]
+fn cell_data_are_regions_in_an_exodus_with_one_block_for_each_kind() {
+    for cells in grids() {
+        let arrays: [Array<'_>; 2] = [("one", &|_, _| 1), ("prop", &|_, cell| 1 + half(cell))];
+        let options_of_one = options().regions(Some("one".into()));
+        let text = vtk(&cells, &arrays);
+        let file = options_of_one.from_bytes(Path::new("in.vtk"), text.into_bytes()).unwrap();
+        let bytes = converted(&file, Format::Exodus).bytes().unwrap();
+        let back = options().from_bytes(Path::new("in.exo"), bytes).unwrap();
+        let blocks = [file.triangles().len(), file.quadrilaterals().len()];
+        let blocks = blocks.iter().filter(|count| **count > 0).count();
+        let groups = back.groups().unwrap();
+        assert_eq!(groups.iter().filter(|group| group.kind == "block").count(), blocks);
+        assert_eq!(back.interfaces_of_elements().0, middle());
+    }
+}
+
+/// gmsh and Exodus may have data at elements of one kind alone.
+#[test]
+fn regions_of_triangles_are_found_if_quadrilaterals_lack_data() {
+    let cells = cells(|_, row| row < N / 2);
+    let triangles = cells.iter().enumerate().filter(|(_, (corners, _))| corners.len() == 3);
+    let rows = triangles.map(|(k, cell)| format!("{} {}\n", k + 1, half(cell)));
+    let rows: Vec<String> = rows.collect();
+    let data = format!(
+        "$ElementData\n1\n\"prop\"\n1\n0\n3\n0\n1\n{}\n{}$EndElementData\n",
+        rows.len(),
+        rows.concat()
+    );
+    let file = read("in.msh", &(msh(&cells, |_, _| [0, 1]) + &data));
+    assert_eq!(file.interface_vertices(), middle()[..N / 2 - 1]);
+    let options = options().regions(Some("prop".into()));
+    let text = msh(&cells, |_, _| [0, 1]) + &data;
+    let error = options.from_bytes(Path::new("in.msh"), text.into_bytes()).unwrap_err();
+    assert!(error.to_string().contains("not a whole number for each element"), "{error}");
 }
