@@ -33,18 +33,18 @@ pub(crate) fn sides(content: &Content, group: impl Fn(usize) -> Option<u32>) -> 
 pub(crate) fn lost_in_blocks(content: &Content, lost: &mut Vec<String>) {
     let tags = GroupNumbers::new(content, false);
     let group = |cell: usize| tags.group(content, cell);
-    let mut last = None;
-    let mut seen: HashSet<Option<u32>> = HashSet::new();
-    let is_apart = content.cells.all(CellKind::Triangle).any(|cell| {
-        let own = group(cell);
-        last.replace(own) != Some(own) && !seen.insert(own)
-    });
-    if is_apart {
-        lost.push("the order of triangles, which stand group by group".into());
+    let kinds = [CellKind::Triangle, CellKind::Quadrilateral];
+    let of_kinds = kinds.map(|kind| content.cells.all(kind).map(group).collect::<Vec<_>>());
+    for (kind, groups) in kinds.iter().zip(&of_kinds) {
+        let mut runs = groups.chunk_by(|a, b| a == b).map(|run| run[0]);
+        let mut seen = HashSet::new();
+        if !runs.all(|own| seen.insert(own)) {
+            lost.push(format!("the order of {}s, which stand group by group", kind.name()));
+        }
     }
-    let quadrilaterals: HashSet<_> =
-        content.cells.all(CellKind::Quadrilateral).map(group).collect();
-    if quadrilaterals.iter().any(|group| group.is_some() && seen.contains(group)) {
+    let [triangles, quadrilaterals] =
+        of_kinds.map(|groups| groups.into_iter().flatten().collect::<HashSet<_>>());
+    if !triangles.is_disjoint(&quadrilaterals) {
         lost.push("that groups have triangles and quadrilaterals, which become blocks each".into());
     }
 }

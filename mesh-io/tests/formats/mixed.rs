@@ -247,3 +247,24 @@ fn regions_of_triangles_are_found_if_quadrilaterals_lack_data() {
     let error = options.from_bytes(Path::new("in.msh"), text.into_bytes()).unwrap_err();
     assert!(error.to_string().contains("not a whole number for each element"), "{error}");
 }
+
+/// A former defect: conversions to formats of blocks changed the order of quadrilaterals without a word.
+#[test]
+fn the_order_of_quadrilaterals_in_blocks_is_listed() {
+    let lost = |cells: &[Cell], group: &dyn Fn(usize, &Cell) -> usize, to| {
+        let file = read("in.msh", &msh(cells, |k, cell| [group(k, cell), 1]));
+        converted(&file, to).losses().join("; ")
+    };
+    let alternating = |k: usize, _: &Cell| 10 + k % 2;
+    let halves = |_: usize, cell: &Cell| 10 + half(cell);
+    let [quadrilaterals, mixed, apart, _] = grids();
+    let order = |kind: &str| format!("the order of {kind}s, which stand group by group");
+    let both = "that groups have triangles and quadrilaterals, which become blocks each";
+    for to in [Format::Exodus, Format::Cgns] {
+        assert_eq!(lost(&quadrilaterals, &alternating, to), order("quadrilateral"), "{to}");
+        assert_eq!(lost(&quadrilaterals, &|k, _| 10 + k / 32, to), "", "{to}");
+        let all = [order("triangle"), order("quadrilateral"), both.to_owned()].join("; ");
+        assert_eq!(lost(&mixed, &halves, to), all, "{to}");
+        assert_eq!(lost(&apart, &halves, to), "", "{to}");
+    }
+}
