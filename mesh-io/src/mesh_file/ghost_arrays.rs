@@ -8,7 +8,7 @@ use crate::visit::ghosts::vtk_ghosts;
 use crate::visit::parsed_mesh::ParsedMesh;
 use crate::visit::reader::ReaderFunctions;
 
-/// Constrains the vertices of the triangles that cell data named like VTK's mark as ghosts.
+/// Constrains the vertices of the elements that cell data named like VTK's mark as ghosts.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -20,17 +20,13 @@ pub(super) fn constrain(
     let Some(name) = parsed.ghost_array.take() else { return Ok(()) };
     let Some(is_ghost) = vtk_ghosts(name.as_bytes()) else { return Ok(()) };
     let values = cell_values(reader, source, &[name])?.concat();
-    let of_quadrilaterals = values.get(parsed.triangles.len()..).unwrap_or_default();
-    let marked = parsed.triangles.iter().zip(&values).filter(|&(_, &value)| is_ghost(value));
-    let ghosts: Vec<[u32; 3]> = marked.map(|(&corners, _)| corners).collect();
-    // Vertices of quadrilaterals are constrained anyway, unless a program lets them move.
-    let marked = parsed.quadrilaterals.iter().zip(of_quadrilaterals);
-    let marked = marked.filter(|&(_, &value)| is_ghost(value));
-    parsed.held.extend(marked.flat_map(|(corners, _)| corners));
-    if !ghosts.is_empty() {
-        parsed.constraints.vertices.extend(ghosts.iter().flatten());
-        parsed.constraints.anchored.extend(ghosts.iter().flatten());
-        parsed.remarks.push(Remark::elements(ghosts.len() as u64, "ghost element", ""));
+    let marked = parsed.elements().zip(values).filter(|&(_, value)| is_ghost(value));
+    let ghosts: Vec<&[u32]> = marked.map(|(corners, _)| corners).collect();
+    let (count, vertices) = (ghosts.len() as u64, ghosts.concat());
+    if count > 0 {
+        parsed.constraints.vertices.extend_from_slice(&vertices);
+        parsed.constraints.anchored.extend_from_slice(&vertices);
+        parsed.remarks.push(Remark::elements(count, "ghost element", ""));
     }
     Ok(())
 }

@@ -119,11 +119,10 @@ impl MeshFile {
     /// without the vertices of quadrilaterals, but with the vertices of quadrilaterals that list a vertex twice, or that belong to
     /// another piece of a partitioned mesh.
     pub fn constraints_beside_quadrilaterals(&self) -> Constraints {
-        let ParsedMesh { quadrilaterals, constraints, beside_quadrilaterals, held, .. } =
-            &self.parsed;
+        let ParsedMesh { quadrilaterals, constraints, beside_quadrilaterals, .. } = &self.parsed;
         let is_repeated = |corners: &&[u32; 4]| (1..4).any(|k| corners[..k].contains(&corners[k]));
         let repeated = quadrilaterals.iter().filter(is_repeated).flatten();
-        let more: Vec<u32> = repeated.chain(held).copied().collect();
+        let more: Vec<u32> = repeated.copied().collect();
         let without = |list: &[u32], before: usize| {
             let after = &list[before + 4 * quadrilaterals.len()..];
             [&list[..before], after, &more].concat()

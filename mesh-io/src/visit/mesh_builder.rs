@@ -99,7 +99,6 @@ pub(crate) fn parse_by(
         quadrilaterals,
         quadrilateral_regions,
         beside_quadrilaterals,
-        held: Vec::new(),
         other_faces,
         remarks,
         data,

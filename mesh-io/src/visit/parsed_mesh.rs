@@ -36,8 +36,6 @@ pub(crate) struct ParsedMesh {
     pub(crate) quadrilateral_regions: Vec<u32>,
     /// Numbers of entries in the lists of constrained and of anchored vertices before those of quadrilaterals.
     pub(crate) beside_quadrilaterals: [usize; 2],
-    /// Vertices of quadrilaterals that are ghosts.
-    pub(crate) held: Vec<u32>,
     /// The quadrilaterals and polygons of the file.
     pub(crate) other_faces: Faces,
     pub(crate) remarks: Vec<Remark>,

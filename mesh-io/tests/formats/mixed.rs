@@ -1,5 +1,6 @@
 //! Regions, groups, ghosts and conversions of meshes with quadrilaterals.
 
+use super::facts::remarks;
 use mesh_io::{Conversion, Format, MeshFile, ReadOptions, Remark};
 use std::fmt::Write;
 use std::path::Path;
@@ -266,5 +267,46 @@ fn the_order_of_quadrilaterals_in_blocks_is_listed() {
         let all = [order("triangle"), order("quadrilateral"), both.to_owned()].join("; ");
         assert_eq!(lost(&mixed, &halves, to), all, "{to}");
         assert_eq!(lost(&apart, &halves, to), "", "{to}");
+    }
+}
+
+/// A former defect: the remark on ghosts by cell data counted triangles alone.
+#[test]
+fn ghosts_among_quadrilaterals_are_counted() {
+    let points = "0 0 0\n1 0 0\n2 0 0\n0 1 0\n1 1 0\n2 1 0\n3 0 0\n";
+    for (cells, ghosts, count, held) in [
+        ("4 0 1 4 3\n4 1 2 5 4\n3 2 6 5\n", "0 1 0", "1 ghost element", &[1, 2, 4, 5][..]),
+        ("4 0 1 4 3\n4 1 2 5 4\n3 2 6 5\n", "0 1 1", "2 ghost elements", &[1, 2, 4, 5, 6]),
+    ] {
+        let flags: Vec<&str> = ghosts.split(' ').collect();
+        let faces: String =
+            cells.lines().zip(&flags).map(|(own, flag)| format!("{flag} {own}\n")).collect();
+        let ply = format!(
+            "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\nelement face 3\n\
+             property uchar vtkGhostType\nproperty list uchar int vertex_indices\nend_header\n{points}{faces}"
+        );
+        let item = |size: &str, kind: &str, numbers: &str| {
+            format!(
+                "<DataItem Format=\"XML\" NumberType=\"{kind}\" Dimensions=\"{size}\">{numbers}</DataItem>"
+            )
+        };
+        // Types of cells in a mixed topology: 5 for quadrilaterals, 4 for triangles.
+        let mixed = cells.replace("4 0", "5 0").replace("4 1 2", "5 1 2").replace("3 2", "4 2");
+        let xdmf = format!(
+            "<Xdmf Version=\"3.0\"><Domain><Grid><Geometry GeometryType=\"XYZ\">{}</Geometry><Topology \
+             TopologyType=\"Mixed\" NumberOfElements=\"3\">{}</Topology><Attribute Name=\"vtkGhostType\" \
+             AttributeType=\"Scalar\" Center=\"Cell\">{}</Attribute></Grid></Domain></Xdmf>\n",
+            item("7 3", "Float", points),
+            item("14", "Int", &mixed),
+            item("3", "Int", ghosts)
+        );
+        for (name, text) in [("a.ply", &ply), ("a.xdmf", &xdmf)] {
+            let file = read(name, text);
+            assert_eq!(remarks(&file)[1..], [count.to_owned()], "{name}");
+            let mut vertices = file.constraints_beside_quadrilaterals().vertices;
+            vertices.sort_unstable();
+            vertices.dedup();
+            assert_eq!(vertices, held, "{name}");
+        }
     }
 }
