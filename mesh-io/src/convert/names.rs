@@ -75,9 +75,11 @@ fn groups(holds: &Capabilities, content: &mut Content) -> Vec<String> {
     line("groups", &told)
 }
 
-/// Gives a name to each group of vertices, if the format has named sets of vertices.
+/// Respells the names of groups of vertices, if the format has named sets of vertices. If names alone identify sets, each
+/// group gets a name.
 fn vertex_sets(holds: &Capabilities, content: &mut Content) -> Vec<String> {
-    if !holds.vertex_sets {
+    let has_node_sets = holds.groups == GroupSupport::Blocks && holds.vertex_groups;
+    if !holds.vertex_sets && !has_node_sets {
         return Vec::new();
     }
     // In CGNS, the boundary conditions of lines have names in the same list.
@@ -93,16 +95,19 @@ fn vertex_sets(holds: &Capabilities, content: &mut Content) -> Vec<String> {
         _ => Vec::new(),
     };
     let taken: Vec<&str> = taken.iter().map(String::as_str).collect();
-    let name = |(group, _): &(ContentGroup, Vec<u32>)| match (group.name(), &group.label) {
-        (None, GroupLabel::Tag(tag)) => tag.to_string(),
-        (name, _) => name.unwrap_or_default().to_owned(),
+    let by_number = |group: &ContentGroup| match group.label {
+        GroupLabel::Tag(tag) if holds.name_rules.is_word() => Some(tag.to_string()),
+        _ => None,
     };
-    let old: Vec<String> = content.vertex_groups.iter().map(name).collect();
+    let name = |group: &ContentGroup| group.name().map(str::to_owned).or_else(|| by_number(group));
+    let groups = content.vertex_groups.iter_mut().map(|(group, _)| group);
+    let (mut groups, old): (Vec<&mut ContentGroup>, Vec<String>) =
+        groups.filter_map(|group| name(group).map(|name| (group, name))).unzip();
     let names: Vec<&str> = old.iter().map(String::as_str).collect();
     let new = distinct(&names, holds.name_rules, &taken, |at| format!("set{}", at + 1));
     let changes = old.iter().zip(&new).filter(|(old, new)| old != new);
     let told: Vec<String> = changes.map(|(old, new)| format!("`{old}` to `{new}`")).collect();
-    for ((group, _), new) in content.vertex_groups.iter_mut().zip(new) {
+    for (group, new) in groups.iter_mut().zip(new) {
         group.name = Some(new);
     }
     line("groups of vertices", &told)

@@ -147,6 +147,7 @@ pub(crate) static TARGETS: &[Target] = &[
             z: true,
             groups: GroupSupport::Blocks,
             names: [true; 3],
+            name_rules: NameRules::Trimmed,
             allows_negative_numbers: false,
             vertex_groups: true,
             point_data: DataSupport::Scalars,

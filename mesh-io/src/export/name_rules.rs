@@ -9,6 +9,8 @@ pub(crate) enum NameRules {
     Any,
     /// Text in quotation marks, without quotation marks inside. Numbers identify groups besides names.
     Quoted,
+    /// Text without blanks at its ends. Numbers identify groups besides names.
+    Trimmed,
     /// Word without blanks or percent signs. Names alone identify groups and arrays.
     Word,
     /// Name of a netCDF variable: a word without slashes that starts with a letter, a digit or an underscore.
@@ -25,7 +27,7 @@ pub(crate) enum NameRules {
 impl NameRules {
     /// Returns whether names alone identify groups and arrays, and must therefore be distinct.
     pub(crate) fn is_word(self) -> bool {
-        !matches!(self, NameRules::Any | NameRules::Quoted)
+        !matches!(self, NameRules::Any | NameRules::Quoted | NameRules::Trimmed)
     }
 
     /// Returns a key that is equal for names that the format does not distinguish.
@@ -53,6 +55,7 @@ impl NameRules {
     pub(crate) fn of(self, name: &str) -> String {
         match self {
             NameRules::Any => name.to_owned(),
+            NameRules::Trimmed => name.trim_ascii().to_owned(),
             NameRules::Quoted => {
                 let held = |c: char| match c {
                     '"' => '\'',
@@ -198,6 +201,13 @@ mod tests {
         let names = ["a\"b", "a'b", "wall", "wall", "in let", "a\nb"];
         let quoted = ["a'b_2", "a'b", "wall", "wall", "in let", "a b"];
         assert_eq!(spelled(&names, NameRules::Quoted), quoted);
+    }
+
+    #[test]
+    fn blanks_at_the_ends_alone_are_removed() {
+        let names = [" wall", "wall", "in let\t", "wall", " ", "a/b"];
+        let trimmed = ["wall_2", "wall", "in let", "wall", "4", "a/b"];
+        assert_eq!(spelled(&names, NameRules::Trimmed), trimmed);
     }
 
     #[test]

@@ -165,3 +165,24 @@ fn arrays_of_regions_that_get_a_usual_name_are_told() {
         assert_eq!(conversion.renamings(), [""; 0]);
     }
 }
+
+/// A former defect: readers of Exodus drop blanks at the ends of names, and conversions did not list the changed names.
+#[test]
+fn blanks_at_the_ends_of_names_are_listed_for_exodus() {
+    let msh = square([" lead", "lead", "c", "d ", " in let"]);
+    let folder =
+        Folder::new(&[("in.msh", &msh), ("in.inp", &format!("{ABAQUS}*NSET, NSET=\" pin\"\n1\n"))]);
+    let mut renamed = Vec::new();
+    for (name, from) in [("a.exo", "in.msh"), ("b.exo", "in.inp")] {
+        let conversion = Conversion::new(&folder.read(from), Format::Exodus).unwrap().unwrap();
+        renamed.extend_from_slice(conversion.renamings());
+        conversion.write(&folder.path(name)).unwrap();
+        let again = Conversion::new(&folder.read(name), Format::Exodus).unwrap().unwrap();
+        assert_eq!(again.renamings(), [""; 0]);
+    }
+    let groups = "groups: ` lead` (1) to `lead_2`, `d ` (4) to `d`, ` in let` (9) to `in let`";
+    assert_eq!(renamed, [groups, "groups of vertices: ` pin` to `pin`"]);
+    assert_eq!(folder.read("a.exo").groups().unwrap().find("lead_2").unwrap().lines, 1);
+}
+
+const ABAQUS: &str = "*NODE\n1, 0., 0.\n2, 2., 0.\n3, 0., 1.\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n";
