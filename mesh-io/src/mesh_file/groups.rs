@@ -78,7 +78,7 @@ impl MeshFile {
             triangles: self.triangles(),
             other_faces: self.faces(),
             lines: &self.constraints().lines,
-            interfaces: self.interface_edges(),
+            interfaces: self.interfaces_of_elements().1,
         };
         let groups = self.groups()?;
         Ok(group_ends(&groups, &CurveEdges::new(&groups, &mesh)))

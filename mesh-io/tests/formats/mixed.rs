@@ -310,3 +310,19 @@ fn ghosts_among_quadrilaterals_are_counted() {
         }
     }
 }
+
+/// A former defect: groups of vertices did not end at interfaces between quadrilaterals.
+#[test]
+fn groups_of_vertices_end_where_an_interface_of_quadrilaterals_leads_out() {
+    let cells = cells(|_, _| false);
+    let mut text = msh(&cells, |_, cell| [10 + half(cell), 1]);
+    // Points on the interface, up to the third row.
+    let points: String = (1..4)
+        .map(|row| format!("{} 15 2 20 5 {}\n", 100 + row, row * (N + 1) + N / 2 + 1))
+        .collect();
+    text =
+        text.replace("$EndElements", &format!("{points}$EndElements")).replace("\n64\n", "\n67\n");
+    let ends = read("in.msh", &text).group_ends().unwrap();
+    let [first, last] = [1, 3].map(|row| (row * (N + 1) + N / 2) as u32);
+    assert_eq!(ends, [first, last]);
+}
