@@ -10,7 +10,7 @@ use std::collections::{HashMap, HashSet};
 pub(super) struct ImpliedCells {
     /// Edges of exactly one face, each with its smaller vertex first.
     boundary: HashSet<[u32; 2]>,
-    /// Vertices of the boundary, of lines, and of faces other than triangles.
+    /// Vertices of the boundary, of lines, and of polygons of more than four corners.
     vertices: HashSet<u32>,
 }
 
@@ -25,7 +25,7 @@ impl ImpliedCells {
                     *edges.entry([a.min(b), a.max(b)]).or_default() += 1;
                 }
             }
-            if !matches!(kind, CellKind::Point | CellKind::Triangle) {
+            if matches!(kind, CellKind::Line | CellKind::Polygon) {
                 vertices.extend(own);
             }
         }

@@ -326,3 +326,17 @@ fn groups_of_vertices_end_where_an_interface_of_quadrilaterals_leads_out() {
     let [first, last] = [1, 3].map(|row| (row * (N + 1) + N / 2) as u32);
     assert_eq!(ends, [first, last]);
 }
+
+/// A former defect: conversions lost points inside of quadrilaterals without a word.
+#[test]
+fn points_between_quadrilaterals_are_listed_as_losses() {
+    for cells in &grids()[..2] {
+        let text = msh(cells, |_, _| [0, 1]);
+        let count = cells.len();
+        let point = format!("999 15 2 0 1 {}\n$EndElements", 3 * (N + 1) + 4);
+        let text = text.replace("$EndElements", &point);
+        let text = text.replace(&format!("\n{count}\n"), &format!("\n{}\n", count + 1));
+        let file = read("in.msh", &text);
+        assert_eq!(converted(&file, Format::Off).losses(), ["1 point"]);
+    }
+}
