@@ -98,9 +98,9 @@ const ROWS: &[Row] = &[
         &[Format::Medit],
         "dimension 2 or 3, items anywhere on lines",
         [
-            "edges, corners, required vertices and triangles",
+            "edges, corners, required vertices, triangles and quadrilaterals",
             "reference",
-            "references of vertices, edges, triangles and quadrilaterals; `Corners`, `RequiredVertices`, `RequiredTriangles`",
+            "references of vertices, edges, triangles and quadrilaterals; `Corners`, `RequiredVertices`, `RequiredTriangles`, `RequiredQuadrilaterals`",
             "",
         ],
     ),

@@ -266,8 +266,7 @@ impl MeshVisitor for ContentBuilder {
     fn visit_element(&mut self, _: &Cursor<'_>, element: &Element) -> Result<(), ReadError> {
         let &Element { id, kind, region, nodes } = element;
         if kind == CellKind::Polygon {
-            // Elements of this kind are corners of required triangles, which the file lists a second time.
-            self.unsupported("the list of required triangles");
+            // Elements of this kind are corners of required elements, which the file lists a second time.
             return Ok(());
         }
         let set = self.set(kind.dimension(), region);

@@ -22,7 +22,7 @@ impl MeshFile {
     /// |---|---|
     /// | gmsh | `physical`, with their names, and `entity`; in partitioned meshes, the parts of an entity belong to the entity's group |
     /// | SU2 | `marker`, and `zone` if there are several |
-    /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, Ridges, RequiredVertices, RequiredEdges and RequiredTriangles |
+    /// | Medit | `reference` of vertices, edges, triangles and quadrilaterals; `list`: Corners, Ridges, RequiredVertices, RequiredEdges, RequiredTriangles and RequiredQuadrilaterals |
     /// | FreeFem | `label` of vertices, triangles and edges |
     /// | SMS 2dm | `material`, with the names of MAT rows, and `nodestring`, numbered in their order |
     /// | ADCIRC, SCHISM | `boundary`: `open1`, `land1`, `island2` and so on, as the file lists them; a weir has both banks |

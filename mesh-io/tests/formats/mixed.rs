@@ -1,5 +1,6 @@
 //! Regions, groups, ghosts and conversions of meshes with quadrilaterals.
 
+use super::Folder;
 use super::facts::remarks;
 use mesh_io::{Conversion, Format, MeshFile, ReadOptions, Remark};
 use std::fmt::Write;
@@ -339,4 +340,19 @@ fn points_between_quadrilaterals_are_listed_as_losses() {
         let file = read("in.msh", &text);
         assert_eq!(converted(&file, Format::Off).losses(), ["1 point"]);
     }
+}
+
+/// A former defect: vertices of required quadrilaterals moved, and the list was lost without its name.
+#[test]
+fn vertices_of_required_quadrilaterals_stay() {
+    let text = "MeshVersionFormatted 2\nDimension 2\nVertices\n6\n0 0 1\n1 0 1\n2 0 1\n0 1 1\n1 1 1\n2 1 1\n\
+        Triangles\n2\n2 3 6 7\n2 6 5 7\nQuadrilaterals\n1\n1 2 5 4 7\nRequiredQuadrilaterals\n1\n1\nEnd\n";
+    let folder = Folder::new(&[("in.mesh", text)]);
+    let file = folder.read("in.mesh");
+    assert_eq!(file.constraints_beside_quadrilaterals().vertices, [0, 1, 4, 3]);
+    assert_eq!(remarks(&file), ["1 quadrilateral", "1 required quadrilateral"]);
+    let group = file.groups().unwrap().find("RequiredQuadrilaterals").unwrap().vertices().to_vec();
+    assert_eq!(group, [0, 1, 3, 4]);
+    let losses = converted(&file, Format::Vtu).losses().join("; ");
+    assert!(losses.contains("the list RequiredQuadrilaterals"), "{losses}");
 }

@@ -1,5 +1,5 @@
-//! Lists of required triangles, required edges and ridges, whose vertices stay fixed. Both of Medit's formats list these
-//! elements by number.
+//! Lists of required triangles, quadrilaterals and edges, and of ridges, whose vertices stay fixed. Both of Medit's formats
+//! list these elements by number.
 
 use crate::content::group_label::GroupLabel;
 use crate::content::remark::Remark;
@@ -23,7 +23,7 @@ pub(super) struct NumberList {
 
 impl NumberList {
     /// Returns the lists, all of them empty.
-    pub(super) fn all() -> [NumberList; 3] {
+    pub(super) fn all() -> [NumberList; 4] {
         let list = |name, keyword, kind, word| NumberList {
             name,
             keyword,
@@ -33,14 +33,15 @@ impl NumberList {
         };
         [
             list("RequiredTriangles", 17, CellKind::Triangle, "required triangle"),
+            list("RequiredQuadrilaterals", 18, CellKind::Quadrilateral, "required quadrilateral"),
             list("RequiredEdges", 16, CellKind::Line, "required edge"),
             list("Ridges", 14, CellKind::Line, "ridge"),
         ]
     }
 
-    /// Visits the corners of triangles as points, and edges as held lines. `counts` are the lengths of the lists of
-    /// elements of the kind. `element` reads the element with a 0-based index in a list, and returns location, nodes and
-    /// reference of the element. Calls of `element` are in ascending order.
+    /// Visits the corners of triangles and quadrilaterals as points, and edges as held lines. `counts` are the lengths of
+    /// the lists of elements of the kind. `element` reads the element with a 0-based index in a list, and returns location,
+    /// nodes and reference of the element. Calls of `element` are in ascending order.
     pub(super) fn send<'a>(
         self,
         counts: &[u64],
@@ -64,7 +65,7 @@ impl NumberList {
                     visitor.held_line(&place, id, [nodes[0], nodes[1]])?;
                     continue;
                 }
-                for &corner in &nodes[..3] {
+                for &corner in &nodes[..kind.nodes()] {
                     let (kind, nodes, region) =
                         (CellKind::Polygon, [corner, 0, 0, 0], [reference, 0]);
                     visitor.element(&place, &Element { id, kind, region, nodes })?;
@@ -72,7 +73,7 @@ impl NumberList {
             }
             before += count;
         }
-        if kind == CellKind::Line && visitor.asks_for_data() {
+        if visitor.asks_for_data() {
             visitor.unsupported(&format!("the list {name}"));
         }
         Ok(())

@@ -1,8 +1,8 @@
 //! Medit's `.mesh`, as text.
 //!
 //! The format: Frey, MEDIT: An interactive mesh visualization software, INRIA RT-0253 (2001), and the documentation of
-//! mmg and libMeshb. Corners, required vertices, and the vertices of edges and required triangles stay fixed. Vertices of
-//! required edges and ridges do not slide either.
+//! mmg and libMeshb. Corners, required vertices, and the vertices of edges and of required triangles and quadrilaterals
+//! stay fixed. Vertices of required edges and ridges do not slide either.
 
 use crate::content::group_label::GroupLabel;
 use crate::disk::source::Source;
