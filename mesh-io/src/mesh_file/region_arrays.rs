@@ -178,7 +178,7 @@ mod tests {
         let (mut end, mut next) = ([0, 1], 2);
         let element = |t: u32| {
             let ([a, b], new) = (end, next);
-            if t % 2 == 0 {
+            if t.is_multiple_of(2) {
                 (end, next) = ([b, new], new + 1);
                 vec![a, b, new]
             } else {
