@@ -15,7 +15,7 @@ use crate::terminal::numbers::elements;
 /// Properties in which a written mesh must equal the existing mesh that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Likeness {
-    /// The elements and the fixed vertices, with their positions and data unless vertices slide.
+    /// The elements and the fixed vertices, and unless vertices slide the place and the data of the boundary.
     Mesh { slides: bool },
     /// The elements. A conversion may lose groups, and with them the constraints that fix vertices.
     Elements,
@@ -115,9 +115,9 @@ fn difference(new: &MeshFile, old: &MeshFile, likeness: Likeness) -> Option<Stri
         .then(|| "its fixed vertices are others".to_owned())
 }
 
-/// Describes the first difference between the vertices that stay in a mesh with equal elements, and those of `old`: their places
-/// and data. `None` if these are no reason to keep `old`. An earlier run may have let a part of the vertices slide. If `slides`, it
-/// may have moved all of them.
+/// Describes the first difference between the boundary of a mesh with equal elements and that of `old`: the places and data of its
+/// vertices. `None` if these are no reason to keep `old`. Other vertices may have moved in an earlier run with other options, which
+/// may also have let a part of the boundary slide. If `slides`, it may have moved all of it.
 fn difference_of_vertices(new: &LoadedMesh, old: &MeshFile, slides: bool) -> Option<String> {
     let names = old.data_names();
     if let Some(name) = names.iter().find(|name| !new.source.data_names().contains(name)) {
@@ -126,9 +126,12 @@ fn difference_of_vertices(new: &LoadedMesh, old: &MeshFile, slides: bool) -> Opt
     // A run refuses a mesh without a topology.
     let topology = Topology::new(new.mesh()).ok().filter(|_| !slides)?;
     let points = [new.source.points(), old.points()];
-    let stay: Vec<usize> = (0..points[0].len()).filter(|&v| !topology.free()[v]).collect();
-    if !stay.is_empty() && stay.iter().all(|&v| points[0][v] != points[1][v]) {
-        return Some("its fixed vertices are elsewhere".to_owned());
+    let mut boundary: Vec<usize> =
+        topology.boundary_edges().as_flattened().iter().map(|&v| v as usize).collect();
+    // Copies of vertices on the sphere come last.
+    boundary.retain(|&v| v < points[0].len());
+    if !boundary.is_empty() && boundary.iter().all(|&v| points[0][v] != points[1][v]) {
+        return Some("its boundary is elsewhere".to_owned());
     }
     if names.is_empty() {
         return None;
@@ -144,9 +147,9 @@ fn difference_of_vertices(new: &LoadedMesh, old: &MeshFile, slides: bool) -> Opt
             own.map(|own| own.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
         };
         let is_place = new.is_third_of_points() && has_places;
-        !is_place && stay.iter().any(|&v| values(new, v) != values(old, v))
+        !is_place && boundary.iter().any(|&v| values(new, v) != values(old, v))
     });
-    other.map(|(field, _)| format!("its data of fixed vertices are others: `{}`", field.name()))
+    other.map(|(field, _)| format!("its data on the boundary are others: `{}`", field.name()))
 }
 
 /// Returns elements sorted, with sorted corners, independent of the order in the file.

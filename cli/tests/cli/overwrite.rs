@@ -84,9 +84,9 @@ fn a_mesh_of_another_place_or_with_other_data_is_another_mesh() {
     ]);
     let before = folder.content();
     for (out, told) in [
-        ("elsewhere.2dm", "its fixed vertices are elsewhere"),
-        ("deeper.2dm", "its data of fixed vertices are others: `z`"),
-        ("corner.2dm", "its data of fixed vertices are others: `z`"),
+        ("elsewhere.2dm", "its boundary is elsewhere"),
+        ("deeper.2dm", "its data on the boundary are others: `z`"),
+        ("corner.2dm", "its data on the boundary are others: `z`"),
     ] {
         let told = format!("{out}: holds another mesh than in.2dm: {told}");
         folder.line(&format!("in.2dm {out} --engine cpu")).refused(&[&told, "--force"]);
