@@ -15,9 +15,36 @@ pub(crate) fn is_nearly_all(part: usize, whole: usize) -> bool {
     4 * part > 3 * whole
 }
 
-/// Returns whether numbers count elements. `numbers` is the number of different ones among triangles, plus the number of
-/// different ones among quadrilaterals, as programs may count each kind from 1. `elements` is the number of triangles and
-/// quadrilaterals. Numbers of fewer than 16 elements count none.
+/// Different numbers of triangles and of quadrilaterals.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Different {
+    /// How many numbers triangles have, and how many quadrilaterals have.
+    of_kind: [usize; 2],
+    /// How many numbers elements of both kinds have.
+    of_both: usize,
+}
+
+impl Different {
+    /// Adds a number that triangles have, or quadrilaterals, or both.
+    pub(crate) fn add(&mut self, [triangles, quadrilaterals]: [bool; 2]) {
+        self.of_kind[0] += usize::from(triangles);
+        self.of_kind[1] += usize::from(quadrilaterals);
+        self.of_both += usize::from(triangles && quadrilaterals);
+    }
+
+    /// Returns how many numbers there are. Programs may count each kind of elements from 1, so if there are many of each kind, a
+    /// number that elements of both kinds have counts twice.
+    pub(crate) fn count(&self) -> usize {
+        let count = self.of_kind.iter().sum::<usize>();
+        match self.of_kind.iter().all(|&count| count >= MIN_ELEMENTS) {
+            true => count,
+            false => count - self.of_both,
+        }
+    }
+}
+
+/// Returns whether numbers count elements: `numbers` different ones of `elements` triangles and quadrilaterals. Numbers of fewer
+/// than 16 elements count none.
 pub(crate) fn counts_elements(numbers: usize, elements: usize) -> bool {
     elements >= MIN_ELEMENTS && is_nearly_all(numbers, elements)
 }
@@ -78,9 +105,13 @@ fn counters(names: [&[[i64; 2]]; 2], elements: usize) -> [bool; 2] {
             Some(_) => (place == 0).then_some(name[1]),
             None => Some(name[place]),
         };
-        let different =
-            |names: &[[i64; 2]]| names.iter().filter_map(own).collect::<HashSet<i64>>().len();
-        counts_elements(names.into_iter().map(different).sum(), elements)
+        let [triangles, others] =
+            names.map(|names| names.iter().filter_map(own).collect::<HashSet<i64>>());
+        let mut different = Different::default();
+        for number in triangles.union(&others) {
+            different.add([triangles.contains(number), others.contains(number)]);
+        }
+        counts_elements(different.count(), elements)
     })
 }
 
@@ -98,11 +129,12 @@ mod tests {
         (0..count).map(name).collect()
     }
 
-    /// Returns the numbers of the names of 20 elements, the last `quadrilaterals` of which are quadrilaterals; `None` if no
-    /// integer counts elements.
+    /// Returns the numbers of the names of elements, the last `quadrilaterals` of which are quadrilaterals; `None` if no integer
+    /// counts elements.
     fn joined(names: &[[i64; 2]], quadrilaterals: usize) -> Option<Vec<u32>> {
         let (triangles, others) = names.split_at(names.len() - quadrilaterals);
-        let JointNumbers { of_names, has_counter } = joint_numbers([triangles, others], 20);
+        let JointNumbers { of_names, has_counter } =
+            joint_numbers([triangles, others], names.len());
         has_counter.then(|| of_names.concat())
     }
 
@@ -116,8 +148,11 @@ mod tests {
             assert_eq!(of(|t| [t, t]), Some(vec![0; 20]));
             assert_eq!(of(|t| [t / 5, t % 5]), None, "four numbers and five numbers");
         }
-        let of_each_kind = joined(&names(20, |t| [t / 10, t % 10]), 10);
+        let of_each_kind = joined(&names(40, |t| [t / 20, t % 20]), 20);
+        let halves = (0..40).map(|t| t / 20).collect();
         assert_eq!(of_each_kind, Some(halves), "each kind is counted from 0");
+        let materials = joined(&names(20, |t| [t / 10, t % 10]), 10);
+        assert_eq!(materials, None, "10 numbers that both kinds have");
         // Triangle 0 has a further number of the first kind, which is the region 1.
         let names = [&[[1, 0], further_name(0, 2)][..], &names(20, |t| [1, t])[1..]].concat();
         assert_eq!(joined(&names, 0), Some([&[0, 1][..], &[0; 19]].concat()));

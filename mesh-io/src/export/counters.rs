@@ -1,7 +1,7 @@
 //! Removes groups whose numbers count elements from a content.
 
 use super::content::{Content, ContentGroup};
-use crate::content::numbering::counts_elements;
+use crate::content::numbering::{Different, counts_elements};
 use crate::visit::items::CellKind;
 use std::collections::{HashMap, HashSet};
 
@@ -50,13 +50,12 @@ impl Content {
                 own.for_each(|&group| has_elements[group as usize][place] = true);
             }
         }
-        let mut numbers: HashMap<&str, usize> = HashMap::new();
+        let mut numbers: HashMap<&str, Different> = HashMap::new();
         let numbered = self.groups.iter().zip(has_elements).filter(|(group, _)| is_numbered(group));
         for (group, has_elements) in numbered {
-            let kinds = has_elements.iter().filter(|has| **has).count();
-            *numbers.entry(&group.kind).or_insert(0) += kinds;
+            numbers.entry(&group.kind).or_default().add(has_elements);
         }
-        numbers.retain(|_, count| counts_elements(*count, elements));
+        numbers.retain(|_, different| counts_elements(different.count(), elements));
         numbers.into_keys().map(str::to_owned).collect()
     }
 }

@@ -3,7 +3,7 @@
 use crate::content::group::{Group, Groups};
 use crate::content::group_keys::GroupKeys;
 use crate::content::group_label::GroupLabel;
-use crate::content::numbering::counts_elements;
+use crate::content::numbering::{Different, counts_elements};
 use crate::visit::items::CellKind;
 use std::collections::HashMap;
 
@@ -116,15 +116,14 @@ impl GroupTable {
                     None => tag.is_some_and(is_unnamed),
                 }
         };
-        let mut numbers: HashMap<String, usize> = HashMap::new();
+        let mut numbers: HashMap<String, Different> = HashMap::new();
         for GroupMembers { group, .. } in &*groups {
             if is_numbered(group) {
-                let members = [group.triangles.len(), group.quadrilaterals.len()];
-                let kinds = members.iter().filter(|count| **count > 0).count();
-                *numbers.entry(group.kind.clone()).or_insert(0) += kinds;
+                let has_members = [&group.triangles, &group.quadrilaterals].map(|m| !m.is_empty());
+                numbers.entry(group.kind.clone()).or_default().add(has_members);
             }
         }
-        numbers.retain(|_, count| counts_elements(*count, elements));
+        numbers.retain(|_, different| counts_elements(different.count(), elements));
         groups.retain(|GroupMembers { group, .. }| {
             !(numbers.contains_key(&group.kind) && is_numbered(group))
         });

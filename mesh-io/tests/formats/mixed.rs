@@ -151,6 +151,19 @@ fn numbers_that_count_triangles_and_quadrilaterals_are_neither_regions_nor_group
     }
 }
 
+/// A former defect: eight materials, which triangles and quadrilaterals had, counted twice, as many as there were elements.
+#[test]
+fn materials_of_a_small_mesh_count_no_elements() {
+    let cells: Vec<Cell> = cells(|column, _| column < 5).into_iter().step_by(6).collect();
+    let is_triangle = |(corners, _): &&Cell| corners.len() == 3;
+    let triangles = cells.iter().filter(is_triangle).count();
+    assert!(cells.len() >= 16 && triangles >= 8 && cells.len() - triangles >= 4);
+    let file = read("in.msh", &msh(&cells, |k, _| [1 + k % 9, 1]));
+    let groups = file.groups().unwrap();
+    assert_eq!(groups.iter().filter(|group| group.kind == "physical").count(), 9);
+    assert_eq!(converted(&file, Format::Vtu).losses(), [""; 0]);
+}
+
 /// A former defect: with triangles and quadrilaterals in two physical groups each, vertices between the kinds stayed.
 #[test]
 fn elements_of_equal_groups_are_one_region_whatever_their_kind() {

@@ -286,6 +286,37 @@ fn metadata_with_empty_names_of_components_hides_no_later_array() {
     assert_eq!(folder.read("a.vtk").triangles(), [[0, 1, 2], [0, 2, 3]]);
 }
 
+/// Some programs write information before the points, and behind the number of points or cells.
+#[test]
+fn metadata_in_other_places_is_passed_over() {
+    let information = "METADATA\nINFORMATION 1\nNAME KEY LOCATION vtk\nDATA 5\n\n";
+    let data = format!(
+        "CELL_DATA 2\n{information}SCALARS a int\nLOOKUP_TABLE default\n1 2\nPOINT_DATA 4\n{information}\
+         SCALARS b int\nLOOKUP_TABLE default\n1 2 3 4\n"
+    );
+    let text = legacy_text(&data).replace("POINTS", &format!("{information}POINTS"));
+    let folder = Folder::new(&[("a.vtk", &text)]);
+    let content = folder.read("a.vtk").content().unwrap();
+    assert_eq!(cell_data(&content), [("a", &[1.0, 2.0][..])]);
+    assert_eq!(content.point_data()[0].values(), [1.0, 2.0, 3.0, 4.0]);
+}
+
+/// A word behind the last array is a note. Only an attribute that has data is a loss.
+#[test]
+fn a_last_word_of_a_legacy_vtk_is_no_loss() {
+    let array = "CELL_DATA 2\nSCALARS a int\nLOOKUP_TABLE default\n1 2\n";
+    for (end, lost) in [
+        ("END\n", ""),
+        ("TWISTS t\n1 2\n", "data from the attribute `TWISTS` on, which is damaged or not known"),
+    ] {
+        let text = legacy_text(&format!("{array}{end}"));
+        let (content, losses) = converted("a.vtk", text.clone(), Format::Vtu);
+        assert_eq!((cell_data(&content), &*losses), (vec![("a", &[1.0, 2.0][..])], lost));
+        let notes = Folder::new(&[("a.vtk", &text)]).read("a.vtk").remarks().len();
+        assert_eq!(notes, 1, "{end}");
+    }
+}
+
 /// VTK writes number signs in names as they are.
 #[test]
 fn number_signs_of_a_legacy_vtk_belong_to_names_not_to_comments() {

@@ -63,6 +63,9 @@ pub(super) fn boundary_numbers(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> V
             }
         }
     }
+    // Several edges begin at a vertex where boundaries touch, and the last one counts. Sets have another order in each run.
+    let mut edges: Vec<[u32; 2]> = edges.into_iter().collect();
+    edges.sort_unstable();
     let next: HashMap<u32, u32> = edges.into_iter().map(|[from, to]| (from, to)).collect();
     let mut starts: Vec<u32> = next.keys().copied().collect();
     let place = |v: u32| at(v)[0] + at(v)[1];

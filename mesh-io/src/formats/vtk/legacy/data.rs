@@ -56,12 +56,16 @@ pub(super) fn regions(
     };
     data.count = count;
     while cursor.next_word() {
-        let keyword = quoted(cursor.clone().token().unwrap_or_default());
+        let mut behind = cursor.clone();
+        let keyword = quoted(behind.token().unwrap_or_default());
         if data.attribute(cursor).is_none() {
             let rest =
                 format!("data from the attribute `{keyword}` on, which is damaged or not known");
             data.visitor.remark(Remark::Text(format!("the file has {rest}: they are not read")));
-            data.visitor.unsupported(&rest);
+            // A last word has no data.
+            if behind.next_word() {
+                data.visitor.unsupported(&rest);
+            }
             break;
         }
     }
@@ -130,6 +134,8 @@ impl Data<'_> {
                 let size = cursor.integer("the size of a table").ok()?.checked_mul(4)?;
                 skip_section(cursor, self.binary, b"unsigned_char", size).ok()?;
             }
+            // Behind no array.
+            b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
             b"FIELD" => {
                 cursor.name()?;
                 for _ in 0..cursor.integer("the number of arrays").ok()? {

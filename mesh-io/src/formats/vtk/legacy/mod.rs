@@ -95,6 +95,7 @@ impl FormatReader for Vtk {
                         }
                     }
                 }
+                b"METADATA" => while cursor.line().is_some_and(|line| !line.is_empty()) {},
                 b"FIELD" => {
                     visitor.unsupported("field data");
                     skip::skip_field(cursor, binary)?;
