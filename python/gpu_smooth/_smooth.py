@@ -198,7 +198,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         the first N rows, or `"within=DISTANCE"` for all vertices within a distance of walls, in the unit of the points.
         Walls are the boundary, `lines` and lines between regions; a tuple such as `("rows=3", walls)` has the vertices of
         the only walls that count, as `fixed` takes vertices. Without such vertices, `"rows=N"` and `"within=DISTANCE"` take
-        the walls with flat elements, from corner to corner. For a mesh with named groups, `"rows=3,GROUP"` names groups of walls.
+        each wall, from corner to corner, with flat elements at a quarter of its vertices or more, and of other walls the vertices
+        with flat elements. For a mesh with named groups, `"rows=3,GROUP"` names groups of walls.
         If no other vertex is free, the points do not move, and a warning says so.
     free_lines : bool, default False
         Let vertices on lines inside of the mesh move, and not slide along these lines: for files that list all edges of

@@ -206,7 +206,7 @@ impl<'a> Remarks<'a> {
             let vertices = numbered(moved, "vertex", "vertices");
             self.add(format!(
                 "the sweeps left {triangles} with an angle above 87.1°, {were} of them obtuse. {vertices} moved on to \
-                 end with {after} and {are}, which {cost}"
+                 end with {after}, {are} of them obtuse, which {cost}"
             ));
         }
         if let Some(improved) = &outcome.improved {

@@ -37,8 +37,8 @@ impl Elements<'_> {
     }
 
     /// Returns the first `count` rows above walls, whatever their heights. Where a column ends, rings of neighbors count as
-    /// rows. `walls` are the vertices of the walls; `None` stands for each wall, from corner to corner, with a vertex at
-    /// which a layer may begin. At corners, the elements have an angle below 120 degrees.
+    /// rows. `walls` are the vertices of the walls; `None` stands for each wall, from corner to corner, of which a
+    /// layer may begin at a quarter of the vertices, and for these vertices of other walls. At corners, the elements have an angle below 120 degrees.
     ///
     /// # Errors
     /// Those of [`layers`](Self::layers).

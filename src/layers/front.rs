@@ -53,19 +53,31 @@ pub(super) fn front(sectors: &Sectors, seeds: &[bool]) -> Vec<bool> {
     front
 }
 
-/// Returns the nodes of the walls that have a seed. A wall goes from corner to corner. A corner belongs to the walls on both
-/// sides, so that a seed at a corner alone would make walls of inlets; it does not count.
+/// Returns the nodes of whole walls of which at least a quarter of the nodes are seeds, and the [`front`] on other walls. A wall goes
+/// from corner to corner. A corner belongs to the walls on both sides, so that a seed at a corner alone would make walls of
+/// inlets; it does not count.
 pub(super) fn walls(sectors: &Sectors, seeds: &[bool]) -> Vec<bool> {
     let is_corner = |node: u32| sectors.fluid[node as usize] < CORNER;
-    let is_start = |node: &u32| seeds[*node as usize] && !is_corner(*node);
-    let mut open: Vec<u32> = (0..sectors.len() as u32).filter(is_start).collect();
-    let mut walls = vec![false; sectors.len()];
-    open.iter().for_each(|&node| walls[node as usize] = true);
-    while let Some(node) = open.pop() {
-        for other in sectors.wall[node as usize].into_iter().filter(|other| *other != NONE) {
-            if !std::mem::replace(&mut walls[other as usize], true) && !is_corner(other) {
-                open.push(other);
+    let mut walls = front(sectors, seeds);
+    let mut is_reached = vec![false; sectors.len()];
+    for start in (0..sectors.len() as u32).filter(|&n| seeds[n as usize] && !is_corner(n)) {
+        if std::mem::replace(&mut is_reached[start as usize], true) {
+            continue;
+        }
+        let (mut wall, mut corners, mut at) = (vec![start], Vec::new(), 0);
+        while let Some(&node) = wall.get(at) {
+            at += 1;
+            for other in sectors.wall[node as usize].into_iter().filter(|other| *other != NONE) {
+                if is_corner(other) {
+                    corners.push(other);
+                } else if !std::mem::replace(&mut is_reached[other as usize], true) {
+                    wall.push(other);
+                }
             }
+        }
+        let count = wall.iter().filter(|node| seeds[**node as usize]).count();
+        if 4 * count >= wall.len() {
+            wall.into_iter().chain(corners).for_each(|node| walls[node as usize] = true);
         }
     }
     walls

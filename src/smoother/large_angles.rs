@@ -47,8 +47,8 @@ impl Failing {
         let edges = inner_edges(movable.surface, points, &movable.smoother.topology);
         let edges = edges.iter().filter(|edge| REFUSED.are_broken_by(edge)).count();
         let triangles = movable.chosen(points, |corner| aim.is_beyond(corner)).await.len();
-        // Right angles are not obtuse by rounding.
-        const OBTUSE: f64 = -1e-9;
+        /// Cotangent of 90.06 degrees. Sweeps end near right angles that are best, and rounding must not decide.
+        const OBTUSE: f64 = -1e-3;
         let is_obtuse =
             |corner: PlacedCorner<'_>| !corner.is_right && corner.least_cotangent() < OBTUSE;
         let obtuse = movable.chosen(points, is_obtuse).await.len();
@@ -67,6 +67,8 @@ impl Failing {
 struct ToAcute {
     /// Cotangent of the angle below which angles have a penalty: the least angle after the sweeps, but at most 36 degrees.
     small: f64,
+    /// The limits that keep the improvement of the worst triangles.
+    limits: [f64; 2],
 }
 
 impl Aim for ToAcute {
@@ -75,6 +77,10 @@ impl Aim for ToAcute {
 
     fn penalties(&self, round: u32) -> Penalties {
         Penalties::on_large_angles(self.small, FIRST_WEIGHT * 2f64.powi(round as i32))
+    }
+
+    fn limits(&self) -> [f64; 2] {
+        self.limits
     }
 
     fn is_beyond(&self, corner: PlacedCorner<'_>) -> bool {
@@ -108,7 +114,7 @@ impl Smoother<'_> {
     /// `positions`. Returns the record of the rounds. `None` if the run has another base metric, if its targets
     /// belong to places or are no concern of the metric, if no sweep is to be made, or if no triangle that can move has a large angle.
     /// `None` too, and the points are unchanged, if the rounds lessen neither the edges that solvers refuse nor the large
-    /// angles, if f would exceed its limit, if the worst triangles would lose their improvement, or if vertices that slide would
+    /// angles, if f would exceed its limit, if the worst triangles would lose more than a tenth of their improvement, or if vertices that slide would
     /// exceed the guard of the worst triangle.
     pub(super) async fn lessen_large_angles(
         &self,
@@ -129,7 +135,8 @@ impl Smoother<'_> {
         }
         let movable = Movable::new(self);
         let [worst] = movable.worst_shapes([points]).await;
-        let aim = ToAcute { small: worst.cotangent.max(LARGEST_SMALL) };
+        let limits = improving.map_or([f64::INFINITY, 0.0], Improvement::limits);
+        let aim = ToAcute { small: worst.cotangent.max(LARGEST_SMALL), limits };
         let before = Failing::of(&movable, &aim, points).await;
         if before.triangles == 0 {
             return Ok(None);

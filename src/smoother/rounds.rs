@@ -40,6 +40,12 @@ pub(super) trait Aim: Sync {
     /// Returns the triangles of the mesh on which penalties are larger from now on.
     fn heavy(&self, movable: &Movable<'_>, points: &[[f64; 2]]) -> Vec<[u32; 3]>;
 
+    /// Returns the largest inverse mean ratio and the least altitude, in normalized units, of triangles around a vertex that
+    /// moves.
+    fn limits(&self) -> [f64; 2] {
+        [f64::INFINITY, 0.0]
+    }
+
     /// Returns whether a corner that is beyond the limits demands another round.
     fn demands_more(&self, corner: PlacedCorner<'_>) -> bool {
         self.is_beyond(corner)
@@ -147,6 +153,10 @@ impl<'s> Movable<'s> {
             Guard::ByMetric => f64::INFINITY,
         };
         let least_altitude = if options.keep_altitude { altitude::least_of(problem) } else { 0.0 };
+        let [shape, least_altitude] = {
+            let [most, least] = aim.limits();
+            [shape.min(most), least_altitude.max(least)]
+        };
         let mut heavy = TriangleSet::new();
         let topology = &self.smoother.topology;
         let corners = |t: u32| topology.corners()[t as usize];

@@ -13,6 +13,9 @@ use crate::worst::{Badness, MoveConstraints, Passes, stuck, worst_movable};
 
 /// Share by which rounding may raise the worst inverse mean ratio.
 const ROUNDING: f64 = 1e-9;
+/// Share of the gain of the stage that later moves must leave. Rounding of stored coordinates takes a little, and limits on shapes
+/// hold no angle exactly.
+const KEPT: f64 = 0.9;
 
 /// The result of the stage that improves the worst triangles, evaluated at the coordinates as they are written.
 pub(crate) struct Improvement {
@@ -22,6 +25,8 @@ pub(crate) struct Improvement {
     /// Largest badness of a movable triangle before the stage, at positions as they are stored. Infinite until
     /// [`holds_as_stored`](Self::holds_as_stored) evaluates it.
     worst: f64,
+    /// The same after the stage.
+    reached: f64,
     /// Largest inverse mean ratio of a movable triangle before the stage, which the stage allows.
     shape: f64,
     /// Objective by the base metric at the start and at the end of the stage.
@@ -69,7 +74,8 @@ impl Improvement {
             }
         }
         let vertices = passes.moved();
-        Some(Self { badness, vertices, worst: f64::INFINITY, shape: rules.shape, f: [before, f] })
+        let [worst, reached] = [f64::INFINITY; 2];
+        Some(Self { badness, vertices, worst, reached, shape: rules.shape, f: [before, f] })
     }
 
     /// Compares the worst triangle at positions as they are stored, without the stage and with it. If the stage has not made
@@ -82,22 +88,30 @@ impl Improvement {
         with: &[DVec2],
     ) -> bool {
         self.worst = worst_movable(problem, self.badness, without).await;
-        let holds =
-            self.vertices > 0 && worst_movable(problem, self.badness, with).await < self.worst;
+        self.reached = worst_movable(problem, self.badness, with).await;
+        let holds = self.vertices > 0 && self.reached < self.worst;
         if !holds {
-            (self.vertices, self.f[1]) = (0, self.f[0]);
+            (self.vertices, self.f[1], self.reached) = (0, self.f[0], self.worst);
         }
         holds
     }
 
-    /// Returns whether the promise of the stage holds at positions to which vertices have gone after the stage: the worst
-    /// triangle is better than before the stage, or as it was if the stage has moved no vertex, and has no higher inverse mean
-    /// ratio.
+    /// Returns whether [`KEPT`] of the gain of the worst triangle is left at positions to which vertices have gone since, and no
+    /// inverse mean ratio exceeds the limit of the stage.
     pub(crate) async fn holds_at(&self, problem: &Problem, positions: &[DVec2]) -> bool {
         let now = worst_movable(problem, self.badness, positions).await;
-        let is_better = now < self.worst || self.vertices == 0 && now == self.worst;
         let shape = worst_movable(problem, Badness(WorstBy::Imr), positions).await;
-        is_better && shape.sqrt() <= self.shape
+        now <= self.worst - KEPT * (self.worst - self.reached) && shape.sqrt() <= self.shape
+    }
+
+    /// Returns the largest inverse mean ratio and the least altitude, in normalized units, of triangles that later moves may
+    /// leave.
+    pub(crate) fn limits(&self) -> [f64; 2] {
+        match self.badness.0 {
+            WorstBy::Imr => [self.reached.sqrt() * (1.0 + ROUNDING), 0.0],
+            WorstBy::MinAngle => [self.shape, 0.0],
+            WorstBy::Altitude => [self.shape, self.reached.sqrt().recip() * (1.0 - ROUNDING)],
+        }
     }
 
     /// Returns whether the worst triangle is better than in the mesh before the run.

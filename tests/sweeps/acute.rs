@@ -234,18 +234,19 @@ fn rounds_on_large_angles_do_not_cost_the_gain_of_the_sweeps() {
 
 #[test]
 fn rounds_on_large_angles_keep_the_improvement_of_the_worst_triangles() {
-    let mut kept = 0;
-    for seed in 0..12 {
+    let mut kept = Vec::new();
+    for seed in 0..4 {
         let mesh = support::perturb_random(&plate(300), 0.5, seed);
         let smoother = Smoother::new(&mesh).unwrap();
         for by in [WorstBy::Imr, WorstBy::MinAngle, WorstBy::Altitude] {
             let outcome = run(&smoother, &acute().improve_worst(Some(by)), &Backend::Cpu);
-            kept += usize::from(outcome.large_angles.is_some());
+            kept.extend(outcome.large_angles.is_some().then_some(by));
             let told = outcome.improved.unwrap();
             let [before, after] = told.worst;
             let is_better = if by == WorstBy::Imr { after < before } else { after > before };
             assert!(is_better || told.vertices == 0 && after == before, "{seed} {by:?}: {told:?}");
         }
     }
-    assert!(kept > 0);
+    // Limits hold mean ratios and altitudes in the rounds, which then lessen angles beside the improvement.
+    assert!([WorstBy::Imr, WorstBy::Altitude].iter().all(|by| kept.contains(by)), "{kept:?}");
 }

@@ -115,9 +115,22 @@ fn difference(new: &MeshFile, old: &MeshFile, likeness: Likeness) -> Option<Stri
         .then(|| "its fixed vertices are others".to_owned())
 }
 
+/// Returns whether the boxes around vertices differ by more than a tenth of their size between two lists of points. Vertices
+/// that slide may change the box of a mesh without corners a little.
+fn is_elsewhere(points: [&[[f64; 2]]; 2], vertices: &[usize]) -> bool {
+    let ends = |points: &[[f64; 2]], axis: usize| {
+        let of_axis = vertices.iter().map(|&v| points[v][axis]);
+        [of_axis.clone().fold(f64::INFINITY, f64::min), of_axis.fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let boxes = [0, 1].map(|axis| points.map(|points| ends(points, axis)));
+    let size = boxes.iter().map(|[[low, high], _]| high - low).fold(0.0, f64::max);
+    let mut ends = boxes.iter().flat_map(|[new, old]| new.iter().zip(old));
+    ends.any(|(new, old)| (new - old).abs() > 0.1 * size)
+}
+
 /// Describes the first difference between the boundary of a mesh with equal elements and that of `old`: the places and data of its
 /// vertices. `None` if these are no reason to keep `old`. Other vertices may have moved in an earlier run with other options, which
-/// may also have let a part of the boundary slide. If `slides`, it may have moved all of it.
+/// may also have let vertices of the boundary slide. If `slides`, nothing is compared.
 fn difference_of_vertices(new: &LoadedMesh, old: &MeshFile, slides: bool) -> Option<String> {
     let names = old.data_names();
     if let Some(name) = names.iter().find(|name| !new.source.data_names().contains(name)) {
@@ -130,9 +143,11 @@ fn difference_of_vertices(new: &LoadedMesh, old: &MeshFile, slides: bool) -> Opt
         topology.boundary_edges().as_flattened().iter().map(|&v| v as usize).collect();
     // Copies of vertices on the sphere come last.
     boundary.retain(|&v| v < points[0].len());
-    if !boundary.is_empty() && boundary.iter().all(|&v| points[0][v] != points[1][v]) {
+    if is_elsewhere(points, &boundary) {
         return Some("its boundary is elsewhere".to_owned());
     }
+    // Vertices that slid in an earlier run may have interpolated data.
+    boundary.retain(|&v| points[0][v] == points[1][v]);
     if names.is_empty() {
         return None;
     }

@@ -32,7 +32,7 @@ impl LargeAnglesReport {
         let cost = cost(f);
         format!(
             "the sweeps left {before} {triangles} with an angle above 87.1°, {were} of them obtuse; {moved} {vertices} \
-             moved on to end with {after} and {are}, which {cost}"
+             moved on to end with {after}, {are} of them obtuse, which {cost}"
         )
     }
 }
@@ -48,7 +48,7 @@ mod tests {
         assert_eq!(
             report.sentence(),
             "the sweeps left 31 triangles with an angle above 87.1°, 12 of them obtuse; 240 vertices moved on to end \
-             with 1 and 0, which changed f by +0.09 %"
+             with 1, 0 of them obtuse, which changed f by +0.09 %"
         );
     }
 }

@@ -119,6 +119,21 @@ fn quadrilaterals(group: impl Fn(usize) -> usize, lines: &[[usize; 2]]) -> Strin
     text + "$EndElements\n"
 }
 
+/// A former defect: vertices that had slid around a disc were a boundary elsewhere.
+#[test]
+fn a_disc_whose_whole_boundary_has_slid_is_no_other_mesh() {
+    let (around, disc) = (24, support::hub_evenly(24, 6));
+    let disc = support::tangle::moved(&disc, |[x, y]| [x + 0.1 * x * y, y]);
+    let folder = Folder::new(&[("in.msh", &support::write_msh22(&disc))]);
+    for words in ["--slide", "", "--slide"] {
+        let run = folder.line(&format!("in.msh out.msh --engine cpu -q {words}"));
+        assert_eq!(run.code, Some(0), "{words}: {}", run.err);
+        let out = folder.mesh("out.msh").points;
+        let moved = (0..around).filter(|v| out[*v] != disc.points[*v]);
+        assert_eq!(moved.count(), if words.is_empty() { 0 } else { around });
+    }
+}
+
 #[test]
 fn quadrilaterals_of_other_materials_or_with_other_lines_are_another_mesh() {
     let meshes = [

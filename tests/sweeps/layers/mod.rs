@@ -88,6 +88,19 @@ fn rows_and_distances_are_kept_whatever_the_heights() {
     }
 }
 
+/// A former defect: a single flat triangle kept the whole wall, which was the whole boundary of a round mesh.
+#[test]
+fn rows_are_of_whole_walls_only_if_a_quarter_of_a_wall_has_flat_triangles() {
+    let below = |flat: std::ops::Range<usize>| -> Vec<u32> {
+        let mut mesh = support::quadrilaterals::with_cells(20, |_, _| true);
+        flat.for_each(|column| mesh.points[21 + column][1] = 0.2);
+        let kept = layers(&mesh, KeepLayers::Rows(1)).vertices;
+        kept.into_iter().filter(|v| (1..20).contains(v)).collect()
+    };
+    assert_eq!(below(9..11), [9, 10]);
+    assert_eq!(below(3..8), (1..20).collect::<Vec<_>>());
+}
+
 #[test]
 fn vertices_of_inverted_triangles_are_not_kept() {
     let Grown { mut mesh, columns, .. } = on_flat_wall(Cut::Aligned);
