@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use gpu_smooth::{Checkpoint, Outcome, Smoother};
+use gpu_smooth::{Checkpoint, Outcome, Smoother, topology::BadTriangle};
 
 use crate::error::CliError;
 use crate::load::LoadedMesh;
-use crate::load::explain::BadTriangleReport;
+use crate::load::explain::{self, BadTriangleReport};
 use crate::report::Report;
 use crate::request::SmoothRequest;
 use crate::terminal::Verbosity;
@@ -34,13 +34,26 @@ pub(crate) struct Done<'a> {
 /// An error that kept a mesh from being smoothed.
 pub(crate) struct Failure {
     pub(crate) error: CliError,
-    /// All inverted and flat triangles, in the order of the file, if triangles caused the error and a report was
-    /// requested. Otherwise empty.
-    pub(crate) triangles: Vec<BadTriangleReport>,
+    /// The inverted and flat triangles for the report, in the order of the file; `None` without a report. After a failed
+    /// untangling, the list has the triangles that stay inverted or flat.
+    pub(crate) triangles: Option<Vec<BadTriangleReport>>,
+}
+
+impl Failure {
+    /// Returns the failure of a mesh for `triangles`, which are inverted or flat.
+    pub(crate) fn of_triangles(
+        request: &SmoothRequest,
+        file: &LoadedMesh,
+        error: CliError,
+        triangles: &[BadTriangle],
+    ) -> Self {
+        let is_reported = request.outputs.report.is_some();
+        Self { error, triangles: is_reported.then(|| explain::bad_triangles(file, triangles)) }
+    }
 }
 
 impl From<CliError> for Failure {
     fn from(error: CliError) -> Self {
-        Self { error, triangles: Vec::new() }
+        Self { error, triangles: None }
     }
 }

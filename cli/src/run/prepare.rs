@@ -193,10 +193,8 @@ pub(super) fn refusal(
         _ => explain::mesh_error(file, error),
     };
     let triangles = match error {
-        MeshError::Infeasible { triangles, .. } if request.outputs.report.is_some() => {
-            explain::bad_triangles(file, triangles)
-        }
-        _ => Vec::new(),
+        MeshError::Infeasible { triangles, .. } if !triangles.is_empty() => triangles,
+        _ => return refused.into(),
     };
-    Failure { error: refused, triangles }
+    Failure::of_triangles(request, file, refused, triangles)
 }

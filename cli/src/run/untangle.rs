@@ -12,7 +12,7 @@ use gpu_smooth::{
 
 use crate::load::explain;
 use crate::load::streams;
-use crate::report::SmoothJob;
+use crate::report::{Failure, SmoothJob};
 use crate::run::input::Input;
 use crate::terminal::interrupt;
 use crate::terminal::numbers::counted;
@@ -31,24 +31,29 @@ pub(crate) struct UntangledInput {
 ///
 /// If triangles stay inverted, returns an error that lists them. With `--keep-going`, the best mesh found is written
 /// before, unless a signal ended untangling. The time limit counts from the start of the run.
-pub(super) fn untangle_input(input: &Input<'_>) -> Result<UntangledInput, CliError> {
+pub(super) fn untangle_input(input: &Input<'_>) -> Result<UntangledInput, Failure> {
     let Input { task, file, began, .. } = *input;
     let SmoothJob { request, verbosity, out, .. } = *task;
     let keeps_going = request.untangle.is_some_and(|untangle| untangle.keeps_going);
     let mesh = file.mesh();
     let explained = |error: MeshError| explain::mesh_error(file, &error);
     let topology = Topology::by_area(mesh).map_err(explained)?;
+    let failure = |error, bad: &[_]| Failure::of_triangles(request, file, error, bad);
+    let unchanged = |error| match topology.bad_triangles(&mesh.points) {
+        Ok(bad) => failure(error, &bad),
+        Err(_) => error.into(),
+    };
     let crossings = explain::crossings(file, &topology);
     if let (Some(crossings), false) = (&crossings, keeps_going) {
         let remedy =
             "Correct them, or untangle a mesh that is meant to lie over itself with --keep-going";
         let path = file.source.path().display().to_string();
-        return Err(crossings.clone().within(&path).with_remedy(remedy));
+        return Err(unchanged(crossings.clone().within(&path).with_remedy(remedy)));
     }
     if !keeps_going
         && let Some(vertices) = topology.misplaced_loop(&mesh.points).map_err(explained)?
     {
-        return Err(misplaced_loop(file, &vertices));
+        return Err(unchanged(misplaced_loop(file, &vertices)));
     }
     let mut ended = None;
     let mut observe = |progress: &Untangling| {
@@ -95,17 +100,19 @@ pub(super) fn untangle_input(input: &Input<'_>) -> Result<UntangledInput, CliErr
         error = error.after(&format!("{ended}."));
     }
     if interrupt::is_requested() {
-        return Err(error);
+        return Err(failure(error, &left));
     }
     if !keeps_going {
-        return Err(error.with_remedy("--keep-going writes the best mesh found"));
+        let error = error.with_remedy("--keep-going writes the best mesh found");
+        return Err(failure(error, &left));
     }
     let mut fields = InterpolatedFields::default();
     fields.add_dependents(file, &points)?;
-    Err(error.with_detail(match input.write(&points, &fields) {
+    let error = error.with_detail(match input.write(&points, &fields) {
         Ok(()) => format!("The best mesh found was written: {}", out.display()),
         Err(error) => error.to_string(),
-    }))
+    });
+    Err(failure(error, &left))
 }
 
 /// Returns the error for a boundary that no positions of the free vertices make valid.

@@ -154,6 +154,19 @@ fn a_tangle_that_remains_is_listed_and_written_only_if_asked_for() {
     assert_eq!(bad.min(left.len() - bad), 1);
     let run = folder.line("in.node out.node --keep-going");
     assert_eq!(run.code, Some(2), "{}", run.err);
+    for options in ["", " --keep-going"] {
+        // An earlier report would describe another mesh.
+        fs::write(folder.path("run.json"), "{\"schema_version\": 3, \"program\": \"gpu-smooth\"}")
+            .unwrap();
+        let run =
+            folder.line(&format!("in.node out.node --untangle --report run.json --force{options}"));
+        let refused = folder.json("run.json");
+        assert!(run.err.contains(refused["error"].as_str().unwrap()), "{refused}");
+        let listed: Vec<_> =
+            refused["triangles"].as_array().unwrap().iter().map(|bad| &bad["triangle"]).collect();
+        assert!(listed.contains(&&(lone + 1).into()), "{refused}");
+        assert!(options.is_empty() || listed.len() == 1, "{refused}");
+    }
 }
 
 /// Returns a square of twelve by twelve vertices, and the index of a vertex in the middle of its
@@ -176,7 +189,8 @@ fn edges_that_cross_and_cannot_move_are_listed_and_the_mesh_refused() {
     let folder = folder(&mesh);
     let crosses = "\n  in.node:8: the edge between vertices 6 and 7 crosses that between 8 and 9\n";
     let parts = &["triangles overlap there wherever free vertices are. Correct them", crosses];
-    folder.line("in.node out.node --untangle").refused(parts);
+    folder.line("in.node out.node --untangle --report run.json").refused(parts);
+    assert!(!folder.json("run.json")["triangles"].as_array().unwrap().is_empty());
     assert!(!folder.path("out.node").exists());
     // No triangle stays inverted, but triangles lie over one another.
     let run = folder.line("in.node out.node --untangle --keep-going --engine cpu");

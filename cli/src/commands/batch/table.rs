@@ -263,7 +263,7 @@ pub(crate) fn report(entries: &[Entry], seconds: f64) -> Result<String, CliError
             }
             BatchStatus::Failed(failure) => {
                 object["error"] = json!(status.problem());
-                object["triangles"] = serde_json::to_value(&failure.triangles)?;
+                object["triangles"] = json!(failure.triangles.as_deref().unwrap_or_default());
             }
             BatchStatus::Skipped | BatchStatus::Interrupted => {}
         }

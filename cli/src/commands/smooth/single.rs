@@ -169,9 +169,7 @@ fn sweeps(report: &Report) -> impl Iterator<Item = String> + '_ {
 /// Returns the error of a mesh that cannot be smoothed. If inverted or flat triangles are the cause, lists all of them
 /// in the requested report.
 fn error_with_report(outputs: &Outputs, Failure { error, triangles }: Failure) -> CliError {
-    if triangles.is_empty() {
-        return error;
-    }
+    let Some(triangles) = triangles else { return error };
     match write_report(outputs, &Refusal { error: error.headline(), triangles }) {
         Ok(()) => error,
         Err(problem) => error.with_detail(problem.to_string()),
