@@ -3,12 +3,13 @@
 use gpu_smooth::Metric;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
+use std::ops::Range;
+use toml::Spanned;
 
 use crate::limits::{Quantity, Threshold};
 
 /// Limits of the quantities of a mesh.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(try_from = "GivenProfile")]
+#[derive(Clone, Debug)]
 pub(crate) struct Profile {
     /// The name for `--for`, or that of a user's file.
     pub(crate) name: String,
@@ -22,8 +23,7 @@ pub(crate) struct Profile {
 }
 
 /// Ranges of values of a quantity that are bad for a solver. A listed quantity has neither range.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "GivenLimit")]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Limit {
     pub(crate) quantity: Quantity,
     /// The elements that a limit of elements concerns. Limits of edges concern edges of all elements, and listed quantities all
@@ -81,7 +81,7 @@ struct GivenProfile {
     scheme: Option<Metric>,
     #[serde(default)]
     listed: Vec<Listed>,
-    limits: Vec<Limit>,
+    limits: Vec<Spanned<GivenLimit>>,
 }
 
 /// A quantity whose worst value is shown without a limit.
@@ -101,11 +101,10 @@ impl TryFrom<String> for Listed {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GivenLimit {
-    quantity: String,
-    #[serde(default)]
-    elements: Elements,
-    warn: Option<String>,
-    fail: Option<String>,
+    quantity: Spanned<String>,
+    elements: Option<Spanned<Elements>>,
+    warn: Option<Spanned<String>>,
+    fail: Option<Spanned<String>>,
     #[serde(default)]
     source: String,
 }
@@ -132,9 +131,12 @@ impl Profile {
     /// # Errors
     /// Returns the first mistake in the text, such as an unknown key.
     pub(crate) fn parse(text: &str) -> Result<Self, ProfileProblem> {
-        toml::from_str(text).map_err(|error| ProfileProblem {
-            message: error.message().to_owned(),
-            line: error.span().map(|span| {
+        let given: Result<GivenProfile, _> = toml::from_str(text);
+        let given = given
+            .map_err(|error| Mistake { message: error.message().to_owned(), span: error.span() });
+        given.and_then(GivenProfile::checked).map_err(|Mistake { message, span }| ProfileProblem {
+            message,
+            line: span.map(|span| {
                 let before = text.get(..span.start).unwrap_or(text);
                 1 + before.matches('\n').count()
             }),
@@ -142,53 +144,76 @@ impl Profile {
     }
 }
 
-impl TryFrom<GivenProfile> for Profile {
-    type Error = String;
+/// A problem of the text of a profile.
+struct Mistake {
+    message: String,
+    /// The bytes of the text that are wrong; `None` if the problem has no place.
+    span: Option<Range<usize>>,
+}
 
-    fn try_from(given: GivenProfile) -> Result<Self, String> {
-        let GivenProfile { name, title, scheme, listed, mut limits } = given;
+impl Mistake {
+    fn at(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { message: message.into(), span: Some(span) }
+    }
+}
+
+impl GivenProfile {
+    fn checked(self) -> Result<Profile, Mistake> {
+        let Self { name, title, scheme, listed, limits } = self;
         if limits.is_empty() {
-            return Err("a profile needs a limit, as in [[limits]]".into());
+            let message = "a profile needs a limit, as in [[limits]]".into();
+            return Err(Mistake { message, span: None });
         }
+        let limits = limits.into_iter().map(GivenLimit::checked);
+        let mut limits = limits.collect::<Result<Vec<_>, _>>()?;
         for Listed(quantity) in listed {
             let (elements, source) = (Elements::default(), String::new());
             limits.push(Limit { quantity, elements, warn: None, fail: None, source });
         }
-        Ok(Self { name, title, scheme, limits })
+        Ok(Profile { name, title, scheme, limits })
     }
 }
 
-impl TryFrom<GivenLimit> for Limit {
-    type Error = String;
-
-    fn try_from(given: GivenLimit) -> Result<Self, String> {
-        let GivenLimit { quantity, elements, warn, fail, source } = given;
-        let quantity: Quantity = quantity.parse()?;
-        if elements == Elements::Quadrilaterals && !quantity.is_of_quadrilaterals() {
-            return Err(format!("quadrilaterals have no limit of {quantity} of their own"));
+impl GivenLimit {
+    /// Returns the limit of a table of the file. A mistake has the place of the value, or that of the table if a value is
+    /// missing.
+    fn checked(given: Spanned<Self>) -> Result<Limit, Mistake> {
+        let table = given.span();
+        let Self { quantity, elements, warn, fail, source } = given.into_inner();
+        let place = quantity.span();
+        let quantity: Quantity =
+            quantity.get_ref().parse().map_err(|problem: String| Mistake::at(place, problem))?;
+        if let Some(elements) = &elements
+            && *elements.get_ref() == Elements::Quadrilaterals
+            && !quantity.is_of_quadrilaterals()
+        {
+            let message = format!("quadrilaterals have no limit of {quantity} of their own");
+            return Err(Mistake::at(elements.span(), message));
         }
-        let threshold = |key: &str, range: Option<String>| {
-            let range = range.map(|range| Threshold::of(quantity, &range));
-            range.transpose().map_err(|problem| format!("{key} of {quantity}: {problem}"))
+        let elements = elements.map(Spanned::into_inner).unwrap_or_default();
+        let end = fail.as_ref().map_or_else(|| table.clone(), Spanned::span);
+        let threshold = |key: &str, range: Option<Spanned<String>>| {
+            let parsed = |range: Spanned<String>| {
+                Threshold::of(quantity, range.get_ref()).map_err(|problem| {
+                    Mistake::at(range.span(), format!("{key} of {quantity}: {problem}"))
+                })
+            };
+            range.map(parsed).transpose()
         };
         let (warn, fail) = (threshold("warn", warn)?, threshold("fail", fail)?);
-        match (&warn, &fail) {
+        let problem = match (&warn, &fail) {
             (None, None) => {
-                return Err(format!(
-                    "the limit of {quantity} needs warn or fail, as in fail = \"> 1\""
-                ));
+                format!("the limit of {quantity} needs warn or fail, as in fail = \"> 1\"")
             }
             (Some(warn), Some(fail)) if warn.is_below != fail.is_below => {
-                return Err(format!(
-                    "warn and fail of {quantity} have different directions: write two limits"
-                ));
+                format!("warn and fail of {quantity} have different directions: write two limits")
             }
             (Some(warn), Some(fail)) if !warn.contains(fail) => {
-                return Err(format!("fail of {quantity} must be beyond warn"));
+                format!("fail of {quantity} must be beyond warn")
             }
-            _ => {}
-        }
-        Ok(Self { quantity, elements, warn, fail, source })
+            _ => return Ok(Limit { quantity, elements, warn, fail, source }),
+        };
+        Err(Mistake::at(end, problem))
     }
 }
 
@@ -215,8 +240,8 @@ mod tests {
     #[test]
     fn each_mistake_of_a_file_has_its_line_and_its_remedy() {
         let cases = [
-            ("fail = \"< 20\"", "fail = \"> 20\"", 4, "write 'min-angle<20'"),
-            ("min-angle", "roundness", 4, "no measure is called 'roundness'; there are "),
+            ("fail = \"< 20\"", "fail = \"> 20\"", 7, "write 'min-angle<20'"),
+            ("min-angle", "roundness", 5, "no measure is called 'roundness'; there are "),
             ("fail = \"< 20\"", "fails = \"< 20\"", 7, "unknown field `fails`"),
             ("warn = \"< 30\"\nfail = \"< 20\"\n", "", 4, "needs warn or fail"),
             ("acute", "round", 2, "scheme: no metric is called 'round'"),
@@ -232,12 +257,12 @@ mod tests {
             (
                 "quantity = \"min-angle\"\nwarn = \"< 30\"\nfail = \"< 20\"",
                 "quantity = \"neighbors\"\nelements = \"quadrilaterals\"\nfail = \"> 9\"",
-                4,
+                6,
                 "quadrilaterals have no limit of neighbors of their own",
             ),
-            ("\"< 20\"", "\"< twenty\"", 4, "fail of min-angle: 'twenty' is not a number"),
+            ("\"< 20\"", "\"< twenty\"", 7, "fail of min-angle: 'twenty' is not a number"),
             ("[[limits]]", "[limits", 4, ""),
-            ("\"< 20\"", "\"< 40\"", 4, "fail of min-angle must be beyond warn"),
+            ("\"< 20\"", "\"< 40\"", 7, "fail of min-angle must be beyond warn"),
         ];
         for (from, to, line, part) in cases {
             let ProfileProblem { message, line: found } =
@@ -245,6 +270,10 @@ mod tests {
             assert!(message.contains(part), "{to}: {message}");
             assert_eq!(found, Some(line), "{to}: {message}");
         }
+        // The place of a later table is not that of the first.
+        let third = "\n[[limits]]\nquantity = \"neighbors\"\n";
+        let found = Profile::parse(&format!("{OWN}{third}{third}warn = \"> 9\"\n")).unwrap_err();
+        assert_eq!(found.line, Some(9), "{}", found.message);
         let two = OWN.replace("min-angle", "neighbors").replace("\"< 20\"", "\"> 20\"");
         let message = Profile::parse(&two).unwrap_err().message;
         assert!(message.contains("write two limits"), "{message}");
