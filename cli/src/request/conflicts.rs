@@ -176,6 +176,11 @@ mod tests {
                 "--target keep-size --scheme imr",
                 "--target keep-size has no effect on imr, which sees no sizes",
             ),
+            (
+                "--target keep-size --target-of place --scheme imr+rms",
+                "--target-of place does not go with --scheme imr+rms: targets of places need a scheme of one metric other \
+                 than edge. Take --scheme tmop-94, or targets of vertices: --target-of vertex",
+            ),
             ("--edge-norm fixed", "--edge-norm has no effect without edge in --scheme"),
             ("--max-move 1 --untangle", "--max-move does not go with --untangle"),
         ] {
@@ -183,6 +188,16 @@ mod tests {
             let error =
                 checked(line.split(' ').map(Into::into)).err().map(|error| error.to_string());
             assert!(error.is_some_and(|error| error.contains(message)), "{line}: {message}");
+        }
+    }
+
+    /// The metric in the message about targets of places must suit every target.
+    #[test]
+    fn tmop_94_goes_with_each_target_of_places() {
+        for target in ["keep-size", "keep-shape", "size=h", "metric=h"] {
+            let line =
+                format!("gpu-smooth in out --target {target} --target-of place --scheme tmop-94");
+            assert!(checked(line.split(' ').map(Into::into)).is_ok(), "{line}");
         }
     }
 

@@ -124,7 +124,7 @@ fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
         ),
         (
             "--target keep-shape --target-of place --scheme edge",
-            "--target-of place does not go with --scheme edge: each of its periods",
+            "--target-of place does not go with --scheme edge: targets of places need",
         ),
         ("--slide --derivatives finite-difference", "it needs analytic derivatives"),
         (

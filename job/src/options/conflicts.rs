@@ -135,6 +135,19 @@ impl GivenOptions {
                 };
                 format!("{}: the value is {value}, and must be {range}", spelling.option(&name))
             }
+            OptionError::Conflict {
+                features: features @ [Feature::TargetField, Feature::UnevenScheme],
+                ..
+            } => {
+                let [places, scheme] = features.map(|feature| self.option_of(feature, spelling));
+                let [metric, vertex] =
+                    ["scheme=tmop-94", "target-of=vertex"].map(|option| spelling.option(option));
+                // Targets of sizes refuse imr, which sees no sizes; tmop-94 suits every target.
+                format!(
+                    "{places} does not go with {scheme}: targets of places need a scheme of one metric other than edge. \
+                     Take {metric}, or targets of vertices: {vertex}"
+                )
+            }
             OptionError::Conflict { features, why } => {
                 let [a, b] = features.map(|feature| self.option_of(feature, spelling));
                 let remedy = match features.contains(&Feature::TargetField) {
