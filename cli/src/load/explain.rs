@@ -16,6 +16,9 @@ use std::fmt;
 /// Largest number of bad triangles, or pairs of crossing edges, listed on the terminal.
 pub(crate) const TOLD: usize = 10;
 
+/// The command that lists all bad triangles of a mesh.
+pub(crate) const QUALITY_JSON: &str = "gpu-smooth quality --json";
+
 /// An inverted or flat triangle in the terms of its file.
 #[derive(Serialize)]
 pub(crate) struct BadTriangleReport {
@@ -97,7 +100,7 @@ pub(crate) fn bad_corners(file: &LoadedMesh, bad: &[BadQuadrilateral]) -> Vec<Ba
 }
 
 /// Lists the first [`TOLD`] bad triangles, one per line. If `count` is larger, a last line counts the rest and names
-/// `all`, the option that lists every triangle.
+/// `all`, the option or command that lists every triangle.
 pub(crate) fn list(first: &[BadTriangleReport], count: usize, all: &str) -> Vec<String> {
     let line = |bad: &BadTriangleReport| format!("{}: {}", bad.place, bad.statement());
     told(first.iter().map(line), count, all)
@@ -252,7 +255,8 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
                 [one] if count == 1 => (format!("{}: {}", one.place, one.statement()), Vec::new()),
                 first => (
                     format!("{}: {count} triangles are inverted or flat", first[0].file),
-                    list(first, count, "--report FILE"),
+                    // Each command that reads a mesh has this error, but few have --report.
+                    list(first, count, QUALITY_JSON),
                 ),
             };
             CliError::input(text).with_remedy(remedy).with_details(details)

@@ -201,7 +201,7 @@ fn still_tangled(file: &LoadedMesh, left: &TangledRest<'_>) -> CliError {
     CliError::run(format!("{name}: {triangles} {why}")).with_details(explain::list(
         &first,
         count,
-        "gpu-smooth quality --json",
+        explain::QUALITY_JSON,
     ))
 }
 

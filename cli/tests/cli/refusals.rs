@@ -215,7 +215,7 @@ fn all_inverted_and_flat_triangles_are_listed() {
 
         let run = folder.run([input, out, "--engine", "cpu", "--report", "r.json"]);
         let count = format!("error: {list}: {} triangles are inverted or flat. ", bad.len());
-        let rest = format!("{told}\n  and {more} more; --report FILE lists all\n");
+        let rest = format!("{told}\n  and {more} more; gpu-smooth quality --json lists all\n");
         let err = run.refused(&[&count, &rest]).err;
         let written = folder.json("r.json");
         let first_line = err.lines().next().unwrap().strip_prefix("gpu-smooth: error: ");

@@ -2,6 +2,7 @@
 
 use super::output::INVERTED;
 use super::report::right_triangles;
+use super::untangle::tangled;
 use super::{Folder, assert_holds, number, small};
 use serde_json::Value;
 use support::SplitMix64;
@@ -177,6 +178,9 @@ fn a_mesh_that_no_run_can_smooth_is_refused_once() {
     let [node, ele] = INVERTED;
     let folder = Folder::new(&[("in.node", node), ("in.ele", ele)]);
     folder.line("try in --engine cpu").refused(&["inverted", "--untangle"]);
+    let [node, ele] = support::triangle_text(&tangled(), "tangled");
+    let many = Folder::new(&[("in.node", &node), ("in.ele", &ele)]);
+    many.line("try in --engine cpu").refused(&["more; gpu-smooth quality --json lists all"]);
     folder.line("try none").refused(&["none"]);
     folder.line("try -").misused(&["standard input", "Name a file"]);
     let run = folder.line("try in --max-move 0.5 --untangle");

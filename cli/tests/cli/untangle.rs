@@ -14,7 +14,7 @@ fn folder(mesh: &Mesh) -> Folder {
 }
 
 /// Returns the small mesh with all free vertices at one position.
-fn tangled() -> Mesh {
+pub(crate) fn tangled() -> Mesh {
     let mut mesh = disturbed();
     let held = check::held(&mesh);
     let free = mesh.points.iter_mut().zip(held).filter(|(_, held)| !held);
