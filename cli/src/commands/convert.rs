@@ -26,7 +26,7 @@ pub(crate) fn run(args: &ConvertArgs, show: &OutputArgs) -> Result<(), CliError>
     let reading = ReadRequest::from(&args.reading).taking_quadrilaterals();
     let file = streams::read(&args.input, &reading)?;
     let (_, converted) = form.checked(&file, format, out)?;
-    for note in conversion::notes(&converted) {
+    for note in conversion::notes(&file, &converted) {
         tell::note(show.quiet, &note);
     }
     let written = conversion::destinations(&converted, out)?;

@@ -137,14 +137,31 @@ impl NewForm {
     }
 }
 
-/// Returns a note for each loss and each change of names of a conversion.
-pub(crate) fn notes(conversion: &Conversion) -> Vec<String> {
+/// Returns a note for each loss and each change of names of a conversion, and for heights of `file` that become third
+/// coordinates.
+pub(crate) fn notes(file: &LoadedMesh, conversion: &Conversion) -> Vec<String> {
     let format = conversion.format();
     let lost = conversion.losses().iter().chain(conversion.omissions());
     let lost = lost.map(|what| format!("lost: {what}"));
     let renamed = conversion.renamings().iter();
     let renamed = renamed.map(|what| format!("renamed, as {format} cannot hold it so: {what}"));
-    lost.chain(renamed).collect()
+    let notes = lost.chain(renamed);
+    notes.chain(heights_note(file, conversion)).collect()
+}
+
+/// Returns a note if the third number of a vertex is a height by definition in the format of `file`, and becomes a
+/// coordinate. Commands refuse such coordinates as no plane. `None` otherwise.
+fn heights_note(file: &LoadedMesh, conversion: &Conversion) -> Option<String> {
+    let (from, to) = (file.source.format(), conversion.format());
+    let has_heights = matches!(from, Format::Sms2dm | Format::Mike) && file.source.has_data("z");
+    let keeps_heights = matches!(
+        to,
+        Format::Sms2dm | Format::Mike | Format::Adcirc | Format::Selafin | Format::Ugrid
+    );
+    let is_lost = || conversion.losses().iter().any(|lost| lost == "third coordinates");
+    (has_heights && !keeps_heights && !is_lost()).then(|| {
+        format!("heights of the {from} become third coordinates of the {to}: add --z data to commands that read OUT")
+    })
 }
 
 /// Returns the paths of the files to which a conversion is written; no path for standard output.

@@ -99,7 +99,7 @@ pub(super) fn read(
     follow.has_read(&file, converted.as_ref().map(|(_, conversion)| conversion))?;
     let degrees = (request.surface == Surface::Plane).then(|| remarks::degrees(&file)).flatten();
     let remarks = remarks::remarks(&file, request.slide.is_some());
-    let notes = converted.as_ref().map(|(_, conversion)| conversion::notes(conversion));
+    let notes = converted.as_ref().map(|(_, conversion)| conversion::notes(&file, conversion));
     let remarks = remarks.iter().chain(&laid_out).chain(&choice.notes).chain(&degrees);
     for remark in remarks.chain(notes.iter().flatten()) {
         follow.remark(remark);

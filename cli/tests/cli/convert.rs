@@ -153,3 +153,25 @@ fn a_mesh_is_written_in_binary_and_compressed() {
     let remedy = "VTK XML takes text, binary and compressed";
     assert_holds(&run.err, &["out.off: OFF is not written in this --encoding", remedy]);
 }
+
+/// Third coordinates that lie in no plane are refused without the option that the note names.
+#[test]
+fn heights_that_become_third_coordinates_have_a_note_with_the_option_that_reads_them() {
+    let bed = SMS.replace("ND 5 .5 .5 0", "ND 5 .5 .5 -2");
+    let folder = Folder::new(&[("in.2dm", &bed)]);
+    let note = "gpu-smooth: heights of the SMS 2dm become third coordinates of the VTK XML: add --z data to commands \
+                that read OUT\n";
+    for line in
+        ["convert in.2dm out.vtu --lossy", "in.2dm run.vtu --lossy --engine cpu --free-interfaces"]
+    {
+        let run = folder.line(line);
+        assert_eq!(run.code, Some(0), "{}", run.err);
+        assert_holds(&run.err, &[note]);
+    }
+    folder.line("quality out.vtu").refused(&["not planar", "--z data"]);
+    folder.line("quality out.vtu --z data").clean();
+    // Grids have heights, and Triangle loses them.
+    folder.line("convert in.2dm out.gr3 --lossy --quiet").clean();
+    let run = folder.line("convert in.2dm out.node --lossy");
+    assert!(!run.err.contains("--z data"), "{}", run.err);
+}
