@@ -20,12 +20,12 @@ pub(crate) fn right(text: &str, width: usize) -> String {
     format!("{}{text}", " ".repeat(width.saturating_sub(text.width())))
 }
 
-/// Shortens a name that exceeds `most` columns to two dots and the name's end.
+/// Shortens a name that exceeds `most` columns to three dots and the name's end. Two dots would look like a folder.
 pub(crate) fn shortened(name: &str, most: usize) -> String {
     if name.width() <= most {
         return name.to_owned();
     }
-    let mut room = most.saturating_sub(2);
+    let mut room = most.saturating_sub(3);
     let fits = |&(_, c): &(usize, char)| {
         let width = c.width().unwrap_or(0);
         let fits = width <= room;
@@ -33,7 +33,7 @@ pub(crate) fn shortened(name: &str, most: usize) -> String {
         fits
     };
     let start = name.char_indices().rev().take_while(fits).last().map_or(name.len(), |(at, _)| at);
-    format!("..{}", &name[start..])
+    format!("...{}", &name[start..])
 }
 
 /// Quotes a field of CSV if the field contains commas, quotes or line ends.
@@ -50,9 +50,9 @@ mod tests {
 
     #[test]
     fn long_names_lose_their_start() {
-        assert_eq!(shortened("a/long/name.msh", 9), "..ame.msh");
+        assert_eq!(shortened("a/long/name.msh", 9), "...me.msh");
         assert_eq!(shortened("name.msh", 9), "name.msh");
-        assert_eq!(shortened("name.msh", 1), "..");
+        assert_eq!(shortened("name.msh", 1), "...");
     }
 
     /// Chinese, Japanese and Korean characters take two columns each, combining characters none.
@@ -60,8 +60,8 @@ mod tests {
     fn wide_characters_count_twice() {
         assert_eq!(left("網格", 6), "網格  ");
         assert_eq!(right("網格.msh", 10), "  網格.msh");
-        assert_eq!(shortened("東京湾.msh", 8), "..湾.msh");
-        assert_eq!(shortened("東京湾.msh", 9), "..湾.msh");
+        assert_eq!(shortened("東京湾.msh", 8), "....msh");
+        assert_eq!(shortened("東京湾.msh", 9), "...湾.msh");
         assert_eq!(shortened("東京湾.msh", 10), "東京湾.msh");
         assert_eq!(left("e\u{301}", 3), "e\u{301}  ");
     }

@@ -221,7 +221,7 @@ fn several_meshes_stand_in_one_table() {
     folder.line("in a-long-name-of-a-mesh --engine cpu").clean();
     let text = folder.line("quality in a-long-name-of-a-mesh.node").clean().out;
     let rows: Vec<&str> = text.lines().skip_while(|row| *row != "shape").take(3).collect();
-    assert!(rows[1].starts_with("  in  ") && rows[2].starts_with("  ..f-a-mesh.node "), "{text}");
+    assert!(rows[1].starts_with("  in  ") && rows[2].starts_with("  ...-a-mesh.node "), "{text}");
     let means = [1, 2].map(|i| numbers(rows[i])[3]);
     assert!(means[1] > means[0], "{text}");
     assert_holds(&text, &["\n== in\n", "\n== a-long-name-of-a-mesh.node\n"]);

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use unicode_width::UnicodeWidthStr;
+
 use gpu_smooth::{
     Metric,
     measure::{Measure, Statistics},
@@ -111,16 +113,16 @@ fn row(name: &str, statistics: &Statistics, style: &Style) -> String {
 }
 
 fn line(name: &str, fields: [String; COLUMNS.len()], style: &Style) -> String {
-    let (mut text, mut end) = (left(name, NAME), NAME);
-    for (field, is_shown) in fields.iter().zip(shown(style)) {
-        if is_shown {
-            end += COLUMN;
-            // A long name takes blanks of the first column.
-            let width = end.saturating_sub(text.chars().count());
-            text += &right(field, width.max(field.chars().count() + 1));
-        }
+    let numbers = fields.iter().zip(shown(style)).filter(|(_, is_shown)| *is_shown);
+    let mut numbers: String = numbers.map(|(field, _)| right(field, COLUMN)).collect();
+    // A long name takes blanks of the first column. If the blanks do not suffice, the numbers stand on a line of their own.
+    let excess = name.width().saturating_sub(NAME);
+    let blanks = numbers.len() - numbers.trim_start().len();
+    if excess < blanks.max(1) {
+        numbers.drain(..excess);
+        return format!("{}{numbers}\n", left(name, NAME));
     }
-    text + "\n"
+    format!("{name}\n{}{numbers}\n", left("", NAME))
 }
 
 /// Returns the name of a measure with its unit.
