@@ -431,3 +431,36 @@ fn a_rehearsal_counts_concave_quadrilaterals() {
     let run = folder.line("in.vtk out.vtk --engine cpu --untangle --dry-run");
     assert_holds(&run.out, &["2 inverted or concave quadrilaterals would be untangled first"]);
 }
+
+#[test]
+fn the_heading_of_tried_runs_counts_triangles_and_quadrilaterals() {
+    let folder = Folder::new(&[("in.vtk", &vtk(6, |k| k % 2 == 0, |_| 1))]);
+    let run = folder.line("try in.vtk --engine cpu");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    assert_holds(&run.out, &[" free), 36 triangles, 18 quadrilaterals\n"]);
+}
+
+/// The name of the measure is longer than the first column.
+#[test]
+fn numbers_stand_below_the_heads_of_their_columns() {
+    let folder = Folder::new(&[("in.vtk", &vtk(6, |k| k % 2 == 0, |_| 1))]);
+    let run = folder.line("quality in.vtk --measure med-aspect-frobenius,shape");
+    let ends = |line: &str| -> Vec<usize> {
+        let is_end = |(i, c): (usize, char)| c != ' ' && line[i + 1..].starts_with([' ', '\n']);
+        line.char_indices().filter(|&at| is_end(at)).map(|(i, _)| i).collect()
+    };
+    let mut lines = run.out.split_inclusive('\n').skip_while(|line| !line.starts_with("   "));
+    let head = lines.next().unwrap();
+    // The words `5 %` and `95 %` each have two ends.
+    let heads: Vec<usize> =
+        ends(head).into_iter().filter(|&i| !head[i + 1..].starts_with(" %")).collect();
+    let rows: Vec<Vec<usize>> = lines
+        .map(ends)
+        .take_while(|ends| !ends.is_empty())
+        .filter(|ends| ends.len() >= 7)
+        .collect();
+    assert_eq!(rows.len(), 2, "{}", run.out);
+    for row in rows {
+        assert_eq!(row[row.len() - 7..], heads, "{}", run.out);
+    }
+}

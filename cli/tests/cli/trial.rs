@@ -167,10 +167,14 @@ fn the_best_row_for_a_solver_has_the_fewest_parts_beyond_its_limits() {
 }
 
 #[test]
-fn a_mesh_without_bad_triangles_is_not_tried() {
+fn a_mesh_without_bad_triangles_is_not_tried_and_is_no_error() {
     let folder = small();
-    let run = folder.line("try in --only-bad 1000 --engine cpu");
-    run.refused(&["nothing to do: no triangle has an imr above 1000"]);
+    let nothing = "no triangle has an imr above 1000";
+    let run = folder.line("try in --only-bad 1000 --engine cpu").clean();
+    assert_holds(&run.out, &["in: nothing to do: ", nothing]);
+    let tried = tried(&folder, "in --only-bad 1000");
+    assert_holds(tried["nothing_to_do"].as_str().unwrap(), &[nothing]);
+    assert_eq!((&tried["runs"], &tried["command"]), (&Value::Array(Vec::new()), &Value::Null));
 }
 
 #[test]

@@ -16,11 +16,11 @@ use crate::terminal::progress::{Display, Stage};
 use crate::terminal::{interrupt, tell};
 use gpu_smooth::Progress;
 
-/// Smooths the mesh with the options of each run, and prints a table of the results. Writes no mesh.
+/// Smooths the mesh with the options of each run, and prints a table of the results, or the reason why no vertex has to
+/// move. Writes no mesh.
 ///
 /// # Errors
-/// Returns the error of the first run, as an error of the mesh occurs in all runs. Returns an error too if no vertex has to
-/// move.
+/// Returns the error of the first run, as an error of the mesh occurs in all runs.
 pub(crate) fn run(args: &TryArgs, verbosity: Verbosity) -> Result<(), CliError> {
     if streams::is_standard(&args.mesh) {
         return Err(CliError::usage(
@@ -49,8 +49,15 @@ pub(crate) fn run(args: &TryArgs, verbosity: Verbosity) -> Result<(), CliError> 
             // An error of the mesh occurs in every run.
             Err(error) if number == 1 => return Err(error),
             Ok(Report { nothing_to_do: Some(reason), .. }) => {
-                let path = args.mesh.display();
-                return Err(CliError::run(format!("{path}: nothing to do: {reason}")));
+                let mut json = table::json(args, &[], None);
+                json["nothing_to_do"] = reason.as_str().into();
+                match args.json {
+                    true => tell::say_data(&format!("{json:#}")),
+                    false => {
+                        tell::say(&format!("{}: nothing to do: {reason}", args.mesh.display()))
+                    }
+                }
+                return Ok(());
             }
             result => tried.push(Tried { run, result }),
         }

@@ -10,7 +10,7 @@ use crate::commands::trial::tried::Tried;
 use crate::render::columns::{left, right};
 use crate::report::{MeshReport, ProfileReport, QualityReport, Report, change_of, spacing_change};
 use crate::request::TrialRun;
-use crate::terminal::numbers::sig6;
+use crate::terminal::numbers::{elements, sig6};
 use crate::terminal::shell_words;
 
 /// The first two columns are shown with a profile alone.
@@ -50,9 +50,10 @@ pub(super) fn text(args: &TryArgs, tried: &[Tried<'_>], best: Option<Best>) -> S
     let Some(first) = reports.first() else { return String::new() };
     let name = |tried: &Tried<'_>| label(tried.run).len();
     let width = 2 + tried.iter().map(name).max().unwrap_or_default();
-    let MeshReport { format, vertices, triangles, free, .. } = &first.mesh;
+    let MeshReport { format, vertices, free, .. } = &first.mesh;
+    let elements = elements(first.mesh.triangles, first.mesh.quadrilaterals);
     let mut text = format!(
-        "{}: {format}, {vertices} vertices ({free} free), {triangles} triangles\n\n",
+        "{}: {format}, {vertices} vertices ({free} free), {elements}\n\n",
         args.mesh.display()
     );
     let profile = first.profile.as_ref();
