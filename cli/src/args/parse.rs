@@ -86,6 +86,13 @@ pub(crate) fn nonnegative(text: &str) -> Result<f64, String> {
     number(text, |value| range.contains(value), range.words)
 }
 
+/// Parses the width of a picture: an integer from 400 to 8000.
+pub(crate) fn pixels(text: &str) -> Result<u32, String> {
+    let range = "a number of pixels from 400 to 8000";
+    let value = text.trim().parse().ok().filter(|pixels| (400..=8000).contains(pixels));
+    value.ok_or_else(|| format!("it must be {range}"))
+}
+
 /// Parses the number of vertices of a lattice: an integer from 9 to 100,000,000.
 pub(crate) fn vertices(text: &str) -> Result<usize, String> {
     let range = "a number of vertices from 9 to 100000000";

@@ -42,7 +42,7 @@ pub(crate) struct PictureArgs {
         default_value_t = 1600,
         requires = "picture",
         help_heading = "Picture",
-        value_parser = clap::value_parser!(u32).range(400..=8000)
+        value_parser = parse::pixels
     )]
     pub(crate) picture_size: u32,
     /// Draw only the part of the mesh in this rectangle, between two opposite corners

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::error::CliError;
 use crate::profiles::profile::Profile;
 use crate::similar;
+use mesh_io::ReadError;
 
 /// The names of the program's profiles, each with its file.
 const BUILT_IN: [(&str, &str); 7] = [
@@ -65,8 +66,12 @@ impl ProfileSource {
                 })
             }
             Self::File(path) => {
-                let text = std::fs::read_to_string(path).map_err(|error| {
-                    CliError::input(error.to_string()).within(&path.display().to_string())
+                let text = std::fs::read_to_string(path).map_err(|source| {
+                    let remedy = match source.kind() {
+                        std::io::ErrorKind::NotFound => "Check the name",
+                        _ => "docs/solvers.md describes the file",
+                    };
+                    ReadError::Io { path: path.clone(), source, remedy: remedy.into() }
                 })?;
                 Profile::parse(&text).map_err(|problem| {
                     let line = problem.line.map(|line| format!(":{line}")).unwrap_or_default();

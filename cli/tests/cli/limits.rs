@@ -345,10 +345,10 @@ fn a_profile_that_cannot_be_read_is_refused_with_its_line_or_with_the_names() {
     assert_eq!((run.code, run.out.as_str()), (Some(2), ""));
     let told = "no profile is called 'dflowfn'; there are adcirc, dflowfm, ";
     assert_holds(&run.err, &[told, "Did you mean dflowfm?"]);
-    quality(&folder, &["--for", "none.toml"]).refused(&["none.toml: "]);
+    quality(&folder, &["--for", "none.toml"]).refused(&["none.toml: ", "Check the name"]);
     let own = "name = \"ours\"\n[[limits]]\nquantity = \"orthogonality\"\nfail = \"< 0.5\"\n";
     std::fs::write(folder.path("own.toml"), own).unwrap();
-    let told = ["own.toml:2: fail of orthogonality: ", "write 'orthogonality>0.5'"];
+    let told = ["own.toml:4: fail of orthogonality: ", "write 'orthogonality>0.5'"];
     quality(&folder, &["--for", "own.toml"]).refused(&told);
 }
 
@@ -412,5 +412,5 @@ fn a_run_for_a_solver_takes_its_metric_and_ends_with_its_limits_before_and_after
         folder.json("r.json")["scheme"].clone()
     };
     assert_eq!([scheme("--scheme imr"), scheme("--target keep-size")], ["imr", "tmop-94"]);
-    folder.line("in out3 --for none.toml").refused(&["none.toml: "]);
+    folder.line("in out3 --for none.toml").refused(&["none.toml: ", "Check the name"]);
 }

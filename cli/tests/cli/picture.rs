@@ -444,7 +444,10 @@ fn pictures_that_cannot_be_written_are_refused_before_the_work() {
         ("in out --picture-size 900", "--picture <FILE>"),
         ("quality in in --picture p.png", "p.png: --picture draws a single mesh: give only one"),
         ("quality in --picture p.png --picture-arrows", "--picture-arrows needs a run"),
-        ("quality in --picture p.png --picture-size 20", "400..=8000"),
+        (
+            "quality in --picture p.png --picture-size 20",
+            "it must be a number of pixels from 400 to 8000",
+        ),
         ("quality in --picture p.png --picture-range 0.5", "two numbers with a comma between them"),
         ("quality in --picture p.png --picture-range 0.5,nan", "two numbers with a comma"),
         ("quality in --picture-range 0.5,1", "--picture <FILE>|--html <FILE>"),
