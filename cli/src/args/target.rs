@@ -27,9 +27,10 @@ pub(crate) enum Target {
     Metric { source: String },
 }
 
-/// Returns the targets that need no source, for completions.
+/// Returns the targets for completions, without SOURCE.
 fn complete_targets() -> Vec<CompletionCandidate> {
-    ["equilateral", "keep-size", "keep-shape"].map(CompletionCandidate::new).into()
+    let targets = ["equilateral", "keep-size", "keep-shape", "size=", "metric="];
+    targets.map(CompletionCandidate::new).into()
 }
 
 fn target(text: &str) -> Result<Target, String> {

@@ -135,6 +135,8 @@ fn bash_zsh_and_fish_complete_commands_options_values_and_files() {
             (&["gpu-smooth", "part.msh", "out.msh", "--scheme", "tmop-8"], "tmop-80"),
             (&["gpu-smooth", "part.msh", "out.msh", "--scheme", "imr+tmop-8"], "imr+tmop-80"),
             (&["gpu-smooth", "part.msh", "out.msh", "--target", "keep-sh"], "keep-shape"),
+            (&["gpu-smooth", "part.msh", "out.msh", "--target", "si"], "size="),
+            (&["gpu-smooth", "part.msh", "out.msh", "--target", "me"], "metric="),
             (&["gpu-smooth", "part.msh", "out.msh", "--engine", "g"], "gpu"),
             (&["gpu-smooth", "convert", "par"], "part.msh"),
             (&["gpu-smooth", "par"], "part.msh"),
