@@ -258,3 +258,39 @@ fn a_report_that_cannot_be_written_hides_no_failure() {
     assert_holds(&run.out, &["b.msh"]);
     assert_eq!(names(&folder, "out"), ["b.msh"]);
 }
+
+/// The notes on the meshes of a batch were in the report alone.
+#[test]
+fn each_distinct_note_is_printed_once_with_the_number_of_its_meshes() {
+    let mut gmsh = support::write_msh22(&disturbed());
+    let count = disturbed().points.len();
+    let depths: Vec<String> = (1..=count).map(|v| format!("{v} {v}.5\n")).collect();
+    gmsh += &format!(
+        "$NodeData\n1\n\"depth\"\n1\n0.0\n3\n0\n1\n{count}\n{}$EndNodeData\n",
+        depths.concat()
+    );
+    let folder = several();
+    for name in ["c.msh", "d.msh", "e.msh"] {
+        fs::write(folder.path(name), &gmsh).unwrap();
+    }
+    let alone = folder.line("d.msh alone.msh --engine cpu").err;
+    let note = alone.strip_prefix("gpu-smooth: ").unwrap().trim_end();
+    assert_holds(note, &["depth"]);
+    let one = format!("c.msh: {note}");
+    let three = format!("{note} (3 of 4 meshes; the first is c.msh)");
+    let batch = "--out-dir out --engine cpu --force";
+    let run = folder.line(&format!("b.msh c.msh {batch}"));
+    assert_eq!(run.err.lines().last(), Some(&*format!("gpu-smooth: {one}")));
+    let run = folder.line(&format!("b.msh c.msh d.msh e.msh {batch}"));
+    assert_eq!(
+        run.err.lines().filter(|line| line.contains("depth")).collect::<Vec<_>>(),
+        [format!("gpu-smooth: {three}")]
+    );
+    let run = folder.line(&format!("b.msh c.msh d.msh e.msh {batch} --log json"));
+    let events = run.err.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+    let notes: Vec<Value> = events.filter(|event| event["event"] == "note").collect();
+    assert_eq!(notes.len(), 1, "{}", run.err);
+    assert_eq!(notes[0]["message"], three);
+    let quiet = folder.line(&format!("b.msh c.msh {batch} -q"));
+    assert_eq!(quiet.err, "");
+}

@@ -72,6 +72,7 @@ pub(crate) fn run(
             tell::say(&table::text(&entries, seconds, columns::of_terminal()));
         }
     }
+    table::notes(&entries).iter().for_each(|note| tell::note(verbosity.quiet, note));
     let failures = table::failures(&entries);
     if reported.is_err() {
         failures.iter().for_each(tell::error);

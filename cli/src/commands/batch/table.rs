@@ -1,5 +1,6 @@
 //! The results of a batch as text, CSV and JSON.
 
+use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -134,6 +135,33 @@ fn counts(entries: &[Entry]) -> String {
 
 fn counted(meshes: usize) -> String {
     if meshes == 1 { "1 mesh".into() } else { format!("{meshes} meshes") }
+}
+
+/// Returns each distinct remark on smoothed meshes once, with the mesh, or with the number of meshes and the first of them.
+pub(crate) fn notes(entries: &[Entry]) -> Vec<String> {
+    let mut meshes_of: Vec<(&str, Vec<&Entry>)> = Vec::new();
+    let mut index_of: HashMap<&str, usize> = HashMap::new();
+    for entry in entries {
+        let BatchStatus::Smoothed { remarks, .. } = &entry.status else { continue };
+        for remark in remarks {
+            let index = *index_of.entry(remark).or_insert(meshes_of.len());
+            if index == meshes_of.len() {
+                meshes_of.push((remark, Vec::new()));
+            }
+            meshes_of[index].1.push(entry);
+        }
+    }
+    let note = |(remark, meshes): &(&str, Vec<&Entry>)| {
+        let first = meshes[0].input.display();
+        match meshes.len() {
+            1 => format!("{first}: {remark}"),
+            count => {
+                let all = counted(entries.len());
+                format!("{remark} ({count} of {all}; the first is {first})")
+            }
+        }
+    };
+    meshes_of.iter().map(note).collect()
 }
 
 /// Returns an error that lists the failed meshes with their problems; `None` without failures.
