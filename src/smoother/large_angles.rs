@@ -47,8 +47,8 @@ impl Failing {
         let edges = inner_edges(movable.surface, points, &movable.smoother.topology);
         let edges = edges.iter().filter(|edge| REFUSED.are_broken_by(edge)).count();
         let triangles = movable.chosen(points, |corner| aim.is_beyond(corner)).await.len();
-        /// Cotangent of 90.06 degrees. Sweeps end near right angles that are best, and rounding must not decide.
-        const OBTUSE: f64 = -1e-3;
+        /// Cotangent of 90.006 degrees. Sweeps end near right angles that are best, and rounding must not decide.
+        const OBTUSE: f64 = -1e-4;
         let is_obtuse =
             |corner: PlacedCorner<'_>| !corner.is_right && corner.least_cotangent() < OBTUSE;
         let obtuse = movable.chosen(points, is_obtuse).await.len();
