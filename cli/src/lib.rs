@@ -41,6 +41,11 @@ pub mod colors {
     pub use crate::render::picture::{BAD, VIRIDIS};
 }
 
+/// The search for the name that a user has mistyped, which the Python package shares.
+pub mod mistyped_names {
+    pub use crate::similar::nearest;
+}
+
 /// Runs the command line `words`, whose first word is the name of the program, and returns the exit code for the process.
 ///
 /// `program` are the words that start this program again in another process, such as the path of the executable. A run

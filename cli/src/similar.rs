@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 /// Largest number of inserted, deleted, replaced or swapped letters of a mistyped name.
 const MAX_EDITS: usize = 2;
 /// Length of the shortest word with `MAX_EDITS`. In shorter words, one letter may be wrong.
-const MIN_LENGTH: usize = 5;
+const MIN_LENGTH: usize = 6;
 
 /// Returns the name nearest to `word`, without regard to capital and small letters. `None` if all names differ by more than a
 /// slip.
-pub(crate) fn nearest(word: &str, names: impl IntoIterator<Item = String>) -> Option<String> {
+pub fn nearest(word: &str, names: impl IntoIterator<Item = String>) -> Option<String> {
     let lower = word.to_lowercase();
     let most = if word.chars().count() < MIN_LENGTH { 1 } else { MAX_EDITS };
     let edits = |name: &String| strsim::osa_distance(&lower, &name.to_lowercase());
@@ -40,6 +40,7 @@ mod tests {
         assert_eq!(find("Inlt").as_deref(), Some("inlet"));
         assert_eq!(find("otulet").as_deref(), Some("outlet"));
         assert_eq!(find("a2").as_deref(), Some("a1"));
+        assert_eq!(find("onlet"), None);
         assert_eq!((find("wall"), find("inlet"), find("b2")), (None, None, None));
     }
 }

@@ -60,6 +60,11 @@ def smooth_gmsh_model(**options: Unpack[SmoothOptions]) -> Result:
 
     if not gmsh.isInitialized():
         raise GpuSmoothError("no gmsh session is running: call gmsh.initialize() and mesh a model first")
+    if not len(gmsh.model.mesh.getElementTypes(2)):
+        raise MeshError(
+            "mesh: the current model of the gmsh session has no elements on surfaces. Mesh the model first: "
+            "gmsh.model.mesh.generate(2)"
+        )
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     tags = np.asarray(tags, dtype=np.int64)
     points = np.asarray(coordinates, dtype=float).reshape(-1, 3)

@@ -131,8 +131,9 @@ class Result:
     def stop(self) -> str:
         """Reason why the run ended.
 
-        `"converged"`, `"reached"` (the goal), `"stalled"`, `"held-back"`, `"max-sweeps"`, `"canceled"` (by `on_sweep` or
-        `time_limit`) or `"not-finite"`.
+        `"converged"`, `"reached"` (the goal), `"stalled"`, `"held-back"` (by the guard), `"max-sweeps"`, `"canceled"` (by
+        `on_sweep` or `time_limit`), `"not-finite"`, or `"nothing-to-do"` if all vertices stay, because `only_bad` finds no bad
+        element or every free vertex is in a boundary layer that stays.
         """
         return self._outcome.stop
 

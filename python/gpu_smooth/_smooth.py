@@ -179,7 +179,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
     fixed : array_like, shape (k,) of int or (n,) of bool, optional
         Vertices that neither move nor slide. For a mesh with named groups, also the name of a group, or a list of names.
     lines : array_like of int, shape (k, 2), optional
-        Edges of triangles, such as those on a line between two materials. Their vertices stay, or slide along the lines.
+        Edges of triangles, such as those on a line between two materials. Their vertices stay, or slide along the lines. A pair
+        that is no edge of the mesh is a warning.
     regions : array_like of int, shape (m,) or (m + k,), optional
         Region of each triangle, then of each quadrilateral. Vertices between regions stay, or slide along the lines between regions.
     slide : bool, default False
@@ -192,7 +193,8 @@ def smooth(points: Any, triangles: Any = None, **options: Any) -> Any:
         Largest distance of lines from the lines of the given mesh, in the unit of the mesh. The default is a tenth of
         the local edge length.
     periodic : array_like of int, shape (k, 2), optional
-        With `slide`: pairs of vertices that slide together.
+        With `slide`: pairs of vertices that slide together. A pair with a vertex inside the mesh, and a pair of a corner and
+        another vertex, are a warning and do not slide.
     keep_layers : str or tuple of str and array_like, default "auto"
         Boundary layers whose vertices stay: `"auto"` for the layers that are found above walls, `"none"`, `"rows=N"` for
         the first N rows, or `"within=DISTANCE"` for all vertices within a distance of walls, in the unit of the points.

@@ -91,15 +91,21 @@ pub(crate) fn of_run(py: Python<'_>, error: &SmoothError) -> PyErr {
 
 /// Returns the exception of a device, with advice.
 pub(crate) fn of_gpu(py: Python<'_>, error: &GpuError) -> PyErr {
-    let remedy = match error {
-        GpuError::NoAdapter { .. } => {
-            "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` brings one that needs no \
-             graphics card), or pass engine=\"cpu\""
+    let (argument, remedy) = match error {
+        GpuError::NoAdapter { wanted: Some(_), available } if !available.is_empty() => {
+            ("adapter", "Pass a part of one of these names, or engine=\"cpu\" without adapter")
         }
-        GpuError::Arithmetic { .. } => "Use another adapter or the CPU (engine=\"cpu\")",
-        _ => "Pass engine=\"cpu\" to compute on the CPU",
+        GpuError::NoAdapter { wanted, .. } => (
+            if wanted.is_some() { "adapter" } else { "engine" },
+            "Install a Vulkan driver (on Debian or Ubuntu, `apt install mesa-vulkan-drivers` brings one that needs no \
+             graphics card), or pass engine=\"cpu\"",
+        ),
+        GpuError::Arithmetic { .. } => {
+            ("engine", "Use another adapter or the CPU (engine=\"cpu\")")
+        }
+        _ => ("engine", "Pass engine=\"cpu\" to compute on the CPU"),
     };
-    device(py, &format!("engine: {error}. {remedy}"))
+    device(py, &format!("{argument}: {error}. {remedy}"))
 }
 
 /// The indices of triangles, quadrilaterals and a vertex that an exception names.

@@ -74,6 +74,7 @@ impl Input {
         observer: &RunObserver<'_>,
         remarks: &mut Remarks<'_>,
     ) -> Result<Self, Failure> {
+        movement::check_lines(&mesh, options, remarks);
         let mut domain = movement::domain(mesh, options)?;
         if options.surface() == Surface::Sphere {
             domain.lay_out_on_sphere(stored)?;
@@ -161,10 +162,13 @@ pub(crate) fn untangled(
     }
     if let Some(bad) = Bad::of(&done.hopeless, &done.hopeless_quadrilaterals) {
         let Bad { argument, first, count, all, .. } = bad;
+        let (subject, whose) = match count {
+            1 => (first, "its"),
+            count => (format!("{first} and {} more", count - 1), "their"),
+        };
         let text = format!(
-            "{argument}: {first} and {} more cannot be untangled, as none of their vertices is free, or two fixed vertices are \
-             at the same point. Correct the points of their vertices, or fix fewer vertices",
-            count - 1
+            "{argument}: {subject} cannot be untangled, as none of {whose} vertices is free, or two fixed vertices are at the \
+             same point. Correct the points of {whose} vertices, or fix fewer vertices"
         );
         return failure(text, all);
     }

@@ -249,7 +249,7 @@ impl CallOptions {
                 false => all.mesh.set(given, size)? || all.run.set(given)?,
             };
             if !is_known {
-                return Err(values::unknown(py, &name, "smoothing", &all_names()));
+                return Err(values::unknown(&name, "smoothing", &all_names()));
             }
         }
         all.run.check(py)?;

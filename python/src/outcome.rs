@@ -156,10 +156,16 @@ impl Outcome {
         &self.engine
     }
 
-    /// The reason why the run ended, in one word.
+    /// The reason why the run ended, in one word. `"nothing-to-do"` if all vertices stay, as `only_bad` finds no bad element or
+    /// every free vertex is in a boundary layer that stays.
     #[getter]
     fn stop(&self) -> &'static str {
-        self.outcome.stop.name()
+        let smoother = &self.prepared.smoother;
+        let has_swept = self.outcome.sweeps > 0;
+        match !has_swept && smoother.layers().have_all_free(smoother.topology()) {
+            true => "nothing-to-do",
+            false => self.outcome.stop.name(),
+        }
     }
 
     /// The failure of the device after which the run continued on the CPU; None if the device did not fail.

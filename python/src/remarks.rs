@@ -43,6 +43,44 @@ impl<'a> Remarks<'a> {
         self.texts.push(text);
     }
 
+    /// Warns of pairs of `lines` that are no edges: `line` in the row `row`, and `others` further pairs.
+    pub(crate) fn stray_lines(&mut self, row: usize, [a, b]: [u32; 2], others: usize) {
+        let (further, vertices) = match others {
+            0 => (String::new(), "Both vertices stay"),
+            1 => (", and 1 more pair is no edge".to_owned(), "The vertices of both pairs stay"),
+            n => (format!(", and {n} more pairs are no edges"), "The vertices of these pairs stay"),
+        };
+        self.warn(format!(
+            "lines[{row}]: no edge of the mesh joins vertices {a} and {b}{further}. {vertices}, and do not slide along such a \
+             line. Pass edges of elements"
+        ));
+    }
+
+    /// Warns of pairs of `periodic` with a vertex that is on no line: the pair in the row `row` with `vertex`, and `others`
+    /// further pairs.
+    pub(crate) fn pairs_inside(&mut self, row: usize, vertex: u32, others: usize) {
+        let further = match others {
+            0 => "The pair does not slide",
+            1 => "This pair and 1 more do not slide",
+            n => &format!("This pair and {n} more do not slide"),
+        };
+        self.warn(format!(
+            "periodic[{row}]: vertex {vertex} is inside the mesh, and on no line. {further}. Pass pairs of vertices on the \
+             boundary, on lines or between regions"
+        ));
+    }
+
+    /// Warns of vertices that could slide, `count` in number, but stay because of their pairs.
+    pub(crate) fn stuck_pairs(&mut self, count: usize) {
+        if count > 0 {
+            let stay = numbered(count, "vertex stays", "vertices stay");
+            self.warn(format!(
+                "periodic: {stay} that could slide without pairs. Both vertices of a pair stay if one of them is a corner, \
+                 fixed or in two pairs, or if their neighbors along the lines are no pairs"
+            ));
+        }
+    }
+
     /// Remarks on vertices that are fixed because they lie between regions.
     pub(crate) fn interfaces(&mut self, count: usize) {
         if count > 0 {

@@ -74,7 +74,7 @@ impl RunOptions {
         };
         match is_known {
             true => Ok(()),
-            false => Err(values::unknown(value.py(), &name, function, &names())),
+            false => Err(values::unknown(&name, function, &names())),
         }
     }
 

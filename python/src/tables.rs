@@ -69,10 +69,10 @@ pub(crate) fn options(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 
 /// Fails if smoothing has no option of one of these names.
 #[pyfunction]
-pub(crate) fn check_option_names(py: Python<'_>, given: Vec<String>) -> PyResult<()> {
+pub(crate) fn check_option_names(given: Vec<String>) -> PyResult<()> {
     let names = of_mesh::all_names();
     match given.iter().find(|name| !names.contains(name)) {
-        Some(name) => Err(values::unknown(py, name, "smoothing", &names)),
+        Some(name) => Err(values::unknown(name, "smoothing", &names)),
         None => Ok(()),
     }
 }

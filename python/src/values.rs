@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use gpu_smooth::options::OptionRange;
+use gpu_smooth_cli::mistyped_names;
 use gpu_smooth_job::options::{GivenOptions, Kind, OptionRow};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -146,13 +147,10 @@ impl Given<'_, '_> {
     }
 }
 
-/// Returns the `TypeError` for an option that `function` lacks. The message has the most similar of `names`.
-pub(crate) fn unknown(py: Python<'_>, name: &str, function: &str, names: &[String]) -> PyErr {
-    let similar = py
-        .import("difflib")
-        .and_then(|difflib| difflib.call_method1("get_close_matches", (name, names.to_vec(), 1)))
-        .and_then(|found| found.extract::<Vec<String>>());
-    let advice = match similar.ok().and_then(|mut found| found.pop()) {
+/// Returns the `TypeError` for an option that `function` lacks. The message has the one of `names` that differs by at most two
+/// letters, or else all of them.
+pub(crate) fn unknown(name: &str, function: &str, names: &[String]) -> PyErr {
+    let advice = match mistyped_names::nearest(name, names.to_vec()) {
         Some(similar) => format!("Did you mean {similar}?"),
         None => format!("There are {}", names.join(", ")),
     };

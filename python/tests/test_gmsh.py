@@ -148,8 +148,14 @@ def rotation(axis: Any, angle: float) -> Any:
 
 
 def test_models_that_cannot_be_smoothed_are_refused(gmsh: Any) -> None:
-    with pytest.raises(gpu_smooth.MeshError, match="no triangles"):
+    with pytest.raises(gpu_smooth.MeshError, match=r"has no elements on surfaces. Mesh the model first: gmsh.model.mesh.generate\(2\)"):
         gpu_smooth.smooth_gmsh_model()
+    gmsh.model.occ.addRectangle(0, 0, 0, 4, 4)
+    gmsh.model.occ.synchronize()
+    gmsh.model.mesh.generate(1)
+    with pytest.raises(gpu_smooth.MeshError, match="has no elements on surfaces"):
+        gpu_smooth.smooth_gmsh_model()
+    gmsh.clear()
     square(gmsh)
     gmsh.model.mesh.setOrder(2)
     with pytest.raises(gpu_smooth.MeshError, match="linear elements"):

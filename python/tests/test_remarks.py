@@ -12,7 +12,7 @@ from typing import Any
 import meshio
 import numpy as np
 import pytest
-from conftest import MESHES, Points, Triangles, alternating, command_line, lattice, written
+from conftest import MESHES, Points, Triangles, alternating, command_line, lattice, squares, written
 
 import gpu_smooth
 from gpu_smooth import MeshWarning
@@ -142,6 +142,59 @@ def test_vertices_between_regions_and_sliding_vertices_are_remarks(mesh: Mesh) -
         gpu_smooth.run(points, triangles, slide=True, periodic=pairs)
 
 
+def periodic_pairs() -> Triangles:
+    """Return the pairs of vertices on the left and the right side of `lattice(12)`, without those at corners."""
+    rows = np.arange(1, 12) * 13
+    return np.stack([rows, rows + 12], axis=1)
+
+
+def test_a_periodic_pair_with_a_vertex_inside_the_mesh_is_a_warning(mesh: Mesh) -> None:
+    points, triangles = mesh
+    # Vertex 70 is inside the mesh. No translation has to fit, as the pair is the only one.
+    with pytest.warns(MeshWarning, match=r"periodic\[0\]: vertex 70 is inside the mesh, .* The pair does not slide") as caught:
+        result = gpu_smooth.run(points, triangles, slide=True, periodic=[[65, 70]])
+    assert len(caught) == 1 and np.array_equal(result.points[65], points[65])
+    pairs = np.concatenate([periodic_pairs(), [[3, 70], [83, 70]]])
+    with pytest.warns(MeshWarning, match=r"periodic\[11\]: vertex 70 .* This pair and 1 more do not slide") as caught:
+        result = gpu_smooth.run(points, triangles, slide=True, periodic=pairs)
+    assert len(caught) == 1
+    assert remark(result, "slide: ").endswith("22 of them in 11 periodic pairs")
+
+
+def test_vertices_that_stay_because_of_their_pairs_are_a_warning(mesh: Mesh) -> None:
+    points, triangles = mesh
+    pairs = periodic_pairs()
+    # Pairs of two corners are usual, and hold no other vertex.
+    gpu_smooth.run(points, triangles, slide=True, periodic=np.concatenate([pairs, [[0, 12], [156, 168]]]))
+    # Vertex 0 is a corner of the square, and vertex 6 is not.
+    with pytest.warns(MeshWarning, match="periodic: 1 vertex stays that could slide without pairs") as caught:
+        result = gpu_smooth.run(points, triangles, slide=True, periodic=[[0, 6]])
+    assert len(caught) == 1 and np.array_equal(result.points[6], points[6])
+    # The two pairs beside the pair that is left out have neighbors without a pair.
+    with pytest.warns(MeshWarning, match="periodic: 4 vertices stay that could slide"):
+        gpu_smooth.run(points, triangles, slide=True, periodic=np.delete(pairs, 5, axis=0))
+    with pytest.warns(MeshWarning, match="periodic: 1 vertex stays that could slide"):
+        gpu_smooth.run(points, triangles, slide=True, periodic=pairs, fixed=[65])
+
+
+def test_pairs_of_lines_that_are_no_edges_are_a_warning(mesh: Mesh) -> None:
+    points, triangles = mesh
+    edges = np.stack([np.arange(66, 76), np.arange(67, 77)], axis=1)
+    gpu_smooth.run(points, triangles, lines=edges)
+    for options in {}, {"slide": True}:
+        with pytest.warns(MeshWarning, match=r"lines\[2\]: no edge of the mesh joins vertices 66 and 68. Both vertices stay"):
+            gpu_smooth.run(points, triangles, lines=[[66, 67], [68, 67], [66, 68]], **options)
+        with pytest.warns(MeshWarning, match=r"lines\[0\]: .* 66 and 66, and 2 more pairs are no edges"):
+            gpu_smooth.smooth(points, triangles, lines=[[66, 66], [66, 67], [1, 100], [30, 1]], **options)
+    # The diagonals of quadrilaterals are no edges, whatever their corner triangles are.
+    with pytest.warns(MeshWarning, match=r"lines\[1\]: no edge of the mesh joins vertices 66 and 80"):
+        gpu_smooth.run(points, [], quadrilaterals=squares(12), lines=[[66, 67], [66, 80]])
+    gpu_smooth.run(points, triangles, lines=[[66, 68]], free_lines=True)
+    # A network of lines beside the mesh is no mistake.
+    with_network = np.concatenate([points, [[20.0, 1.0], [21.0, 1.0]]])
+    gpu_smooth.run(with_network, triangles, lines=[[169, 170]])
+
+
 def test_hanging_nodes_are_a_remark(mesh: Mesh) -> None:
     points, triangles = mesh
     # The lower of the two triangles at an edge is cut in two, but not the upper one.
@@ -152,6 +205,20 @@ def test_hanging_nodes_are_a_remark(mesh: Mesh) -> None:
     result = gpu_smooth.run(given, cut)
     told = remark(result, "points: 1 hanging node: vertex ")
     assert f"vertex {middle} is inside the edge between vertices {min(a, b)} and {max(a, b)}" in told
+
+
+def test_a_run_without_a_vertex_to_move_ends_as_nothing_to_do(mesh: Mesh, tmp_path: Path) -> None:
+    points, triangles = mesh
+    path = written(tmp_path / "in.vtk", points, triangles)
+    report = gpu_smooth.smooth_file(path, tmp_path / "out.vtk", only_bad=1e6, engine="cpu")
+    good = gpu_smooth.run(points, triangles, only_bad=1e6, engine="cpu")
+    assert (good.stop, good.sweeps) == ("nothing-to-do", 0) and good.stop == report["stop"]
+    assert repr(good).startswith("Result(nothing-to-do after 0 sweeps") and pickle.loads(pickle.dumps(good)).stop == good.stop
+    with pytest.warns(MeshWarning, match="every free vertex is in a boundary layer"):
+        kept = gpu_smooth.run(points, triangles, keep_layers=("within=100", [0, 1]))
+    assert kept.stop == "nothing-to-do" and np.array_equal(kept.points, points)
+    # Vertices could move here, but no sweep was allowed.
+    assert gpu_smooth.run(points, triangles, max_sweeps=0).stop == "max-sweeps"
 
 
 def test_vertices_near_bad_triangles_are_counted(mesh: Mesh, tmp_path: Path) -> None:
