@@ -94,7 +94,15 @@ fn files_that_cannot_be_decompressed_are_errors() {
     refused("a.msh.zst", b"\x28\xB5\x2F\xFD\0\0", &["by zstd, but damaged or cut off"]);
     refused("a.msh.bz2", b"BZh91AY", &["compressed by bzip2", "bunzip2"]);
     refused("a.msh.gz", &packed(b""), &["the file is empty"]);
-    refused("a.node.gz", &packed(NODE.as_bytes()), &["a.node.gz"]);
+    let not_read = ["a.node.gz", "not read compressed", "gunzip"];
+    refused("a.node.gz", &packed(NODE.as_bytes()), &["a.ele: not found", "beside", "a.node.gz"]);
+    for other in ["a.ele.gz", "a.ele"] {
+        fs::write(folder.path(other), packed(ELE.as_bytes())).unwrap();
+        refused("a.node.gz", &packed(NODE.as_bytes()), &not_read);
+        fs::remove_file(folder.path(other)).unwrap();
+    }
+    fs::remove_file(folder.path("a.node.gz")).unwrap();
+    refused("a.ele.gz", &packed(ELE.as_bytes()), &["a.node: not found", "a.ele.gz"]);
     fs::write(folder.path("b.ele"), packed(ELE.as_bytes())).unwrap();
     refused("b.node", NODE.as_bytes(), &["b.ele: ", "not read compressed", "gunzip"]);
 }

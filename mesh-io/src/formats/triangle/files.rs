@@ -7,6 +7,7 @@ use crate::error::{ReadError, WriteError};
 use crate::formats::triangle::names::{Names, appended};
 use crate::formats::triangle::rows::rows;
 use crate::text::token::integer;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Returns whether a path ends in `.node` or `.ele`, before the ending of a compressed file.
@@ -59,7 +60,7 @@ pub(crate) fn load_by_stem(path: &Path) -> Option<Result<Source, ReadError>> {
     }
     match is_named_as_triangle(path) {
         true if path.exists() => None,
-        true => Some(Err(missing_file(path, &names))),
+        true => Some(Err(missing_file(path, other_file(&names, path)))),
         false if path.is_file() => None,
         false => Some(load(&names.node, &names)),
     }
@@ -67,6 +68,9 @@ pub(crate) fn load_by_stem(path: &Path) -> Option<Result<Source, ReadError>> {
 
 /// Loads the other files of the mesh that `given` belongs to. Returns the `.node`, with the other files as companions.
 pub(super) fn load_companions(given: Source) -> Result<Source, ReadError> {
+    if Compression::of(&given.path).is_some() && is_named_as_triangle(&given.path) {
+        return Err(compressed_file(&given));
+    }
     let Some(names) = names(&given) else { return Err(one_of_two(&given)) };
     let (mut node, ele) = match given.path == names.ele {
         true => (load(&names.node, &names)?, given),
@@ -76,10 +80,29 @@ pub(super) fn load_companions(given: Source) -> Result<Source, ReadError> {
     let others = [ele].into_iter().chain(poly);
     node.companions.extend(others.map(Companion::by_convention));
     if let Some(packed) = node.files().find(|source| source.compressed.is_some()) {
-        let problem = "files of Triangle are not read compressed, as there are several to a mesh";
-        return Err(packed.error(problem, "Decompress all of them (gunzip, unzstd)"));
+        return Err(not_read(packed));
     }
     Ok(node)
+}
+
+/// Returns the error of a file whose name ends in that of a compressed `.node` or `.ele`, such as `a.node.gz`: the other file
+/// exists neither compressed nor decompressed, or files of Triangle are not read compressed.
+fn compressed_file(packed: &Source) -> ReadError {
+    let inner = packed.path.with_extension("");
+    let names = Names::of(&inner);
+    let other = other_file(&names, &inner);
+    let is_compressed =
+        |ending: &OsStr| appended(other, &format!(".{}", ending.display())).exists();
+    match other.exists() || packed.path.extension().is_some_and(is_compressed) {
+        true => not_read(packed),
+        false => missing_file(other, &packed.path),
+    }
+}
+
+/// Returns the error that a compressed file of Triangle is not read.
+fn not_read(packed: &Source) -> ReadError {
+    let problem = "files of Triangle are not read compressed, as there are several to a mesh";
+    packed.error(problem, "Decompress all of them (gunzip, unzstd)")
 }
 
 /// Returns an error: bytes that were not read from a file have no companion files.
@@ -92,16 +115,20 @@ fn one_of_two(source: &Source) -> ReadError {
     source.error(problem, "Name its .node, so that both are read")
 }
 
+/// Returns the file of the mesh beside the `.node` or the `.ele` with the path `own`.
+fn other_file<'n>(names: &'n Names, own: &Path) -> &'n Path {
+    if own == names.node { &names.ele } else { &names.node }
+}
+
 fn load(path: &Path, names: &Names) -> Result<Source, ReadError> {
     match Source::load(path) {
-        Err(_) if !path.exists() => Err(missing_file(path, names)),
+        Err(_) if !path.exists() => Err(missing_file(path, other_file(names, path))),
         loaded => loaded,
     }
 }
 
-/// Returns the error that the file `missing` of a mesh does not exist, though the other file does.
-fn missing_file(missing: &Path, names: &Names) -> ReadError {
-    let there = if missing == names.node { &names.ele } else { &names.node };
+/// Returns the error that the file `missing` of a mesh does not exist, though the other file `there` does.
+fn missing_file(missing: &Path, there: &Path) -> ReadError {
     let remedy = format!(
         "A Triangle mesh is two files: put it beside {} (Triangle writes both)",
         there.display()
