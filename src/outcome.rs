@@ -149,8 +149,9 @@ pub struct Floored {
     pub f: [f64; 2],
 }
 
-/// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute): vertices around triangles with an
-/// angle above 87.1 degrees take further Newton steps by growing penalties on large and on small angles.
+/// The work on large angles after the sweeps of a run by [`Acute`](crate::Metric::Acute) or
+/// [`AcuteSize`](crate::Metric::AcuteSize): vertices around triangles that can move and have an angle above 87.1 degrees take
+/// further Newton steps by growing penalties on large and on small angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LargeAngles {

@@ -13,8 +13,9 @@ const fn row(a: Feature, b: Feature, why: &'static str) -> Conflict {
     Conflict { features: [a, b], why }
 }
 
-const ONE_METRIC: &str =
-    "each of its periods must lower f, as one metric other than edge does, such as imr";
+// Targets of sizes refuse imr, which sees no sizes. tmop-94 suits every target.
+const ONE_METRIC: &str = "each of its periods must lower f, as sweeps by one metric other than edge do; take one metric, \
+     such as tmop-94, or targets of vertices";
 const ANALYTIC: &str = "it needs analytic derivatives";
 const CHANGING: &str =
     "targets of places change during the run; drop one of the two, or take targets of vertices";
@@ -35,7 +36,8 @@ pub(crate) const CONFLICTS: &[Conflict] = &[
     row(
         Feature::Multilevel,
         Feature::UncorrectedScheme,
-        "sweeps by this metric cannot be corrected from coarser levels; take another metric, such as imr",
+        "sweeps by this metric cannot be corrected from coarser levels; take another metric, such as imr for shapes or \
+         soft-size for sizes",
     ),
     row(
         Feature::EncodedCorrections,

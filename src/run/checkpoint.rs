@@ -55,8 +55,8 @@ impl Checkpoint {
         Some(&*self.saved.engine.engine).filter(|name| *name != CPU)
     }
 
-    /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex, up to 76 once sweeps are
-    /// corrected from coarser levels, 12 more on strongly stretched meshes, and up to 128 more if vertices slide.
+    /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex, up to 92 once sweeps are
+    /// corrected from coarser levels, 12 more on strongly stretched meshes, and up to 128 more for each vertex that slides.
     ///
     /// The bytes are [`MAGIC`](Self::MAGIC) and the version of the format on a line, the version of this library on a
     /// line, records, and a CRC-32 of all bytes before. A record consists of name and content, each after its length in
