@@ -181,11 +181,11 @@ def test_pairs_of_lines_that_are_no_edges_are_a_warning(mesh: Mesh) -> None:
     points, triangles = mesh
     edges = np.stack([np.arange(66, 76), np.arange(67, 77)], axis=1)
     gpu_smooth.run(points, triangles, lines=edges)
-    for options in {}, {"slide": True}:
+    for slide in False, True:
         with pytest.warns(MeshWarning, match=r"lines\[2\]: no edge of the mesh joins vertices 66 and 68. Both vertices stay"):
-            gpu_smooth.run(points, triangles, lines=[[66, 67], [68, 67], [66, 68]], **options)
+            gpu_smooth.run(points, triangles, lines=[[66, 67], [68, 67], [66, 68]], slide=slide)
         with pytest.warns(MeshWarning, match=r"lines\[0\]: .* 66 and 66, and 2 more pairs are no edges"):
-            gpu_smooth.smooth(points, triangles, lines=[[66, 66], [66, 67], [1, 100], [30, 1]], **options)
+            gpu_smooth.smooth(points, triangles, lines=[[66, 66], [66, 67], [1, 100], [30, 1]], slide=slide)
     # The diagonals of quadrilaterals are no edges, whatever their corner triangles are.
     with pytest.warns(MeshWarning, match=r"lines\[1\]: no edge of the mesh joins vertices 66 and 80"):
         gpu_smooth.run(points, [], quadrilaterals=squares(12), lines=[[66, 67], [66, 80]])
