@@ -40,7 +40,7 @@ mod tests {
         assert_eq!(find("Inlt").as_deref(), Some("inlet"));
         assert_eq!(find("otulet").as_deref(), Some("outlet"));
         assert_eq!(find("a2").as_deref(), Some("a1"));
-        assert_eq!(find("onlet"), None);
+        assert_eq!(find("onlat"), None);
         assert_eq!((find("wall"), find("inlet"), find("b2")), (None, None, None));
     }
 }
