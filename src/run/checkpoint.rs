@@ -55,8 +55,9 @@ impl Checkpoint {
         Some(&*self.saved.engine.engine).filter(|name| *name != CPU)
     }
 
-    /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex, up to 92 once sweeps are
-    /// corrected from coarser levels, 12 more on strongly stretched meshes, and up to 128 more for each vertex that slides.
+    /// Encodes the checkpoint as bytes. The length is about 16 bytes for each vertex. Once sweeps are corrected from coarser
+    /// levels, the length is up to 92 bytes a vertex on the CPU and 126 on a device. Vertices of strongly stretched meshes take 12
+    /// bytes more, and vertices that slide up to 17.
     ///
     /// The bytes are [`MAGIC`](Self::MAGIC) and the version of the format on a line, the version of this library on a
     /// line, records, and a CRC-32 of all bytes before. A record consists of name and content, each after its length in
