@@ -84,6 +84,7 @@ pub mod outcome;
 mod parallel;
 mod patch;
 mod periodic;
+mod plane;
 mod precision;
 mod quality;
 mod resume;

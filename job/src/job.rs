@@ -215,13 +215,10 @@ impl<'f> Job<'f> {
                 smoother.set_slide(Some(&curves.slide))?;
             }
             let options = options.clone().stored(self.stored());
-            let mut outcome = smoother.run(&options).on(backend).block()?;
             if let Some(plane) = self.domain.plane() {
-                let before = &self.mesh().points;
-                let points = &mut outcome.points;
-                plane.certify_as_stored(smoother.topology(), before, points, &options)?;
+                smoother.set_plane(plane)?;
             }
-            Ok(outcome)
+            smoother.run(&options).on(backend).block()
         };
         let outcome = run().map_err(|error| self.error(error))?;
         Ok(Smoothed { job: self, outcome })
@@ -252,7 +249,8 @@ impl<'f> Job<'f> {
         if !is_tangled {
             return Ok(());
         }
-        let done = Untangle::new(self.mesh()).stored(self.stored()).run();
+        let untangle = Untangle::new(self.mesh()).in_plane(self.domain.plane());
+        let done = untangle.stored(self.stored()).run();
         let done = done.map_err(|error| self.error(error))?;
         if !done.is_feasible() {
             let path = self.file.path().to_path_buf();

@@ -3,7 +3,7 @@
 use gpu_smooth::interpolate::Interpolation;
 use gpu_smooth::measure::{Change, Distribution};
 use gpu_smooth::targets::Surface;
-use gpu_smooth::{Mesh, MeshError, Options, Quality as MeshQuality, Topology, Untangle};
+use gpu_smooth::{Mesh, MeshError, Quality as MeshQuality, Topology, Untangle};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -46,19 +46,13 @@ pub(crate) fn untangle<'py>(
         run.set_named(&name, &value, "untangle")?;
     }
     let observer = RunObserver::new(&run);
-    let stored = form.precision();
     let done = threads::watched(py, &observer, || {
         if keep_going {
-            let untangle = Untangle::new(&mesh).stored(stored);
-            let done = untangle.observe(input::observe(&observer)).run()?;
+            let untangle = Untangle::new(&mesh).stored(form.precision());
+            let done = untangle.in_plane(form.plane()).observe(input::observe(&observer)).run()?;
             return Ok(Some(done.points));
         }
-        let mut done = input::untangled(&mesh, stored, &observer)?;
-        if let (Some(points), Some(plane)) = (&mut done, form.plane()) {
-            let (topology, options) = (Topology::by_area(&mesh)?, Options::default());
-            plane.certify_as_stored(&topology, &points.clone(), points, &options)?;
-        }
-        Ok(done)
+        input::untangled(&mesh, &form, &observer)
     })?;
     if let Some(raised) = observer.take_raised() {
         return Err(raised);

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 
+use gpu_smooth::front_ends::Plane;
 use gpu_smooth::layers::Layers;
-use gpu_smooth::options::Precision;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::topology::{BadQuadrilateral, BadTriangle};
 use gpu_smooth::untangle::{Untangled, Untangling};
@@ -13,6 +13,7 @@ use gpu_smooth_job::{Domain, look_like_degrees};
 
 use pyo3::prelude::*;
 
+use crate::arrays::PointsForm;
 use crate::error::{self, Indices};
 use crate::mesh_options::MeshOptions;
 use crate::movement;
@@ -63,21 +64,24 @@ pub(crate) struct Layout {
     /// Points of the mesh before untangling; `None` if the mesh was not tangled.
     pub(crate) tangled: Option<Vec<[f64; 2]>>,
     pub(crate) domain: Domain,
+    /// The plane in which the points are moved; `None` for the plane of x and y.
+    pub(crate) plane: Option<Plane>,
 }
 
 impl Input {
-    /// Fixes vertices, lays the mesh out on its surface, and untangles it if the options ask for it.
+    /// Fixes vertices, lays the mesh out on its surface, and untangles it if the options ask for it. Its points were passed in
+    /// `form`.
     pub(crate) fn new(
         mesh: Mesh,
         options: &MeshOptions,
-        stored: Precision,
+        form: &PointsForm,
         observer: &RunObserver<'_>,
         remarks: &mut Remarks<'_>,
     ) -> Result<Self, Failure> {
         movement::check_lines(&mesh, options, remarks);
         let mut domain = movement::domain(mesh, options)?;
         if options.surface() == Surface::Sphere {
-            domain.lay_out_on_sphere(stored)?;
+            domain.lay_out_on_sphere(form.precision())?;
         }
         let settings = options.settings();
         if let Some(limit) = settings.only_bad {
@@ -93,11 +97,12 @@ impl Input {
         }
         let mut tangled = None;
         if options.settings().untangles
-            && let Some(points) = untangled(domain.mesh(), stored, observer)?
+            && let Some(points) = untangled(domain.mesh(), form, observer)?
         {
             tangled = Some(domain.replace_points(points));
         }
-        Ok(Self { layers, layout: Layout { tangled, domain } })
+        let plane = form.plane().cloned();
+        Ok(Self { layers, layout: Layout { tangled, domain, plane } })
     }
 
     /// Prepares the mesh for runs, with its targets and its sliding vertices.
@@ -127,7 +132,7 @@ impl Input {
 }
 
 impl Layout {
-    /// Sets the projection, the targets and the sliding vertices of a smoother.
+    /// Sets the projection, the plane, the targets and the sliding vertices of a smoother.
     pub(crate) fn set_up(
         &self,
         options: &MeshOptions,
@@ -138,6 +143,9 @@ impl Layout {
         if options.surface() == Surface::Sphere {
             smoother.project_from_sphere()?;
         }
+        if let Some(plane) = &self.plane {
+            smoother.set_plane(plane)?;
+        }
         let metric = options.target_kind().default_metric();
         remarks.targets(&targets.set(smoother, self.domain.chart(), metric)?);
         if options.settings().slides {
@@ -147,13 +155,13 @@ impl Layout {
     }
 }
 
-/// Returns the points of a mesh after untangling; `None` if the mesh is not tangled.
+/// Returns the points of a mesh after untangling; `None` if the mesh is not tangled. The points were passed in `form`.
 pub(crate) fn untangled(
     mesh: &Mesh,
-    stored: Precision,
+    form: &PointsForm,
     observer: &RunObserver<'_>,
 ) -> Result<Option<Vec<[f64; 2]>>, Failure> {
-    let done = untangle_mesh(mesh, stored, observer)?;
+    let done = untangle_mesh(mesh, form, observer)?;
     let remedy =
         "Pass the mesh to gpu_smooth.untangle with keep_going=True to get the best points found";
     let failure = |text, left| Err(Failure::Tangled { text, left });
@@ -229,7 +237,7 @@ impl Bad {
 /// Untangles a mesh unless its fixed edges cross or a loop of its boundary is misplaced.
 fn untangle_mesh(
     mesh: &Mesh,
-    stored: Precision,
+    form: &PointsForm,
     observer: &RunObserver<'_>,
 ) -> Result<Untangled, Failure> {
     let topology = Topology::by_area(mesh)?;
@@ -252,8 +260,8 @@ fn untangle_mesh(
             ));
         }
     }
-    let done = Untangle::new(mesh).stored(stored).observe(observe(observer)).run()?;
-    Ok(done)
+    let untangle = Untangle::new(mesh).stored(form.precision()).in_plane(form.plane());
+    Ok(untangle.observe(observe(observer)).run()?)
 }
 
 /// Returns the callback of untangling that asks an observer of runs.

@@ -43,13 +43,14 @@ impl Prepared {
         };
         if is_tangled && let Some(points) = given {
             let mesh = Mesh { points, ..self.smoother.mesh().clone() };
-            if let Some(points) = untangled(&mesh, form.precision(), observer)? {
+            if let Some(points) = untangled(&mesh, &form, observer)? {
                 smoother.set_points(points)?;
                 tangled = Some(mesh.points);
             }
         }
         let mut remarks = Remarks::new(observer);
-        let layout = Layout { tangled, domain: self.layout.domain.clone() };
+        let (domain, plane) = (self.layout.domain.clone(), form.plane().cloned());
+        let layout = Layout { tangled, domain, plane };
         layout.set_up(&self.options, &mut smoother, &mut remarks)?;
         let (options, lasting) = (Arc::clone(&self.options), self.lasting);
         let remarks = [&self.remarks[..lasting], &remarks.into_texts()].concat();

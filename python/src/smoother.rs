@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use gpu_smooth::front_ends::Plane;
 use gpu_smooth::targets::Surface;
 use gpu_smooth::{Backend, Checkpoint, Mesh, MeshError, Options, Smoother as PreparedMesh};
 use gpu_smooth_job::{Adapted, CheckpointFile, EngineRequest};
@@ -156,23 +155,21 @@ impl Call {
 }
 
 /// The options, the engine and the checkpoints of a run.
-struct RunPlan<'a> {
+struct RunPlan {
     options: Options,
     backend: Backend,
     /// Whether the run continues on the CPU if the device fails. True only with `engine="auto"`.
     falls_back: bool,
     checkpoints: Option<CheckpointFile>,
     resumed: Option<Checkpoint>,
-    /// The plane in which the points are moved; `None` for the plane of x and y.
-    plane: Option<&'a Plane>,
 }
 
-impl<'a> RunPlan<'a> {
+impl RunPlan {
     fn new(
         py: Python<'_>,
         run: &RunOptions,
         mesh: &MeshOptions,
-        form: &'a PointsForm,
+        form: &PointsForm,
         smoother: &PreparedMesh<'_>,
     ) -> PyResult<Self> {
         let request = &run.settings().run;
@@ -188,7 +185,7 @@ impl<'a> RunPlan<'a> {
             _ => engine::open(py, &engine, smoother.size(), &options)?,
         };
         let falls_back = engine == EngineRequest::Auto;
-        Ok(Self { options, backend, falls_back, checkpoints, resumed, plane: form.plane() })
+        Ok(Self { options, backend, falls_back, checkpoints, resumed })
     }
 
     /// Returns the adaptation of the mesh that the run will make less; `None` for a mesh that was untangled, or of which all
@@ -216,12 +213,7 @@ impl<'a> RunPlan<'a> {
         let observe = |progress: &gpu_smooth::Progress| observer.sweep(progress);
         let recovery = Recovery::new(self.checkpoints.as_ref(), self.falls_back, observer);
         let run = smoother.run(&self.options).on(&self.backend).observe(observe);
-        let mut outcome = run.checkpoints(recovery).resume(&self.resumed).block()?;
-        if let Some(plane) = self.plane {
-            let before = &smoother.mesh().points;
-            let points = &mut outcome.points;
-            plane.certify_as_stored(smoother.topology(), before, points, &self.options)?;
-        }
+        let outcome = run.checkpoints(recovery).resume(&self.resumed).block()?;
         if let Some(file) = &self.checkpoints {
             file.clear(outcome.stop);
         }
@@ -249,7 +241,7 @@ fn prepare(
 ) -> PyResult<Prepared> {
     let prepared = threads::watched(py, observer, || {
         let mut remarks = Remarks::new(observer);
-        let input = Input::new(mesh, &options, form.precision(), observer, &mut remarks)?;
+        let input = Input::new(mesh, &options, &form, observer, &mut remarks)?;
         let lasting = remarks.count();
         let (smoother, layout) = input.into_smoother(&options, &mut remarks)?;
         let (options, remarks) = (Arc::new(options), remarks.into_texts());
@@ -313,9 +305,8 @@ pub(crate) fn smooth<'py>(
     let CallOptions { mesh: options, run } = options;
     let observer = RunObserver::new(&run);
     let remarks = &mut Remarks::new(&observer);
-    let input = threads::watched(py, &observer, || {
-        Input::new(mesh, &options, form.precision(), &observer, remarks)
-    })?;
+    let input =
+        threads::watched(py, &observer, || Input::new(mesh, &options, &form, &observer, remarks))?;
     let input = match input {
         Ok(input) => input,
         failed => finished(py, &observer, failed)?,

@@ -3,9 +3,8 @@
 //! position and quality. An application with a plane mesh in memory needs none of these items.
 
 mod choice;
-mod plane;
 pub mod select;
 
 pub use crate::chart::Chart;
+pub use crate::plane::{NotPlanar, Plane};
 pub use choice::{BackendChooser, BackendReason};
-pub use plane::{NotPlanar, Plane};

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::plane::Storage;
 use crate::precision::Precision;
 use crate::slide::options::Slide;
 use crate::slide::side::BoundaryCurve;
@@ -111,13 +112,13 @@ impl Sliding {
     }
 
     /// Moves sliding vertices back to their given positions until [`Slide::misplaced`] finds none of them. `before` and
-    /// `points` are in the order of the mesh. `stored` is the precision of `points`; `None` for an unknown precision, for
+    /// `points` are in the order of the mesh. `stored` is the form in which `points` are stored; `None` for an unknown form, for
     /// which vertices move back only if their partner has its given position. Returns the number of vertices moved back.
     pub(crate) fn return_misplaced(
         &self,
         before: &[[f64; 2]],
         points: &mut [[f64; 2]],
-        stored: Option<Precision>,
+        stored: Option<Storage<'_>>,
     ) -> usize {
         let sides = self.tracks.iter().flat_map(|track| &track.sides);
         let slides = |side: &'_ BoundaryCurve| {
@@ -306,7 +307,7 @@ mod tests {
         // Vertices go back until no edge leaves its bound.
         let sliding = Sliding::new(&mesh.points, &topology, &narrow);
         let mut points = far;
-        let exact = Some(Precision::Double);
+        let exact = Some(Storage::new(Precision::Double, None));
         let returned = sliding.return_misplaced(&mesh.points, &mut points, exact);
         assert!(returned >= 2 && misplaced(&narrow, &points).is_empty(), "{returned}");
         assert_eq!(points[8], mesh.points[8]);

@@ -207,7 +207,7 @@ impl Floor<'_> {
                 touched.retain(|&c| self.movable.placed(points, c).is_some_and(is_worse));
                 worse = touched;
             }
-            let mut more = smoother.certified(points, Some(options.stored)).await?;
+            let mut more = smoother.certified(points, Some(smoother.storage(options))).await?;
             if options.keep_altitude {
                 more += altitude::restore(topology, before, points, Limits::ALTITUDE);
             }

@@ -12,7 +12,6 @@ use crate::metric::{Corner, Ideal, Metric};
 use crate::options::{Guard, Options};
 use crate::outcome::{Floored, GoalOutcome, Improved, LargeAngles, Outcome, Slid};
 use crate::parallel::paced;
-use crate::precision::Precision;
 use crate::quality::Quality;
 use crate::run::{
     JITTER, MIN_SCALE, NOISE, Observer, Phase, Plan, Progress, ROUNDING, Stop, set_guards,
@@ -28,7 +27,7 @@ use super::over_all::OverAll;
 use super::prepared::Smoother;
 use super::rounds::Present;
 
-/// Number of coordinates that one task rounds, and of triangles that one task measures.
+/// Number of points that one task rounds, and of triangles that one task measures.
 const CHUNK: usize = 1 << 14;
 
 /// What judges a run: its objective, and the objective before the first sweep.
@@ -197,7 +196,7 @@ impl Smoother<'_> {
         let swept = improving.as_ref().map_or(swept, |improving| improving.f[1]);
         // Rounding for the file, and vertices that were set back, are no error of the f of the sweeps.
         let is_as_swept =
-            returned == 0 && self.sliding.is_none() && matches!(options.stored, Precision::Double);
+            returned == 0 && self.sliding.is_none() && self.storage(options).is_exact();
         let before = match is_as_swept {
             true => None,
             false => Some(objective(base, &problem, &ended.positions).await),
@@ -348,13 +347,16 @@ impl Smoother<'_> {
         for (v, point) in curves.iter().flat_map(|curves| curves.moved()) {
             points[v as usize] = point;
         }
-        if !matches!(options.stored, Precision::Double) {
-            paced::for_each_chunk(points.as_flattened_mut(), CHUNK, |_, coordinates| {
-                coordinates.iter_mut().for_each(|x| *x = options.stored.rounded(*x));
+        let storage = self.storage(options);
+        if !storage.is_exact() {
+            paced::for_each_chunk(&mut points, CHUNK, |first, points| {
+                for (v, point) in (first..).zip(points) {
+                    *point = storage.rounded(v, *point);
+                }
             })
             .await;
         }
-        let stored = Some(options.stored);
+        let stored = Some(storage);
         let mut returned = self.certified(&mut points, stored).await?;
         // If one vertex of a pair is set back, so is its partner, which may make another triangle too flat.
         let guards_all = options.guard == Guard::Worst;

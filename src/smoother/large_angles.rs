@@ -144,7 +144,7 @@ impl Smoother<'_> {
         let (swept, swept_curves) = (points.to_vec(), curves.as_deref().cloned());
         let present = Present { problem, curves: curves.as_deref_mut(), positions, points };
         movable.descend(&aim, options, present, goes_on).await;
-        while self.certified(points, Some(options.stored)).await? > 0
+        while self.certified(points, Some(self.storage(options))).await? > 0
             || options.keep_altitude
                 && altitude::restore(&self.topology, &self.mesh.points, points, Limits::ALTITUDE)
                     > 0

@@ -3,6 +3,7 @@
 mod backend;
 mod floor;
 mod goal;
+mod in_plane;
 mod judging;
 mod large_angles;
 mod moved;

@@ -68,7 +68,7 @@ impl Smoother<'_> {
         }
         self.problem = self.problem.at_points(&self.mesh, &self.topology);
         self.stop_sliding();
-        (self.field, self.opened) = (None, None);
+        (self.field, self.opened, self.plane) = (None, None, None);
         self.prepare = start.elapsed();
         Ok(())
     }

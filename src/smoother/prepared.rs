@@ -16,7 +16,7 @@ use crate::mesh::{Element, Mesh, MeshSize};
 use crate::metric::Metric;
 use crate::options::{Guard, Options};
 use crate::parallel::pace::now;
-use crate::precision::Precision;
+use crate::plane::{Plane, Storage};
 use crate::slide::{OnCurves, Slide, Sliding};
 use crate::targets::{OutsideReport, Surface, TargetField, Targets};
 use crate::topology::{Topology, certified};
@@ -49,6 +49,8 @@ pub struct Smoother<'a> {
     /// [`serving`](Self::serving) returns it, while the fields above serve all other runs. `None` unless the
     /// projection would invert slivers.
     pub(super) opened: Option<Box<Smoother<'static>>>,
+    /// The plane of space in which the vertices lie; `None` for the plane of x and y.
+    pub(super) plane: Option<Plane>,
     pub(super) prepare: Duration,
 }
 
@@ -150,6 +152,7 @@ impl<'a> Smoother<'a> {
             coincident,
             field,
             opened,
+            plane: None,
             prepare: start.elapsed(),
         })
     }
@@ -188,6 +191,7 @@ impl<'a> Smoother<'a> {
             coincident: self.coincident,
             field: self.field,
             opened: self.opened,
+            plane: self.plane,
             prepare: self.prepare,
         }
     }
@@ -401,12 +405,12 @@ impl<'a> Smoother<'a> {
         now(self.certified(points, None))
     }
 
-    /// Does the work of [`Self::certify`], with pauses. If the precision of `points` is known, also sets sliding vertices
+    /// Does the work of [`Self::certify`], with pauses. If the form in which `points` are stored is known, also sets sliding vertices
     /// back whose move [`Slide::misplaced`] would not allow, such as those that passed a neighbor that was set back.
     pub(super) async fn certified(
         &self,
         points: &mut [[f64; 2]],
-        stored: Option<Precision>,
+        stored: Option<Storage<'_>>,
     ) -> Result<usize, MeshError> {
         let (before, topology) = (&self.mesh.points, &self.topology);
         let mut returned = certified(topology, before, points).await?;
@@ -424,7 +428,7 @@ impl<'a> Smoother<'a> {
         let sliding = self.sliding.clone()?;
         let least_altitude = if options.keep_altitude { least_of(&self.problem) } else { 0.0 };
         let reach = options.max_move.map(|most| {
-            let all = radii(&self.mesh, &self.topology, most, options.stored);
+            let all = radii(&self.mesh, &self.topology, most, self.storage(options));
             sliding.for_each_vertex(|v| all[v as usize])
         });
         Some(OnCurves::new(sliding, reach, least_altitude))

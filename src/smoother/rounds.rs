@@ -142,6 +142,7 @@ impl<'s> Movable<'s> {
         mut goes_on: impl FnMut() -> bool,
     ) {
         let Present { problem, mut curves, positions, points } = present;
+        let stored = self.smoother.storage(options);
         let mut plan = Plan::new(options);
         let step = plan.base_step(1.0);
         let shape = match options.guard {
@@ -193,14 +194,14 @@ impl<'s> Movable<'s> {
             for (v, to) in moves {
                 positions[v as usize] = to;
                 let at = problem.vertices()[v as usize];
-                points[at as usize] = problem.point(to).map(|x| options.stored.rounded(x));
+                points[at as usize] = stored.rounded(at as usize, problem.point(to));
                 beyond.extend(topology.corners_with(at));
             }
             let slid = curves.as_mut().map(|curves| {
                 curves.visit_by(&penalties, problem, &mut positions, |v| near.contains(&v))
             });
             for (at, point) in slid.into_iter().flatten() {
-                points[at as usize] = point.map(|x| options.stored.rounded(x));
+                points[at as usize] = stored.rounded(at as usize, point);
                 beyond.extend(topology.corners_with(at));
             }
             beyond.sort_unstable();

@@ -70,7 +70,13 @@ impl Smoother<'_> {
         self.check_movable()?;
         let is_for_device = self.problem.free_count() > 0 && !self.stays_on_cpu();
         let place = Place::given(device, is_for_device, self.size(), from, policy).await?;
-        let problem = &bounded(self.judged_problem(), &self.mesh, &self.topology, options);
+        let problem = &bounded(
+            self.judged_problem(),
+            &self.mesh,
+            &self.topology,
+            options,
+            self.storage(options),
+        );
         let about = self.about(problem, options).await;
         let resumed =
             from.map(|from| resume::check(&about, from, problem).map(|()| from)).transpose()?;

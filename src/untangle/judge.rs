@@ -1,4 +1,4 @@
-//! Counts the bad triangles of a mesh by exact predicates, on coordinates rounded to the precision of the output.
+//! Counts the bad triangles of a mesh by exact predicates, on positions as they are stored.
 
 use std::collections::HashSet;
 
@@ -8,18 +8,18 @@ use crate::error::BadTriangle;
 use crate::layout::Problem;
 use crate::mesh::Mesh;
 use crate::parallel::pace::now;
-use crate::precision::Precision;
+use crate::plane::Storage;
 use crate::topology::Topology;
 use crate::topology::overlapping_star;
 use crate::topology::predicates::{not_positive, orientation};
 
-/// A mesh with the precision in which exact predicates judge its triangles.
+/// A mesh with the form of storage in which exact predicates judge its triangles.
 pub(super) struct Judge<'m> {
     pub(super) mesh: &'m Mesh,
     pub(super) topology: &'m Topology<'m>,
     pub(super) problem: &'m Problem,
-    /// Precision to which points are rounded before exact predicates judge the triangles.
-    pub(super) stored: Precision,
+    /// The form in which exact predicates judge the triangles.
+    pub(super) stored: Storage<'m>,
 }
 
 impl Judge<'_> {
@@ -49,11 +49,11 @@ impl Judge<'_> {
         (bad, exact.len())
     }
 
-    /// Judges normalized positions of the problem, converted to the units of the mesh and rounded to `stored`.
+    /// Judges normalized positions of the problem, converted to the units of the mesh and to stored positions.
     pub(super) fn judged(&self, positions: &[DVec2]) -> Judgment {
         let mut points = self.problem.denormalize(self.mesh, positions);
-        for x in points.as_flattened_mut() {
-            *x = self.stored.rounded(*x);
+        for (v, point) in points.iter_mut().enumerate() {
+            *point = self.stored.rounded(v, *point);
         }
         let (left, exactly_bad) = self.bad_corners(&points);
         let overlapping = match left.is_empty() {
@@ -69,7 +69,7 @@ impl Judge<'_> {
 
 /// The rounded points of a mesh, with the bad triangles that they have.
 pub(super) struct Judgment {
-    /// Position of every vertex, in the order and units of the mesh, rounded to the stored precision.
+    /// Position of every vertex, in the order and units of the mesh, as it is stored.
     pub(super) points: Vec<[f64; 2]>,
     /// Inverted and flat corners, see [`Judge::bad_corners`].
     pub(super) left: Vec<BadTriangle>,

@@ -23,6 +23,7 @@ use std::ops::ControlFlow;
 
 use crate::error::MeshError;
 use crate::mesh::Mesh;
+use crate::plane::{Plane, Storage};
 use crate::precision::Precision;
 pub(crate) use means::feasible_means;
 pub use result::{Untangled, Untangling};
@@ -61,19 +62,27 @@ type Observe<'r> = dyn FnMut(&Untangling) -> ControlFlow<()> + 'r;
 pub struct Untangle<'r> {
     mesh: &'r Mesh,
     stored: Precision,
+    plane: Option<Plane>,
     observe: Box<Observe<'r>>,
 }
 
 impl<'r> Untangle<'r> {
     /// Returns an untangling of a mesh whose points are stored in double precision.
     pub fn new(mesh: &'r Mesh) -> Self {
-        Self { mesh, stored: Precision::Double, observe: Box::new(|_| ControlFlow::Continue(())) }
+        let observe = Box::new(|_: &Untangling| ControlFlow::Continue(()));
+        Self { mesh, stored: Precision::Double, plane: None, observe }
     }
 
     /// Sets the precision of the file or buffer to be written. Points are rounded to this precision before exact predicates
     /// judge the triangles.
     pub fn stored(self, stored: Precision) -> Self {
         Self { stored, ..self }
+    }
+
+    /// Sets the plane of space in which the vertices of the mesh lie; `None` for the plane of x and y. In a tilted plane,
+    /// exact predicates judge the triangles after the coordinates in space were rounded to the plane's precision.
+    pub fn in_plane(self, plane: Option<&Plane>) -> Self {
+        Self { plane: plane.cloned(), ..self }
     }
 
     /// Sets a callback that is called after each sweep. If the callback breaks, the result has the best points reached so
@@ -87,9 +96,16 @@ impl<'r> Untangle<'r> {
     /// # Errors
     /// [`MeshError`] if the mesh is not a valid plane mesh; see [`Topology::by_area`](crate::Topology::by_area).
     /// [`MeshError::Closed`] if an edge-connected part of a tangled mesh has no boundary edge. Triangles that stay inverted
-    /// are no error: [`Untangled::left`] lists such triangles.
+    /// are no error: [`Untangled::left`] lists such triangles. [`MeshError::PointCount`] if the plane has another number of
+    /// vertices than the mesh.
     pub fn run(mut self) -> Result<Untangled, MeshError> {
-        work::untangled(self.mesh, self.stored, &mut *self.observe)
+        let plane = self.plane.as_ref();
+        let (given, expected) = (plane.map(|plane| plane.points().len()), self.mesh.points.len());
+        if let Some(given) = given.filter(|&given| given != expected) {
+            return Err(MeshError::PointCount { given, expected });
+        }
+        let stored = Storage::new(self.stored, plane);
+        work::untangled(self.mesh, stored, &mut *self.observe)
     }
 }
 

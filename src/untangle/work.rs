@@ -15,7 +15,7 @@ use crate::error::{BadTriangle, MeshError};
 use crate::layout::{Coloring, Problem, target_areas};
 use crate::mesh::Mesh;
 use crate::parallel::pace::now;
-use crate::precision::Precision;
+use crate::plane::Storage;
 use crate::run::multilevel::Hierarchy;
 use crate::run::regularization::epsilon;
 use crate::topology::predicates::{is_positive, not_positive};
@@ -39,7 +39,7 @@ const ENDS: usize = 3;
 /// Untangles a mesh, as [`Untangle`](super::Untangle) describes.
 pub(super) fn untangled(
     mesh: &Mesh,
-    stored: Precision,
+    stored: Storage<'_>,
     observe: &mut dyn FnMut(&Untangling) -> ControlFlow<()>,
 ) -> Result<Untangled, MeshError> {
     let topology = Topology::by_area(mesh)?;

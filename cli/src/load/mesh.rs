@@ -166,20 +166,6 @@ impl LoadedMesh {
         Ok(remarks)
     }
 
-    /// Moves vertices in a tilted plane to where the file stores them; see [`Plane::certify_as_stored`].
-    pub(crate) fn certify_as_stored(
-        &self,
-        topology: &Topology<'_>,
-        before: &[[f64; 2]],
-        points: &mut [[f64; 2]],
-        options: &Options,
-    ) -> Result<(), MeshError> {
-        match self.plane() {
-            Some(plane) => plane.certify_as_stored(topology, before, points, options),
-            None => Ok(()),
-        }
-    }
-
     /// Lays `other`, a moved state of this mesh, out in the plane of this mesh, or continues its longitudes: each
     /// vertex is placed nearest to its position in this mesh. Does nothing if this mesh has no chart and no plane, or if
     /// the numbers of vertices differ.

@@ -117,6 +117,9 @@ pub(super) fn set_up<'a>(
     if surface == Surface::Sphere {
         smoother.project_from_sphere().map_err(|error| explain::mesh_error(file, &error))?;
     }
+    if let Some(plane) = file.plane() {
+        smoother.set_plane(plane).map_err(|error| explain::mesh_error(file, &error))?;
+    }
     if let Some(remark) = mended.and_then(|mended| mended.remark.as_ref()) {
         follow.remark(remark);
     }

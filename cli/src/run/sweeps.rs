@@ -110,12 +110,7 @@ pub(super) fn smooth(
         taken = OpenEngine::new(Backend::Cpu, Some(error.to_string()));
         outcome = run(&taken.backend);
     }
-    let mut outcome = outcome.map_err(|error| cli_error(request, input.file, error))?;
-    let before = ready.mended.map_or(&input.file.mesh().points, |mended| &mended.mesh.points);
-    input
-        .file
-        .certify_as_stored(ready.smoother.topology(), before, &mut outcome.points, &options)
-        .map_err(|error| explain::mesh_error(input.file, &error))?;
+    let outcome = outcome.map_err(|error| cli_error(request, input.file, error))?;
     clock.end(&outcome);
     let is_canceled = outcome.stop == Stop::Canceled;
     if is_canceled {

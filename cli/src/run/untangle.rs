@@ -76,6 +76,7 @@ pub(super) fn untangle_input(input: &Input<'_>) -> Result<UntangledInput, Failur
     };
     let untangled = Untangle::new(mesh)
         .stored(file.precision())
+        .in_plane(file.plane())
         .observe(&mut observe)
         .run()
         .map_err(explained)?;

@@ -53,14 +53,18 @@ impl Frame {
 
     /// Returns the coordinates of points in the plane.
     pub(crate) fn flat(&self, points: &[Point]) -> Vec<[f64; 2]> {
-        let flat = |point: &Point| match self {
+        points.iter().map(|point| self.flat_of(point)).collect()
+    }
+
+    /// Returns the coordinates of a point in the plane.
+    pub(crate) fn flat_of(&self, point: &Point) -> [f64; 2] {
+        match self {
             Self::Axes(axes) => axes.map(|axis| point[axis]),
             Self::Tilted { origin, directions } => {
                 let from = minus(*point, *origin);
                 directions.map(|direction| dot(from, direction))
             }
-        };
-        points.iter().map(flat).collect()
+        }
     }
 
     /// Returns a point in space after its coordinates in the plane have changed from `from` to `to`. A coordinate that

@@ -1,0 +1,247 @@
+//! Meshes whose vertices have three coordinates and lie in one plane of space, of any orientation. Runs move the vertices
+//! in the plane.
+
+mod frame;
+mod storage;
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::plane::frame::{Farthest, Frame, Point};
+use crate::precision::Precision;
+pub(crate) use storage::Storage;
+
+/// Largest distance of a stored position from the position asked for, in units of [`Plane::rounding`].
+const FAR: f64 = 4.0;
+
+/// The plane in which the vertices of a mesh lie, with coordinates in the plane.
+///
+/// In the plane of two axes, the coordinates in the plane have the bits of those in space. In a tilted plane, they are
+/// lengths u and v from the mean of all vertices. A clone shares the vertices.
+///
+/// ```
+/// use gpu_smooth::{front_ends::Plane, options::Precision};
+///
+/// // A square in the plane of x and z.
+/// let space = vec![[0.0, 7.0, 0.0], [2.0, 7.0, 0.0], [2.0, 7.0, 2.0], [0.0, 7.0, 2.0], [1.5, 7.0, 1.25]];
+/// let plane = Plane::of(space, Precision::Double)?;
+/// assert_eq!(plane.axes(), ["x", "z"]);
+/// let mut points = plane.points().to_vec();
+/// assert_eq!(points[4], [1.5, 1.25]);
+/// points[4] = [1.0, 1.0];
+/// assert_eq!(plane.in_space(&points)[4], [1.0, 7.0, 1.0]);
+/// # Ok::<(), gpu_smooth::front_ends::NotPlanar>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Plane {
+    frame: Frame,
+    /// Precision in which the coordinates in space are stored.
+    stored: Precision,
+    /// The vertices in space.
+    space: Arc<Vec<Point>>,
+    /// The vertices in the plane.
+    flat: Arc<Vec<[f64; 2]>>,
+    /// See [`rounding`](Plane::rounding).
+    rounding: f64,
+}
+
+/// The error of vertices that do not lie in one plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotPlanar {
+    /// The vertex that is farthest from the plane nearest to all vertices.
+    pub vertex: usize,
+    /// Distance of the vertex from this plane. Not finite if a coordinate is not finite.
+    pub distance: f64,
+}
+
+impl fmt::Display for NotPlanar {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { vertex, distance } = self;
+        write!(
+            f,
+            "the mesh is not planar: vertex {vertex} is at a distance of {distance} from the plane nearest to all vertices"
+        )
+    }
+}
+
+impl std::error::Error for NotPlanar {}
+
+impl Plane {
+    /// Finds the plane in which vertices lie, up to 2e-6 of the extent of the mesh and the rounding of numbers that are
+    /// stored in the precision `stored`.
+    ///
+    /// # Errors
+    /// [`NotPlanar`] if a vertex is farther from the plane.
+    pub fn of(space: Vec<[f64; 3]>, stored: Precision) -> Result<Self, NotPlanar> {
+        let frame = Frame::of(&space, stored)
+            .map_err(|Farthest { vertex, distance }| NotPlanar { vertex, distance })?;
+        Ok(Self::with(frame, stored, space))
+    }
+
+    /// Returns vertices at other positions, in the coordinates of this plane. The list may have any length.
+    pub fn likewise(&self, space: Vec<[f64; 3]>) -> Self {
+        Self::with(self.frame, self.stored, space)
+    }
+
+    fn with(frame: Frame, stored: Precision, space: Vec<Point>) -> Self {
+        let largest = space.as_flattened().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+        // A coordinate in the plane is the product of a direction of length 1 with three rounded coordinates.
+        let rounding = 2.0 * stored.error(largest);
+        let flat = Arc::new(frame.flat(&space));
+        Self { frame, stored, space: Arc::new(space), flat, rounding }
+    }
+
+    /// Returns the vertices in the plane.
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.flat
+    }
+
+    /// Returns whether the plane is that of x and y.
+    pub fn is_of_xy(&self) -> bool {
+        self.frame == Frame::Axes([0, 1])
+    }
+
+    /// Returns whether the plane is tilted. Coordinates in the plane are then no coordinates in space.
+    pub fn is_tilted(&self) -> bool {
+        matches!(self.frame, Frame::Tilted { .. })
+    }
+
+    /// Returns the names of the two coordinates in the plane: two of x, y and z, or u and v in a tilted plane.
+    pub fn axes(&self) -> [&'static str; 2] {
+        match self.frame {
+            Frame::Axes(axes) => axes.map(|axis| ["x", "y", "z"][axis]),
+            Frame::Tilted { .. } => ["u", "v"],
+        }
+    }
+
+    /// Returns the unit vector at a right angle to the plane.
+    pub fn normal(&self) -> [f64; 3] {
+        self.frame.normal()
+    }
+
+    /// Returns the precision to which a run rounds coordinates in the plane. Coordinates in a tilted plane are not stored,
+    /// so options have no precision for them; [`Smoother::set_plane`](crate::Smoother::set_plane) has.
+    pub fn run_precision(&self) -> Precision {
+        if self.is_tilted() { Precision::Double } else { self.stored }
+    }
+
+    /// Returns a bound on the errors of coordinates in this plane that come from the rounding of coordinates in space. In
+    /// the plane of two axes, coordinates have the errors of the file ([`Precision::error`]).
+    pub fn rounding(&self) -> f64 {
+        self.rounding
+    }
+
+    /// Returns x, y and z of the vertices at `points` of the plane. A vertex that has not moved keeps its bits, and so
+    /// does the coordinate that is at a right angle to the plane of two axes.
+    pub fn in_space(&self, points: &[[f64; 2]]) -> Vec<[f64; 3]> {
+        let from = self.space.iter().zip(&*self.flat);
+        from.zip(points).map(|((&at, &from), &to)| self.frame.moved(at, from, to)).collect()
+    }
+
+    /// Returns a position near `point` at which rounding in space leaves vertex `v`. The coordinates differ by at most
+    /// [`rounding`](Self::rounding), or by at most [`FAR`] times this bound at few points in double precision. If no such
+    /// position is found, returns the position of the vertex in this plane. Needs a tilted plane.
+    fn settled(&self, v: usize, point: [f64; 2]) -> [f64; 2] {
+        /// Number of times that a position is rounded. A rounded vertex is a little beside the plane, and its position in the
+        /// plane is rounded to the same vertex or to another, which is nearer to the plane.
+        const ROUNDS: usize = 4;
+        /// Distances of the positions that are tried beside `point`, as shares of the largest distance. In double precision near
+        /// the origin, errors of arithmetic are as large as those of rounding, so that most positions are rounded to another.
+        const BESIDE: [f64; 7] = [0.0, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75];
+        if point.map(f64::to_bits) == self.flat[v].map(f64::to_bits) {
+            return point;
+        }
+        for most in [1.0, FAR].map(|far| far * self.rounding) {
+            let along = (0..3).map(|axis| self.on_plane(v, point, axis));
+            let beside = BESIDE.iter().flat_map(|x| BESIDE.map(|y| [*x, y]));
+            let beside = beside.map(|beside| [0, 1].map(|k| point[k] + beside[k] * most));
+            for mut at in along.chain(beside) {
+                for _ in 0..ROUNDS {
+                    let stored = self.as_stored(v, at);
+                    if stored == at {
+                        break;
+                    }
+                    at = stored;
+                }
+                let is_near = (0..2).all(|k| (at[k] - point[k]).abs() <= most);
+                if is_near && self.as_stored(v, at) == at {
+                    return at;
+                }
+            }
+        }
+        self.flat[v]
+    }
+
+    /// Returns the position in the plane of vertex `v` at `point` of the plane, after its coordinates in space along two axes
+    /// were rounded, and that along `axis` was chosen in the plane and rounded. The finer the numbers along this axis
+    /// are, the nearer is the vertex to the plane.
+    fn on_plane(&self, v: usize, point: [f64; 2], axis: usize) -> [f64; 2] {
+        let at = self.frame.moved(self.space[v], self.flat[v], point);
+        let mut stored = at.map(|x| self.stored.rounded(x));
+        let normal = self.frame.normal();
+        let others = (0..3).filter(|&k| k != axis);
+        let off = others.map(|k| normal[k] * (stored[k] - at[k])).sum::<f64>();
+        stored[axis] = self.stored.rounded(at[axis] - off / normal[axis]);
+        self.frame.flat_of(&stored)
+    }
+
+    /// Returns the position in the plane of vertex `v` at `point` of the plane, after its coordinates in space were rounded.
+    fn as_stored(&self, v: usize, point: [f64; 2]) -> [f64; 2] {
+        let moved = self.frame.moved(self.space[v], self.flat[v], point);
+        self.frame.flat_of(&moved.map(|x| self.stored.rounded(x)))
+    }
+
+    /// Lists the vertices that have left this plane in `after`, another state of the mesh, ascending. In the plane of two
+    /// axes, these are the vertices whose third coordinate has other bits.
+    pub fn strays(&self, after: &Self) -> Vec<u32> {
+        self.frame.strays(&self.space, &after.space, self.stored)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A former defect: positions in double precision near the origin were rounded again and again, and left their places.
+    #[test]
+    fn a_settled_position_is_near_the_position_and_is_not_changed_by_rounding() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let (e, f) =
+            ([0.5f64.sqrt(), 0.0, 0.5f64.sqrt()], [-1.0, 2.0, 1.0].map(|x| x / 6.0f64.sqrt()));
+        for stored in [Precision::Single, Precision::Double] {
+            for (size, off) in [(1.0, 0.0), (1.0, 1e3), (1e5, 1e6), (1e-3, 1.0)] {
+                let at = |[x, y]: [f64; 2]| {
+                    [0, 1, 2].map(|k| stored.rounded(off + size * (x * e[k] + y * f[k])))
+                };
+                let space: Vec<Point> = (0..10_000).map(|_| at([random(), random()])).collect();
+                let plane = Plane::of(space, stored).unwrap();
+                assert!(plane.is_tilted());
+                let mut beyond = 0;
+                for v in 0..10_000 {
+                    assert_eq!(plane.settled(v, plane.flat[v]), plane.flat[v]);
+                    let point = plane.flat[v].map(|x| x + 0.01 * size * (random() - 0.5));
+                    let settled = plane.settled(v, point);
+                    assert_eq!(plane.settled(v, settled), settled);
+                    assert_eq!(plane.as_stored(v, settled), settled);
+                    let far = [0, 1].map(|k| (settled[k] - point[k]).abs());
+                    let far = far[0].max(far[1]) / plane.rounding();
+                    assert!(far <= FAR, "{stored:?} {size} {far}");
+                    beyond += usize::from(far > 1.0);
+                }
+                assert!(beyond < 20, "{stored:?} {size} {off} {beyond}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_coordinate_that_is_not_finite_is_refused_in_a_tilted_plane() {
+        let mut space: Vec<Point> =
+            (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5), f64::from(i % 5)]).collect();
+        space[7][2] = f64::NAN;
+        assert!(Plane::of(space, Precision::Double).unwrap_err().distance.is_nan());
+    }
+}
