@@ -20,7 +20,10 @@ const ANALYTIC: &str = "it needs analytic derivatives";
 const CHANGING: &str =
     "targets of places change during the run; drop one of the two, or take targets of vertices";
 const WHOLE_RUN: &str = "only a whole run can do this; drop it, or do a whole run";
-const TANGLED: &str = "inverted triangles give no bound; untangle the mesh in a separate run";
+const TANGLED: [&str; 2] = [
+    "inverted triangles have no least altitude; untangle the mesh in a separate run",
+    "untangling moves vertices as far as it must; untangle the mesh in a separate run",
+];
 
 /// All conflicts. A run with several conflicts reports the first matching row.
 pub(crate) const CONFLICTS: &[Conflict] = &[
@@ -29,8 +32,8 @@ pub(crate) const CONFLICTS: &[Conflict] = &[
     row(Feature::TargetField, Feature::KeepAltitude, CHANGING),
     row(Feature::TargetField, Feature::Goal, CHANGING),
     row(Feature::TargetField, Feature::UnevenScheme, ONE_METRIC),
-    row(Feature::KeepAltitude, Feature::Untangle, TANGLED),
-    row(Feature::MaxMove, Feature::Untangle, TANGLED),
+    row(Feature::KeepAltitude, Feature::Untangle, TANGLED[0]),
+    row(Feature::MaxMove, Feature::Untangle, TANGLED[1]),
     row(Feature::Slide, Feature::FiniteDifferences, ANALYTIC),
     row(Feature::Targets, Feature::FiniteDifferences, ANALYTIC),
     row(

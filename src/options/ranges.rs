@@ -17,7 +17,8 @@ pub struct OptionRange {
 
 impl OptionRange {
     /// [`Stopping::Tolerance`](crate::Stopping::Tolerance).
-    pub const TOLERANCE: Self = Self::new("tolerance", "0 or above", |t| t >= 0.0 && t.is_finite());
+    pub const TOLERANCE: Self =
+        Self::new("tolerance", "a finite number, 0 or above", |t| t >= 0.0 && t.is_finite());
     /// [`Goal::fraction`](crate::Goal::fraction).
     pub const FRACTION: Self =
         Self::new("fraction", "above 0 and at most 1", |share| share > 0.0 && share <= 1.0);
@@ -30,7 +31,7 @@ impl OptionRange {
         (1.0..=f64::from(Paper::MAX_NEWTON_STEPS)).contains(&steps)
     });
     /// [`Options::max_move`](crate::Options::max_move).
-    pub const MAX_MOVE: Self = Self::new("max move", "above 0", is_positive);
+    pub const MAX_MOVE: Self = Self::new("max move", "a finite number above 0", is_positive);
     /// [`PNormExponent::first`](crate::options::PNormExponent::first).
     pub const EXPONENT: Self = Self::new(
         "edge norm",
@@ -49,7 +50,7 @@ impl OptionRange {
     pub const RATIO: Self =
         Self::new("ratio", "a number of at least 1", |ratio| ratio >= 1.0 && ratio.is_finite());
     /// [`Slide::hausdorff`](crate::Slide::hausdorff).
-    pub const HAUSDORFF: Self = Self::new("hausdorff", "a length above 0", is_positive);
+    pub const HAUSDORFF: Self = Self::new("hausdorff", "a finite length above 0", is_positive);
 
     const fn new(option: &'static str, words: &'static str, contains: fn(f64) -> bool) -> Self {
         Self { option, words, contains }

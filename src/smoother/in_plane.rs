@@ -1,14 +1,14 @@
-//! Runs in a plane of space, whose results are positions that vertices can have with stored coordinates in space.
+//! The plane of space of a prepared mesh. The results of runs are positions that vertices can have with stored coordinates in
+//! space.
 
 use crate::error::MeshError;
-use crate::options::Options;
-use crate::plane::{Plane, Storage};
+use crate::plane::Plane;
 
 use super::prepared::Smoother;
 
 impl Smoother<'_> {
     /// Sets the plane of space in which the vertices of the mesh lie. In a tilted plane, further runs return positions that
-    /// the vertices can have with coordinates in space of the plane's precision, whatever [`Options::stored`] is, and keep
+    /// the vertices can have with coordinates in space of the plane's precision, whatever [`Options::stored`](crate::Options::stored) is, and keep
     /// their bounds there. [`set_points`](Self::set_points) removes the plane.
     ///
     /// # Errors
@@ -18,11 +18,6 @@ impl Smoother<'_> {
         self.plane = Some(plane.clone());
         Ok(())
     }
-
-    /// Returns the form in which the positions of a run with these options are stored.
-    pub(super) fn storage(&self, options: &Options) -> Storage<'_> {
-        Storage::new(options.stored, self.plane.as_ref())
-    }
 }
 
 #[cfg(test)]
@@ -30,8 +25,9 @@ mod tests {
     use super::*;
     use crate::measure::{Change, mean_edges};
     use crate::mesh::Mesh;
-    use crate::options::Precision;
+    use crate::options::{Options, Precision};
     use crate::outcome::Outcome;
+    use crate::plane::Storage;
     use crate::slide::Slide;
 
     /// Returns a ring of `rows` rows of `sides` quadrilaterals, each cut along one diagonal, in a tilted plane, with vertices moved

@@ -278,6 +278,11 @@ impl<'a> Smoother<'a> {
         Ok(outside)
     }
 
+    /// Returns the form in which the positions of a run with these options are stored.
+    pub(super) fn storage(&self, options: &Options) -> Storage<'_> {
+        Storage::new(options.stored, self.plane.as_ref())
+    }
+
     /// Lets vertices slide along the boundary and other curves in further runs; `None` turns sliding off. Vertices of kept
     /// [layers](Self::layers) do not slide. Returns the number of vertices that may slide.
     ///

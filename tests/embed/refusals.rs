@@ -255,7 +255,10 @@ fn options_out_of_range_are_refused() {
             ok().method(Method::Paper(no_steps)),
             "newton steps is 0: it must be a number from 1 to 1000",
         ),
-        (ok().stopping(Stopping::Tolerance(-1.0)), "tolerance is -1: it must be 0 or above"),
+        (
+            ok().stopping(Stopping::Tolerance(-1.0)),
+            "tolerance is -1: it must be a finite number, 0 or above",
+        ),
         (
             ok().max_move(Some(0.5)),
             "encoding sweeps does not go with max_move: only a whole run can do this; drop it, or do a whole run",

@@ -44,7 +44,7 @@ pub(crate) struct MoveArgs {
     /// distance of walls (within=DISTANCE), in the unit of the mesh. Names or tags of groups behind a comma limit the walls
     /// to these groups; without groups, rows=N and within=DISTANCE take each wall, from corner to corner, with flat
     /// elements at a quarter of its vertices or more, and of other walls the vertices with flat elements
-    /// [default: auto; none for compare]
+    /// [default: auto; none for compare without --slide]
     #[arg(long, value_name = "auto|none|rows=N|within=DISTANCE[,GROUP...]", help_heading = HEADING, value_parser = parse::kept_layers)]
     pub(crate) keep_layers: Option<KeptLayers>,
     /// Let only vertices move whose elements all belong to these groups

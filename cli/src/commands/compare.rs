@@ -14,18 +14,17 @@ use crate::terminal::shell_words::quoted;
 use crate::terminal::tell;
 use std::ffi::OsStr;
 
-/// Largest number of listed vertices, and of listed triangles.
-const LISTED: usize = 10;
-
 /// Compares two files. Returns an error if the files differ in anything but movable vertices and
 /// interpolated data.
 pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> {
     let settings = args.options.settings();
     let reading = ReadRequest::from(&args.reading).moving(args.moving.quadrilaterals);
     let (surface, z) = (settings.surface, ThirdCoordinate::of(settings, &args.fields.interpolate));
-    let movable = MovableRequest::of(args.moving, settings);
-    let holds_lines = !movable.free_lines;
     let slide = SlideRequest::of(args.sides, settings);
+    let movable = MovableRequest::of(args.moving, settings);
+    // Layers are the ends of curves.
+    let movable = if slide.is_some() { movable.keeping_layers() } else { movable };
+    let holds_lines = !movable.free_lines;
     let fields = FieldsRequest::from(args.fields);
     let mut before = read(&args.before, &reading)?;
     let mut after = read(&args.after, &reading)?;
@@ -69,28 +68,16 @@ pub(crate) fn run(args: CompareArgs, show: &OutputArgs) -> Result<(), CliError> 
             )),
         });
     }
-    let Proof { moved, held, bad, concave, .. } = &proof;
+    let Proof { moved, held, bad, .. } = &proof;
     let mut problems = mine.implausible(&theirs, moved);
     problems.extend(proof.problem());
-    let mut list = Vec::new();
-    for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
-        list.push(format!("{place}: vertex {}", place.id));
-    }
-    for place in
-        after.source.triangle_locations(bad.iter().map(|bad| bad.triangle).take(LISTED)).values()
-    {
-        list.push(format!("{place}: triangle {}", place.id));
-    }
-    let concave = concave.iter().map(|bad| bad.quadrilateral).take(LISTED);
-    for place in after.source.quadrilateral_locations(concave).values() {
-        list.push(format!("{place}: quadrilateral {}", place.id));
-    }
+    let mut list = proof.places(&after);
     if !held.is_empty() {
         let hint = match slide {
             None => "if they slid along lines in a run with --slide, give --slide here too",
             Some(_) => {
-                "if they slid in a run with other options of --slide (--corner-angle, --hausdorff, --periodic), \
-                 give the same options here, as the options determine the lines"
+                "if they slid in a run with other options of --slide (--corner-angle, --hausdorff, --periodic) or of \
+                 layers (--keep-layers none), give the same options here, as the options determine the lines"
             }
         };
         list.push(hint.to_owned());

@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::load::plane::{likewise, of_file, remark};
 use gpu_smooth::{
-    Element, Mesh, MeshError, Options, Topology,
+    Element, Mesh,
     front_ends::{Chart, Plane},
     options::Precision,
 };

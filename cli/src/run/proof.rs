@@ -12,6 +12,9 @@ use std::collections::BTreeSet;
 use crate::load::InterpolatedFields;
 use crate::report::FileHash;
 
+/// Largest number of listed vertices, of listed triangles, and of listed quadrilaterals.
+const LISTED: usize = 10;
+
 /// Result of comparing two mesh files. The result depends on the files alone, not on data of a run.
 pub(crate) struct Proof {
     /// The first difference outside of coordinates and interpolated data; `None` if there is none.
@@ -139,6 +142,24 @@ impl Proof {
             count => problems.push(format!("{count} corners of quadrilaterals are not convex")),
         }
         (!problems.is_empty()).then(|| problems.join(", "))
+    }
+
+    /// Lists the vertices, triangles and quadrilaterals of the problems, by their places in the second file.
+    pub(crate) fn places(&self, after: &LoadedMesh) -> Vec<String> {
+        let Self { held, bad, concave, .. } = self;
+        let mut list = Vec::new();
+        for place in after.vertex_places(held.iter().copied().take(LISTED)).values() {
+            list.push(format!("{place}: vertex {}", place.id));
+        }
+        let triangles = bad.iter().map(|bad| bad.triangle).take(LISTED);
+        for place in after.source.triangle_locations(triangles).values() {
+            list.push(format!("{place}: triangle {}", place.id));
+        }
+        let concave = concave.iter().map(|bad| bad.quadrilateral).take(LISTED);
+        for place in after.source.quadrilateral_locations(concave).values() {
+            list.push(format!("{place}: quadrilateral {}", place.id));
+        }
+        list
     }
 }
 

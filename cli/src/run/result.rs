@@ -151,10 +151,13 @@ fn certificate(
         }
     };
     if let Some(problem) = proof.problem() {
-        return Err(CliError::run(format!(
-            "{}: the written mesh was read again, and it is wrong: {problem}",
+        let text = format!(
+            "{}: the written mesh was read again, and it is wrong, by a fault of gpu-smooth: {problem}",
             out.display()
-        )));
+        );
+        let mut list = proof.places(&after);
+        list.push("Please report the fault with the mesh and the command line".into());
+        return Err(CliError::run(text).with_details(list));
     }
     let surface = request.surface;
     let quality = Quality::on(surface, &after.mesh().points, ready.smoother.topology())?;

@@ -52,7 +52,7 @@ fn values_out_of_range_name_the_range() {
         ("--max-sweeps many", &["'many' for '--max-sweeps"]),
         ("--tolerance -1", &["'-1' for '--tolerance", "0 or above"]),
         ("--tolerance inf", &["0 or above"]),
-        ("--tolerance little", &["not a number; it must be 0 or above"]),
+        ("--tolerance little", &["not a number; it must be a finite number, 0 or above"]),
         ("--fraction 0", &["above 0 and at most 1"]),
         ("--fraction 95", &["above 0 and at most 1"]),
         ("--fraction nan", &["above 0 and at most 1"]),
@@ -131,7 +131,7 @@ fn options_that_a_run_cannot_combine_are_refused_before_a_file_is_read() {
             "--keep-altitude --untangle",
             "--keep-altitude does not go with --untangle: inverted triangles",
         ),
-        ("--max-move 1 --untangle", "--max-move does not go with --untangle: inverted triangles"),
+        ("--max-move 1 --untangle", "--max-move does not go with --untangle: untangling moves"),
         ("--method multilevel --scheme area", "--method multilevel does not go with --scheme area"),
         (
             "--target keep-size --derivatives finite-difference",

@@ -140,6 +140,34 @@ fn vertices_beside_kept_rows_do_not_slide() {
     assert!(slid.count() > 8);
 }
 
+/// A former defect: the command took the whole boundary for curves, and found vertices beside their curves.
+#[test]
+fn compare_with_slide_keeps_layers_as_a_run_does() {
+    let (mesh, points) = layer(8);
+    // The sides of the mesh are curved.
+    let height = points.last().unwrap()[1];
+    let columns = COLUMNS as f64;
+    let bent = points.iter().enumerate().map(|(v, [x, y])| {
+        let (row, is_side) = (v / (COLUMNS + 1), [0, COLUMNS].contains(&(v % (COLUMNS + 1))));
+        let is_moved = is_side && row > ROWS && row < ROWS + 8;
+        let y = y + if is_moved { 0.5 * ((5 * row) as f64).sin() } else { 0.0 };
+        let bow = 5.0 * (std::f64::consts::PI * y / height).sin();
+        format!("{} {y}", x + bow * (2.0 * x / columns - 1.0))
+    });
+    let bent = bent.collect::<Vec<_>>().join("\n");
+    let (elements, rest) = mesh.split_once("NPOIN=").unwrap();
+    let (_, markers) = rest.split_once("NMARK").unwrap();
+    let mesh = format!("{elements}NPOIN= {}\n{bent}\nNMARK{markers}", points.len());
+    let folder = Folder::new(&[("in.su2", &*mesh)]);
+    let run = folder.line("in.su2 out.su2 --engine cpu --slide");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let same = folder.line("compare in.su2 out.su2 --slide");
+    assert_eq!(same.code, Some(0), "{}", same.err);
+    let other = folder.line("compare in.su2 out.su2 --slide --keep-layers none");
+    assert_eq!(other.code, Some(1), "{}", other.out);
+    assert_holds(&other.err, &["moved that must not", "--keep-layers none"]);
+}
+
 #[test]
 fn a_mesh_whose_free_vertices_are_all_in_layers_is_not_changed() {
     let (mesh, points) = layer(1);
