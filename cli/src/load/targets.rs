@@ -32,7 +32,7 @@ impl TargetRequest {
         let targets = gpu_smooth_job::TargetRequest { kind, source, rings, of_places, surface };
         let facts = targets
             .set(smoother, file.chart(), metric)
-            .map_err(|error| explain::mesh_error(file, &error))?;
+            .map_err(|error| self.explained(file, &error))?;
         let outside = facts.outside.zip(path);
         let outside = outside.and_then(|(outside, path)| outside_of(path, outside));
         Ok((facts, outside.or_else(|| stretched(facts.size_weight?))))
@@ -53,7 +53,7 @@ impl TargetRequest {
                 return Ok((Numbers::Vertices(numbers), None));
             }
             TargetSource::Background { mesh, data } => {
-                (field_of_mesh(file, mesh, data, self.kind, surface)?, mesh)
+                (self.field_of_mesh(file, mesh, data, surface)?, mesh)
             }
             TargetSource::View(path) if !file.domain.is_in_xy() => {
                 let text = format!(
@@ -67,6 +67,48 @@ impl TargetRequest {
         };
         Ok((Numbers::Background(Box::new(field)), Some(path)))
     }
+
+    /// Returns the error of targets at the vertices of `file`.
+    fn explained(&self, file: &LoadedMesh, error: &MeshError) -> CliError {
+        let told = explain::mesh_error(file, error);
+        match (error, &self.given) {
+            (MeshError::Target { .. }, Some(GivenTargets { text, .. })) => {
+                told.within(text).with_remedy(match self.kind {
+                    TargetKind::Tensors => "Give positive definite tensors, as xx, xy and yy",
+                    _ => "Give sizes above 0",
+                })
+            }
+            _ => told,
+        }
+    }
+
+    /// Reads the target field on a background mesh, in the plane of the mesh `file`.
+    fn field_of_mesh(
+        &self,
+        file: &LoadedMesh,
+        path: &Path,
+        data: &str,
+        surface: Surface,
+    ) -> Result<TargetField, CliError> {
+        let kind = self.kind;
+        let options = ReadOptions::new().allow_quadrilaterals_alone(true);
+        let read = options.read(path).map_err(|error| match error {
+            // No option allows a background mesh to refer to files elsewhere.
+            ReadError::Outside { .. } => {
+                of_background(CliError::from(error).with_remedy("Move the file beside the mesh"))
+            }
+            error => of_background(error.into()),
+        })?;
+        let mut background = LoadedMesh::of_elements(read);
+        lay_out(&mut background, surface, ThirdCoordinate::Data)?;
+        if file.plane().is_some() {
+            file.lay_out_likewise(&mut background)?;
+        }
+        let numbers =
+            extended(background.chart(), given(&background, data, kind.components())?, kind);
+        kind.field(background.mesh(), &numbers, surface)
+            .map_err(|error| self.explained(&background, &error))
+    }
 }
 
 /// Returns the remark on the weight of the term of size in the metric; `None` for a weight of 1.
@@ -77,32 +119,6 @@ fn stretched(size_weight: f64) -> Option<String> {
              which keeps the sizes; --target keep-shape keeps the stretching too"
         )
     })
-}
-
-/// Reads the target field on a background mesh, in the plane of the mesh `file`.
-fn field_of_mesh(
-    file: &LoadedMesh,
-    path: &Path,
-    data: &str,
-    kind: TargetKind,
-    surface: Surface,
-) -> Result<TargetField, CliError> {
-    let options = ReadOptions::new().allow_quadrilaterals_alone(true);
-    let read = options.read(path).map_err(|error| match error {
-        // No option allows a background mesh to refer to files elsewhere.
-        ReadError::Outside { .. } => {
-            of_background(CliError::from(error).with_remedy("Move the file beside the mesh"))
-        }
-        error => of_background(error.into()),
-    })?;
-    let mut background = LoadedMesh::of_elements(read);
-    lay_out(&mut background, surface, ThirdCoordinate::Data)?;
-    if file.plane().is_some() {
-        file.lay_out_likewise(&mut background)?;
-    }
-    let numbers = extended(background.chart(), given(&background, data, kind.components())?, kind);
-    kind.field(background.mesh(), &numbers, surface)
-        .map_err(|error| explain::mesh_error(&background, &error))
 }
 
 /// Reads the target field of sizes in a view of gmsh.
@@ -156,7 +172,17 @@ fn of_background(error: CliError) -> CliError {
 fn given(file: &LoadedMesh, source: &str, components: usize) -> Result<Vec<f64>, CliError> {
     let (found, values) = match Path::new(source).exists() {
         true => {
-            let solution = MeditSolution::read(Path::new(source))?;
+            let is_solution =
+                Path::new(source).extension().is_some_and(|kind| kind == "sol" || kind == "mtr");
+            let solution =
+                MeditSolution::read(Path::new(source)).map_err(|error| {
+                    match is_solution {
+                true => CliError::from(error),
+                false => CliError::from(error).with_remedy(format!(
+                    "Give a solution of Medit (.sol), or {source}:NAME for point data of this mesh"
+                )),
+            }
+                })?;
             (solution.components(), solution.values().to_vec())
         }
         false => {
@@ -179,7 +205,8 @@ fn given(file: &LoadedMesh, source: &str, components: usize) -> Result<Vec<f64>,
             "{source}: it has numbers for {} vertices, but {} has {vertices} vertices",
             values.len() / components,
             file.source.path().display()
-        )));
+        ))
+        .with_remedy("Give numbers for each vertex of the mesh, in the order of the mesh file"));
     }
     Ok(values)
 }

@@ -202,10 +202,17 @@ fn sizes_that_do_not_fit_are_refused_with_file_and_reason() {
         files.iter().map(|(name, text)| (*name, text.as_str())).collect();
     let folder = folder(&files);
     for (target, parts) in [
-        ("size=few.mtr", &["few.mtr: it has numbers for 3 vertices"][..]),
+        (
+            "size=few.mtr",
+            &["few.mtr: it has numbers for 3 vertices", "in the order of the mesh file"][..],
+        ),
+        ("size=in.node", &["or in.node:NAME for point data of this mesh"]),
         ("size=cut.mtr", &["cut.mtr:8: the file ends after 7 of"]),
         ("size=wrong.mtr", &["wrong.mtr:2", "not a number"]),
-        ("size=zero.mtr", &["in.node:3: vertex 1: its size is not positive"]),
+        (
+            "size=zero.mtr",
+            &["zero.mtr: in.node:3: vertex 1: its size is not positive", "Give sizes above 0"],
+        ),
         ("size=two.mtr", &["two.mtr:1: a vertex has 2 numbers"]),
         ("metric=huge.mtr", &["huge.mtr:2: the file ends after 1 of 99999999999999 vertices"]),
         ("size=vector.sol", &["vector.sol:5: the solution is of kind 2"]),
