@@ -17,7 +17,8 @@ const FAR: f64 = 4.0;
 /// The plane in which the vertices of a mesh lie, with coordinates in the plane.
 ///
 /// In the plane of two axes, the coordinates in the plane have the bits of those in space. In a tilted plane, they are
-/// lengths u and v from the mean of all vertices. A clone shares the vertices.
+/// lengths u and v from the mean of all vertices. [`Smoother::set_plane`](crate::Smoother::set_plane) makes runs return positions that
+/// the vertices can have in space. A clone shares the vertices.
 ///
 /// ```
 /// use gpu_smooth::{front_ends::Plane, options::Precision};
