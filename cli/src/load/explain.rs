@@ -327,7 +327,9 @@ pub(crate) fn mesh_error(file: &LoadedMesh, error: &MeshError) -> CliError {
         MeshError::Latitude { vertex } => {
             let place = file.vertex_place(vertex);
             let problem = "its latitude is not between -90 and 90 degrees";
-            CliError::input(format!("{place}: vertex {}: {problem}", place.id))
+            CliError::input(format!("{place}: vertex {}: {problem}", place.id)).with_remedy(
+                "Correct it, or leave out --surface sphere if the coordinates are lengths",
+            )
         }
         MeshError::Target { vertex, problem } => {
             let vertex = vertex as u32;

@@ -318,6 +318,13 @@ fn further_elements_after_the_announced_ones_are_errors() {
     assert_refused("a.ply", ply, &["a.ply:14:", "further items follow the 5"]);
 }
 
+/// A former defect: the first triangle was said to be wrong.
+#[test]
+fn an_su2_that_is_cut_off_before_its_points_is_named_so() {
+    let su2 = "NDIME= 2\nNELEM= 3\n5 0 1 2\n5 1 3 2\n5 2";
+    assert_refused("a.su2", su2, &["before its points (NPOIN)", "cut off"]);
+}
+
 /// A former defect: zero bytes, which a crash may leave in a file, made two numbers of one.
 #[test]
 fn zero_bytes_within_numbers_are_errors() {

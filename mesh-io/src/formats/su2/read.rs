@@ -50,6 +50,7 @@ impl FormatReader for Su2 {
         let mut lists: Vec<List<'_>> = Vec::new();
         // The number of points before each zone, and the number of all points.
         let (mut zones, mut points) = (vec![0], 0_u64);
+        let mut has_points = false;
         let (mut marker, mut motions) = (None, None::<Motions>);
         // The number of markers that each zone announces, and the number of zones.
         let (mut announced, mut all_zones) = (Vec::new(), 0);
@@ -81,6 +82,7 @@ impl FormatReader for Su2 {
                     )?;
                     end_of_list(cursor, count, "points", point)?;
                     points += count;
+                    has_points = true;
                 }
                 b"MARKER_TAG" => marker = Some(all),
                 b"NELEM" | b"MARKER_ELEMS" => {
@@ -125,6 +127,9 @@ impl FormatReader for Su2 {
                 }
                 _ => {}
             }
+        }
+        if !has_points && !lists.is_empty() {
+            return Err(cursor.error("the file ends before its points (NPOIN)", CUT_OFF));
         }
         check_markers(cursor, &announced, &lists)?;
         let found = zones.len() as u64;
