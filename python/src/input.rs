@@ -211,9 +211,14 @@ struct Bad {
 impl Bad {
     /// Describes bad elements; `None` without such elements.
     fn of(triangles: &[BadTriangle], corners: &[BadQuadrilateral]) -> Option<Self> {
-        let of_triangles = format!("{} triangles stay inverted or flat", triangles.len());
-        let of_corners =
-            format!("{} corners of quadrilaterals stay concave or flat", corners.len());
+        let of_triangles = match triangles.len() {
+            1 => "1 triangle stays inverted or flat".to_owned(),
+            count => format!("{count} triangles stay inverted or flat"),
+        };
+        let of_corners = match corners.len() {
+            1 => "1 corner of a quadrilateral stays concave or flat".to_owned(),
+            count => format!("{count} corners of quadrilaterals stay concave or flat"),
+        };
         let (argument, first, named) = match (triangles, corners) {
             ([], []) => return None,
             ([first, ..], []) => {

@@ -352,11 +352,11 @@ def test_the_time_limit_and_the_function_of_a_run_include_untangling(function: A
     function(points, triangles, untangle=True, on_sweep=seen.append)
     assert {"untangling", "smoothing"} <= {progress.phase for progress in seen}
     for options in {"time_limit": 0.0}, {"on_sweep": lambda progress: True}:
-        with pytest.raises(MeshError, match="triangles stay inverted or flat after"):
+        with pytest.raises(MeshError, match="triangles? stays? inverted or flat after"):
             function(points, triangles, untangle=True, **options)
     smoother = gpu_smooth.Smoother(points, triangles, untangle=True)
     assert smoother.run(time_limit=0.0).stop == "canceled"
-    with pytest.raises(MeshError, match="triangles stay inverted or flat after"):
+    with pytest.raises(MeshError, match="triangles? stays? inverted or flat after"):
         smoother.run(points, time_limit=0.0)
 
 

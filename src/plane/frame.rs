@@ -83,6 +83,13 @@ impl Frame {
         moved
     }
 
+    /// Returns the largest coordinate of points, counted from the origin of a tilted plane. `None` in the plane of two axes.
+    pub(crate) fn extent(&self, points: &[Point]) -> Option<f64> {
+        let Self::Tilted { origin, .. } = self else { return None };
+        let from_origin = points.iter().flat_map(|&point| minus(point, *origin));
+        Some(from_origin.fold(0.0, |most: f64, x| most.max(x.abs())))
+    }
+
     /// Returns the direction at a right angle to the plane.
     pub(crate) fn normal(&self) -> Point {
         match self {

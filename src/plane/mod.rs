@@ -4,15 +4,17 @@
 mod frame;
 mod storage;
 
-use std::fmt;
 use std::sync::Arc;
+use std::{fmt, iter};
 
 use crate::plane::frame::{Farthest, Frame, Point};
 use crate::precision::Precision;
 pub(crate) use storage::Storage;
 
-/// Largest distance of a stored position from the position asked for, in units of [`Plane::rounding`].
-const FAR: f64 = 4.0;
+/// Number of bits by which coordinates in space of moved vertices are coarser than double precision has them for the extent of
+/// the mesh. Errors of arithmetic are then smaller than the distance between two stored coordinates, so that a stored vertex
+/// has a position in the plane that leads back to it.
+const COARSENING: u32 = 5;
 
 /// The plane in which the vertices of a mesh lie, with coordinates in the plane.
 ///
@@ -44,6 +46,9 @@ pub struct Plane {
     flat: Arc<Vec<[f64; 2]>>,
     /// See [`rounding`](Plane::rounding).
     rounding: f64,
+    /// The number whose addition and subtraction rounds coordinates in space to [`COARSENING`] bits less than double precision
+    /// has for the extent of the mesh. `None` for coordinates that are stored otherwise, and in the plane of two axes.
+    coarse: Option<f64>,
 }
 
 /// The error of vertices that do not lie in one plane.
@@ -87,9 +92,20 @@ impl Plane {
     fn with(frame: Frame, stored: Precision, space: Vec<Point>) -> Self {
         let largest = space.as_flattened().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
         // A coordinate in the plane is the product of a direction of length 1 with three rounded coordinates.
-        let rounding = 2.0 * stored.error(largest);
+        let mut rounding = 2.0 * stored.error(largest);
+        let coarse = match stored {
+            Precision::Double => {
+                // Far from the origin, double precision itself is coarse.
+                let is_coarse = |coarse: &f64| *coarse > 4.0 * largest;
+                frame.extent(&space).and_then(coarse).filter(is_coarse)
+            }
+            Precision::Single | Precision::Custom(_) => None,
+        };
+        if let Some(coarse) = coarse {
+            rounding = rounding.max(f64::EPSILON * coarse);
+        }
         let flat = Arc::new(frame.flat(&space));
-        Self { frame, stored, space: Arc::new(space), flat, rounding }
+        Self { frame, stored, space: Arc::new(space), flat, rounding, coarse }
     }
 
     /// Returns the vertices in the plane.
@@ -135,39 +151,47 @@ impl Plane {
     /// Returns x, y and z of the vertices at `points` of the plane. A vertex that has not moved keeps its bits, and so
     /// does the coordinate that is at a right angle to the plane of two axes.
     pub fn in_space(&self, points: &[[f64; 2]]) -> Vec<[f64; 3]> {
-        let from = self.space.iter().zip(&*self.flat);
-        from.zip(points).map(|((&at, &from), &to)| self.frame.moved(at, from, to)).collect()
+        points.iter().enumerate().map(|(v, &point)| self.vertex_in_space(v, point)).collect()
+    }
+
+    /// Returns x, y and z of vertex `v` at `point` of the plane, as a file stores them, but for the precision of the file.
+    fn vertex_in_space(&self, v: usize, point: [f64; 2]) -> Point {
+        let from = self.space[v];
+        let mut to = self.frame.moved(from, self.flat[v], point);
+        if let Some(coarse) = self.coarse {
+            for (to, _) in to.iter_mut().zip(from).filter(|(to, from)| **to != *from) {
+                *to = (*to + coarse) - coarse;
+            }
+        }
+        to
     }
 
     /// Returns a position near `point` at which rounding in space leaves vertex `v`. The coordinates differ by at most
-    /// [`rounding`](Self::rounding), or by at most [`FAR`] times this bound at few points in double precision. If no such
-    /// position is found, returns the position of the vertex in this plane. Needs a tilted plane.
+    /// [`rounding`](Self::rounding). If no such position is found, returns the position of the vertex in this plane. Needs a
+    /// tilted plane.
     fn settled(&self, v: usize, point: [f64; 2]) -> [f64; 2] {
         /// Number of times that a position is rounded. A rounded vertex is a little beside the plane, and its position in the
         /// plane is rounded to the same vertex or to another, which is nearer to the plane.
         const ROUNDS: usize = 4;
-        /// Distances of the positions that are tried beside `point`, as shares of the largest distance. In double precision near
-        /// the origin, errors of arithmetic are as large as those of rounding, so that most positions are rounded to another.
-        const BESIDE: [f64; 7] = [0.0, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75];
+        /// Distances of the positions that are tried beside `point`, in units of [`Plane::rounding`]. Most points need none.
+        const BESIDE: [f64; 5] = [0.0, 0.25, -0.25, 0.5, -0.5];
         if point.map(f64::to_bits) == self.flat[v].map(f64::to_bits) {
             return point;
         }
-        for most in [1.0, FAR].map(|far| far * self.rounding) {
-            let along = (0..3).map(|axis| self.on_plane(v, point, axis));
-            let beside = BESIDE.iter().flat_map(|x| BESIDE.map(|y| [*x, y]));
-            let beside = beside.map(|beside| [0, 1].map(|k| point[k] + beside[k] * most));
-            for mut at in along.chain(beside) {
-                for _ in 0..ROUNDS {
-                    let stored = self.as_stored(v, at);
-                    if stored == at {
-                        break;
-                    }
-                    at = stored;
+        let along = (0..3).map(|axis| self.on_plane(v, point, axis));
+        let beside = BESIDE.iter().flat_map(|x| BESIDE.map(|y| [*x, y]));
+        let beside = beside.map(|beside| [0, 1].map(|k| point[k] + beside[k] * self.rounding));
+        for mut at in iter::once(point).chain(along).chain(beside) {
+            for _ in 0..ROUNDS {
+                let stored = self.as_stored(v, at);
+                if stored == at {
+                    break;
                 }
-                let is_near = (0..2).all(|k| (at[k] - point[k]).abs() <= most);
-                if is_near && self.as_stored(v, at) == at {
-                    return at;
-                }
+                at = stored;
+            }
+            let is_near = (0..2).all(|k| (at[k] - point[k]).abs() <= self.rounding);
+            if is_near && self.as_stored(v, at) == at {
+                return at;
             }
         }
         self.flat[v]
@@ -175,9 +199,9 @@ impl Plane {
 
     /// Returns the position in the plane of vertex `v` at `point` of the plane, after its coordinates in space along two axes
     /// were rounded, and that along `axis` was chosen in the plane and rounded. The finer the numbers along this axis
-    /// are, the nearer is the vertex to the plane.
+    /// are, as near zero, the nearer is the vertex to the plane.
     fn on_plane(&self, v: usize, point: [f64; 2], axis: usize) -> [f64; 2] {
-        let at = self.frame.moved(self.space[v], self.flat[v], point);
+        let at = self.vertex_in_space(v, point);
         let mut stored = at.map(|x| self.stored.rounded(x));
         let normal = self.frame.normal();
         let others = (0..3).filter(|&k| k != axis);
@@ -188,7 +212,7 @@ impl Plane {
 
     /// Returns the position in the plane of vertex `v` at `point` of the plane, after its coordinates in space were rounded.
     fn as_stored(&self, v: usize, point: [f64; 2]) -> [f64; 2] {
-        let moved = self.frame.moved(self.space[v], self.flat[v], point);
+        let moved = self.vertex_in_space(v, point);
         self.frame.flat_of(&moved.map(|x| self.stored.rounded(x)))
     }
 
@@ -199,9 +223,19 @@ impl Plane {
     }
 }
 
+/// Returns the number whose addition and subtraction rounds coordinates; see [`COARSENING`]. `None` if a mesh of this extent has
+/// no such number.
+fn coarse(extent: f64) -> Option<f64> {
+    // The exponent of a number without its mantissa is a power of two.
+    let power = f64::from_bits(extent.to_bits() & !((1 << (f64::MANTISSA_DIGITS - 1)) - 1));
+    let coarse = 1.5 * power * f64::from(2u32 << COARSENING);
+    (coarse.is_finite() && coarse > f64::MIN_POSITIVE).then_some(coarse)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::precision::Rounding;
 
     /// A former defect: positions in double precision near the origin were rounded again and again, and left their places.
     #[test]
@@ -211,29 +245,45 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
-        let (e, f) =
-            ([0.5f64.sqrt(), 0.0, 0.5f64.sqrt()], [-1.0, 2.0, 1.0].map(|x| x / 6.0f64.sqrt()));
-        for stored in [Precision::Single, Precision::Double] {
-            for (size, off) in [(1.0, 0.0), (1.0, 1e3), (1e5, 1e6), (1e-3, 1.0)] {
-                let at = |[x, y]: [f64; 2]| {
-                    [0, 1, 2].map(|k| stored.rounded(off + size * (x * e[k] + y * f[k])))
-                };
-                let space: Vec<Point> = (0..10_000).map(|_| at([random(), random()])).collect();
-                let plane = Plane::of(space, stored).unwrap();
-                assert!(plane.is_tilted());
-                let mut beyond = 0;
-                for v in 0..10_000 {
-                    assert_eq!(plane.settled(v, plane.flat[v]), plane.flat[v]);
-                    let point = plane.flat[v].map(|x| x + 0.01 * size * (random() - 0.5));
-                    let settled = plane.settled(v, point);
-                    assert_eq!(plane.settled(v, settled), settled);
-                    assert_eq!(plane.as_stored(v, settled), settled);
-                    let far = [0, 1].map(|k| (settled[k] - point[k]).abs());
-                    let far = far[0].max(far[1]) / plane.rounding();
-                    assert!(far <= FAR, "{stored:?} {size} {far}");
-                    beyond += usize::from(far > 1.0);
-                }
-                assert!(beyond < 20, "{stored:?} {size} {off} {beyond}");
+        let short = Rounding {
+            name: "short",
+            round: |x| format!("{x:.8e}").parse().unwrap(),
+            error: |size| 1e-8 * size,
+        };
+        for trial in 0..300 {
+            let stored =
+                [Precision::Single, Precision::Double, Precision::Custom(short)][trial % 3];
+            let off = [0.0, 2.0, 10.0, 30.0, 1e3][trial % 5];
+            let (size, off) = [1.0, 1e5, 1e-3].map(|size| (size, off * size))[trial / 5 % 3];
+            // Two directions at a right angle, of which some are nearly along an axis.
+            let (a, b) = (6.3 * random(), 6.3 * random() * random().powi(trial as i32 % 4));
+            let (e, f) = (
+                [a.cos(), a.sin() * b.cos(), a.sin() * b.sin()],
+                [-a.sin(), a.cos() * b.cos(), a.cos() * b.sin()],
+            );
+            let at = |[x, y]: [f64; 2]| {
+                [0, 1, 2].map(|k| stored.rounded(off + size * (x * e[k] + y * f[k])))
+            };
+            let space: Vec<Point> = (0..300)
+                .map(|v| {
+                    let [x, y] = [random(), random()];
+                    // A third of the vertices have a small coordinate in space, if the origin is near.
+                    at(if v % 3 == 0 { [-x * f[0] + 1e-9 * y, x * e[0]] } else { [x, y] })
+                })
+                .collect();
+            let plane = Plane::of(space, stored).unwrap();
+            if !plane.is_tilted() {
+                continue;
+            }
+            for v in 0..300 {
+                assert_eq!(plane.settled(v, plane.flat[v]), plane.flat[v]);
+                let far = [0.01, 1.0, 1e-6, 1e-3][v % 4];
+                let point = plane.flat[v].map(|x| x + far * size * (random() - 0.5));
+                let settled = plane.settled(v, point);
+                assert_eq!(plane.settled(v, settled), settled);
+                assert_eq!(plane.as_stored(v, settled), settled);
+                let off = [0, 1].map(|k| (settled[k] - point[k]).abs());
+                assert!(off.iter().all(|&off| off <= plane.rounding()), "{trial} {off:?}");
             }
         }
     }

@@ -93,6 +93,16 @@ mod tests {
                 let outcome = smoothed(&plane, &mesh, Some(&slide), &options);
                 assert!(outcome.slid.is_some_and(|slid| slid.moved > 0));
                 let smoother = Smoother::new(&mesh).unwrap();
+                // A former defect: points for which no stored position was found stayed.
+                let free =
+                    smoother.topology().free().iter().zip(mesh.points.iter().zip(&outcome.points));
+                let stay = free.filter(|(is_free, (from, to))| **is_free && from == to);
+                assert!(
+                    stay.count() <= outcome.returned,
+                    "{sides} {stored:?} {} {:?}",
+                    outcome.returned,
+                    outcome.floored
+                );
                 let found = slide.misplaced_within(
                     smoother.topology(),
                     &mesh.points,
