@@ -36,10 +36,16 @@ impl Frame {
             let (low, high) = (of_axis.clone().fold(f64::INFINITY, f64::min), of_axis);
             high.fold(f64::NEG_INFINITY, f64::max) - low
         };
-        for (axis, others) in [(2, [0, 1]), (1, [0, 2]), (0, [1, 2])] {
-            if range(axis) <= tolerance {
-                return Ok(Self::Axes(others));
-            }
+        if let Some(vertex) = points.iter().position(|point| !point[2].is_finite()) {
+            return Err(Farthest { vertex, distance: f64::NAN });
+        }
+        let mut axes =
+            [(2, [0, 1]), (1, [0, 2]), (0, [1, 2])].map(|(k, others)| (range(k), others));
+        // Of equal ranges, the first counts.
+        axes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let [(least, others), ..] = axes;
+        if least <= tolerance {
+            return Ok(Self::Axes(others));
         }
         let frame = fitted(points);
         match frame.farthest(points) {
@@ -234,6 +240,15 @@ mod tests {
         assert_eq!(frame.moved(points[3], flat[3], flat[3]), points[3]);
         let moved = frame.moved(points[3], flat[3], [flat[3][0] + 1.0, flat[3][1] - 2.0]);
         assert!(frame.strays(&points[3..4], &[moved], Precision::Double).is_empty());
+    }
+
+    /// A former defect: the first axis within the tolerance was taken, which is large far from the origin.
+    #[test]
+    fn the_axis_of_the_least_range_is_at_a_right_angle_to_the_plane() {
+        let points = [[1e7, 0.0, 0.0], [1e7, 2.0, 0.0], [1e7, 2.0, 2.0], [1e7, 0.0, 2.0]];
+        assert_eq!(Frame::of(&points, Precision::Single).ok(), Some(Frame::Axes([1, 2])));
+        let infinite = points.map(|[x, y, z]| [x, y, if z == 0.0 { z } else { f64::INFINITY }]);
+        assert_eq!(Frame::of(&infinite, Precision::Double).err().unwrap().vertex, 2);
     }
 
     #[test]
